@@ -1,0 +1,166 @@
+"""A Vehicle: the nominal numbers of one ROV, as its TOML file states them, each with a source.
+
+Frames: body forward-starboard-down with its origin where the file says, world north-east-down; SI, except thrust gains
+in N per rpm^2, as thruster tables print them. Added mass and damping are positive (M_A and D of Fossen 2021, 6.3 and 6.4).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+Array = NDArray[np.float64]
+Vector3 = tuple[float, float, float]
+Diagonal = Annotated[tuple[float, ...], Field(min_length=6, max_length=6)]
+Matrix = Annotated[tuple[Diagonal, ...], Field(min_length=6, max_length=6)]
+Positive = Annotated[float, Field(gt=0)]
+NotNegative = Annotated[float, Field(ge=0)]
+
+
+class Strict(BaseModel):
+    """Immutable, and a misspelt key is an error rather than ignored."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Body(Strict):
+    """Rigid body and hydrodynamics (thesis 3.11 to 3.14). A list of six is a diagonal, a list of six lists a matrix."""
+
+    mass: Positive
+    Ixx: Positive
+    Iyy: Positive
+    Izz: Positive
+    Ixy: float = 0.0
+    Ixz: float = 0.0
+    Iyz: float = 0.0
+    added_mass: Diagonal | Matrix
+    linear_drag: Diagonal | Matrix
+    quadratic_drag: Diagonal | Matrix
+    volume: Positive
+    centre_of_gravity: Vector3
+    centre_of_buoyancy: Vector3
+    size: Vector3 = (1.0, 0.6, 0.5)
+
+
+class Water(Strict):
+    """Density kg/m3 and gravity m/s2."""
+
+    density: Positive
+    gravity: Positive
+
+
+class Thruster(Strict):
+    """One thruster: where it is, which way positive thrust pushes the vehicle, and its law.
+
+    At rest in the water T = k_pos n^2 for n > 0 and -k_neg n^2 for n < 0 (n in rpm, N). With ``diameter`` and the advance-ratio
+    rows (c1, c2, c3) the thrust becomes T (1 + c1/c0 J + ...): rho D^4 n|n| theta K_T(J_a), J_a = u_a / (n D), as the thesis's
+    Simulink model has it; k_pos and k_neg then hold the J = 0 part.
+    """
+
+    name: str
+    position: Vector3
+    direction: Vector3
+    k_pos: Positive
+    k_neg: Positive
+    diameter: NotNegative = 0.0
+    advance_pos: Vector3 = (0.0, 0.0, 0.0)
+    advance_neg: Vector3 = (0.0, 0.0, 0.0)
+    handedness: Literal[-1, 1] = 1
+
+
+class Mixer(Strict):
+    """How a pilot's sticks become pulse widths: pwm = neutral + span * sum(factor * stick), clipped by the autopilot at +-span."""
+
+    neutral_us: Positive
+    span_us: Positive
+    factors: dict[str, tuple[float, ...]]
+
+
+class PulseTable(Strict):
+    """Pulse width (us) to shaft speed (rpm, signed) and thrust (N) at one supply voltage."""
+
+    voltage: Positive
+    pwm_us: tuple[float, ...]
+    rpm: tuple[float, ...]
+    thrust: tuple[float, ...]
+
+
+class Vehicle(Strict):
+    """One vehicle. ``sources`` names where each number comes from; ``convention`` guards against drag stored as negative."""
+
+    name: str
+    title: str = ""
+    convention: Literal["fossen-positive"] = "fossen-positive"
+    notes: tuple[str, ...] = ()
+    sources: dict[str, str] = {}
+    body: Body
+    water: Water
+    thruster: Annotated[tuple[Thruster, ...], Field(min_length=1)]
+    mixer: Mixer | None = None
+    pulse_table: PulseTable | None = None
+    effects: dict[str, dict[str, float]] = {}
+
+    @property
+    def thrusters(self) -> tuple[str, ...]:
+        """Names of the thrusters in file order."""
+        return tuple(t.name for t in self.thruster)
+
+    @property
+    def weight(self) -> float:
+        """W = m g, N."""
+        return self.body.mass * self.water.gravity
+
+    @property
+    def buoyancy(self) -> float:
+        """B = rho g volume, N."""
+        return self.water.density * self.water.gravity * self.body.volume
+
+    @property
+    def hash(self) -> str:
+        """Short content hash: two vehicles with one hash are the same numbers."""
+        text = json.dumps(self.model_dump(mode="json", exclude={"sources", "notes", "title"}), sort_keys=True)
+        return hashlib.sha256(text.encode()).hexdigest()[:12]
+
+
+def square(values: tuple[float, ...] | tuple[tuple[float, ...], ...]) -> Array:
+    """A diagonal of six or a 6 x 6 matrix, as a matrix."""
+    a = np.array(values, dtype=float)
+    return np.diag(a) if a.ndim == 1 else a
+
+
+def inertia(body: Body) -> Array:
+    """Inertia tensor about the body origin, kg m2 (3, 3); products of inertia carry the minus sign of thesis 3.11."""
+    return np.array(
+        [
+            [body.Ixx, -body.Ixy, -body.Ixz],
+            [-body.Ixy, body.Iyy, -body.Iyz],
+            [-body.Ixz, -body.Iyz, body.Izz],
+        ]
+    )
+
+
+def rigid_body_mass(body: Body) -> Array:
+    """M_RB about the body origin (thesis 3.11; Fossen 2021, 3.50), (6, 6)."""
+    x, y, z = body.centre_of_gravity
+    m = body.mass
+    cross = m * np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    mass = np.zeros((6, 6))
+    mass[:3, :3] = m * np.eye(3)
+    mass[:3, 3:] = -cross
+    mass[3:, :3] = cross
+    mass[3:, 3:] = inertia(body)
+    return mass
+
+
+def allocation(vehicle: Vehicle) -> Array:
+    """T of tau = T U (thesis 3.15): column j is the wrench of 1 N of thruster j, (6, k)."""
+    columns = []
+    for thruster in vehicle.thruster:
+        direction = np.array(thruster.direction) / np.linalg.norm(thruster.direction)
+        columns.append(np.concatenate([direction, np.cross(thruster.position, direction)]))
+    return np.stack(columns, axis=1)
