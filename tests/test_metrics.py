@@ -66,7 +66,9 @@ def test_theil_shares_add_to_one() -> None:
     assert sum(shares) == pytest.approx(1.0, abs=1e-12) and min(shares) >= 0
 
 
-@pytest.mark.parametrize(("simulated", "share"), [(MEASURED + 0.3, "bias"), (1.5 * MEASURED - 0.5 * MEASURED.mean(), "variance")])
+@pytest.mark.parametrize(
+    ("simulated", "share"), [(MEASURED + 0.3, "bias"), (1.5 * MEASURED - 0.5 * MEASURED.mean(), "variance")]
+)
 def test_theil_names_offset_and_size(simulated: Array, share: str) -> None:
     error = simulated - MEASURED
     assert metrics.get(f"theil_{share}").compute(error, OK, 0.1, MEASURED) == pytest.approx(1.0, abs=1e-9)

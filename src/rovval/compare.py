@@ -46,7 +46,8 @@ def compare(
     """
     if sim.free.nu.shape != (len(run), 6) or sim.windowed.nu.shape != (len(run), 6):
         raise BadInput(f"run {run.id} has {len(run)} rows, its simulation {len(sim.free.nu)}", "simulate this very run again")
-    free, windowed = {}, {}
+    free: dict[str, ChannelError] = {}
+    windowed: dict[str, ChannelError] = {}
     for j, (axis, name) in enumerate(zip(AXES, VELOCITIES, strict=True)):
         measured, ok = run.get(name), run.ok(name)
         for table, traj in ((free, sim.free), (windowed, sim.windowed)):
@@ -99,7 +100,7 @@ def horizons(comparison: Comparison) -> Mapping[str, Horizon]:
         square = np.square(windowed.nu[keep, j] - run.get(name)[keep])
         total, n = np.bincount(step[keep], square), np.bincount(step[keep])
         k = np.flatnonzero(n >= max(1, n.max() // 4))  # a last, shorter window must not bend the curve's end
-        result[axis] = Horizon(k * run.dt, np.sqrt(total[k] / n[k]), n[k])
+        result[axis] = Horizon(np.asarray(k * run.dt, dtype=np.float64), np.sqrt(total[k] / n[k]).astype(np.float64), n[k])
     return result
 
 
