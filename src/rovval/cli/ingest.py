@@ -1,0 +1,71 @@
+"""`rovval ingest`: logs into the archive."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from rovval.cli import complete, options, output
+from rovval.errors import RovvalError
+
+
+def command(
+    sources: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="SOURCE...", help="Log files, bag folders, or folders of logs.", autocompletion=complete.sources
+        ),
+    ],
+    profile: options.ProfileOption = None,
+    archive: options.ArchiveOption = Path("archive"),
+    json_: options.JsonFlag = False,
+    quiet: options.QuietOption = False,
+) -> None:
+    """Read logs, bring them to 10 Hz, and keep them as runs in the archive; prints the runs' ids.
+
+    A log that cannot be used is named with its reason, the others go on, and the exit code is then 3.
+
+    \b
+    Example:
+      rovval ingest dive.csv --profile merlin
+      rovval ingest bags/ --archive /data/archive
+    """
+    from rovval import store
+    from rovval.pipeline.discover import logs_in
+
+    show = output.progress(quiet)
+    logs = logs_in(sources)
+    rows: list[dict[str, Any]] = []
+    worst = 0
+    for number, log in enumerate(logs):
+        show(f"ingest {log.name}", number / len(logs))
+        try:
+            run = store.open_run(str(log), profile, archive)
+            store.save(run, archive)
+        except RovvalError as error:
+            worst = max(worst, error.exit_code)
+            output.say(f"rovval: {error}")
+            rows.append({"log": str(log), "run": None, "problem": error.message})
+            continue
+        findings = [str(f) for f in run.findings]
+        rows.append(
+            {
+                "log": str(log),
+                "run": run.id,
+                "profile": run.profile,
+                "vehicle": run.vehicle,
+                "seconds": run.duration_s,
+                "findings": findings,
+            }
+        )
+        if not json_:
+            output.result(run.id)
+        for finding in findings:
+            output.say(f"  {finding}", quiet)
+    show("ingest", 1.0)
+    if json_:
+        output.result_json({"schema": "rovval.ingest/1", "archive": str(archive), "logs": rows})
+    if worst:
+        raise typer.Exit(worst)

@@ -1,0 +1,186 @@
+"""`rovval list` and `rovval show`: what there is, and what stands in it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rovval.cli import complete, options, output
+
+if TYPE_CHECKING:
+    from rovval.effects import Effect
+
+AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
+
+
+class Kind(StrEnum):
+    """What can be listed."""
+
+    vehicle = "vehicle"
+    effect = "effect"
+    profile = "profile"
+    metric = "metric"
+    run = "run"
+
+
+def _names_of_kind(ctx: typer.Context, incomplete: str) -> list[str]:
+    return complete.named(str(ctx.params.get("kind", "")), incomplete)
+
+
+def list_command(
+    kind: Annotated[Kind, typer.Argument(help="What to list.")],
+    archive: options.ArchiveOption = Path("archive"),
+    json_: options.JsonFlag = False,
+) -> None:
+    """List vehicles, effects, profiles, metrics, or the archive's runs.
+
+    \b
+    Example:
+      rovval list effect
+      rovval list run --archive /data/archive --json
+    """
+    names = _names(kind, archive)
+    if json_:
+        output.result_json(names)
+    elif names:
+        output.result("\n".join(names))
+    else:
+        output.say(f"no {kind.value} in {archive}" if kind is Kind.run else f"no {kind.value}")
+
+
+def show_command(
+    kind: Annotated[Kind, typer.Argument(help="What kind of thing.")],
+    name: Annotated[
+        str, typer.Argument(help="Its name, or a path to a TOML file of one's own.", autocompletion=_names_of_kind)
+    ],
+    archive: options.ArchiveOption = Path("archive"),
+    json_: options.JsonFlag = False,
+) -> None:
+    """Show one vehicle, effect, profile, metric or run. A vehicle or profile is printed as TOML, to copy and to change.
+
+    \b
+    Example:
+      rovval show vehicle merlin > my_vehicle.toml
+      rovval show effect inflow_loss
+      rovval show run RUN --json
+    """
+    shown = {Kind.vehicle: _vehicle, Kind.effect: _effect, Kind.profile: _profile, Kind.metric: _metric}
+    text, document = _run(name, archive) if kind is Kind.run else shown[kind](name)
+    output.result_json(document()) if json_ else output.result(text.rstrip("\n"))
+
+
+def _names(kind: Kind, archive: Path) -> list[str]:
+    if kind is Kind.run:
+        from rovval import store
+
+        return [str(run) for run in store.runs(archive)]
+    return complete.known(kind.value)
+
+
+Shown = tuple[str, Callable[[], Any]]
+
+
+def _vehicle(name: str) -> Shown:
+    from rovval import vehicle
+    from rovval.vehicle.audit import uncontrolled_axes
+
+    loaded = vehicle.load(name)
+    path = Path(name) if name.endswith(".toml") else vehicle.LIBRARY / f"{name}.toml"
+    free = ", ".join(uncontrolled_axes(loaded)) or "none"
+    output.say(
+        f"weight {loaded.weight:.1f} N, buoyancy {loaded.buoyancy:.1f} N; "
+        f"axes that the thrusters cannot push alone: {free}; hash {loaded.hash}"
+    )
+    return path.read_text(encoding="utf-8"), lambda: loaded.model_dump(mode="json") | {"hash": loaded.hash}
+
+
+def _profile(name: str) -> Shown:
+    from rovval.ingest import profile
+
+    loaded = profile.load_profile(name)
+    path = profile.FOLDER / f"{name}.toml"
+    text = (path if path.is_file() else Path(name)).read_text(encoding="utf-8")
+    return text, lambda: loaded.model_dump(mode="json")
+
+
+def _effect(name: str) -> Shown:
+    from rovval import effects
+
+    effect = effects.load(name)
+    lines = [f"{effect.name}: {effect.title}", f"enters at: {effect.place}", f"equation: {effect.equation}", "", "parameters"]
+    lines += [
+        f"  {p.name} [{p.unit}]  {p.low:g} to {p.high:g}, null {p.null:g}, typical {p.typical:g} ({p.source})"
+        for p in effect.parameters
+    ]
+    target = {"axis": effect.axes or AXES, "thruster": ("THRUSTER",), "": ()}[effect.per]
+    asked = f"{effect.name}[{target[0]}]" if target else effect.name
+    lines += [
+        "",
+        f"signature: {effect.signature}",
+        f"confused with: {', '.join(effect.confused_with) or 'none'}",
+        f"what separates it: {effect.separates}",
+    ]
+    lines += [f"needs: {', '.join(effect.needs)}"] if effect.needs else []
+    lines += [
+        "",
+        f"use: --effect '{asked}:{effect.parameters[0].name}=VALUE'"
+        + (f"  (per {effect.per}: {', '.join(target)})" if target else ""),
+    ]
+    return "\n".join(lines), lambda: _effect_document(effect)
+
+
+def _effect_document(effect: Effect) -> dict[str, Any]:
+    plain = ("name", "title", "place", "equation", "signature", "separates", "per")
+    listed = ("confused_with", "axes", "needs")
+    numbers = ("name", "unit", "low", "high", "null", "typical", "source")
+    document: dict[str, Any] = {k: getattr(effect, k) for k in plain} | {k: list(getattr(effect, k)) for k in listed}
+    return document | {"parameters": [{k: getattr(p, k) for k in numbers} for p in effect.parameters]}
+
+
+def _metric(name: str) -> Shown:
+    from rovval import metrics
+
+    metric = metrics.get(name)
+    units = ", ".join(f"{metric.unit_of(u)} for {u}" for u in ("m/s", "rad/s", "rad"))
+    text = f"{metric.name}: {metric.title}\n\n{metric.meaning}\n\nunit: {units}"
+    return text, lambda: {"name": metric.name, "title": metric.title, "unit": metric.unit, "meaning": metric.meaning}
+
+
+def _run(name: str, archive: Path) -> Shown:
+    from rovval import store
+
+    run = store.open_run(name, None, archive)
+    document: dict[str, Any] = {
+        "id": run.id,
+        "source": run.source,
+        "sha256": run.sha256,
+        "profile": run.profile,
+        "vehicle": run.vehicle,
+        "seconds": run.duration_s,
+        "rate_hz": 1.0 / run.dt,
+        "channels": {
+            n: {"method": r.method, "coverage": r.coverage, "largest_gap_s": r.largest_gap_s} for n, r in run.resampled.items()
+        },
+        "clock": {
+            "stamp": run.clock.stamp,
+            "samples": run.clock.samples,
+            "matched": run.clock.matched,
+            "largest_gap_s": run.clock.largest_gap_s,
+            "offset_s": run.clock.offset_s,
+            "correlation": run.clock.correlation,
+            "note": run.clock.note,
+        },
+        "findings": [str(f) for f in run.findings],
+        "properties": dict(run.properties),
+    }
+    lines = [f"{k:<10} {document[k]}" for k in ("id", "source", "sha256", "profile", "vehicle", "seconds", "rate_hz")]
+    lines += [f"{'clock':<10} " + ", ".join(f"{k} {v}" for k, v in document["clock"].items() if v not in (None, ""))]
+    lines += ["", f"{'channel':<16} {'to the grid':<12} {'coverage':>9} {'largest gap':>12}"]
+    lines += [f"{n:<16} {r.method:<12} {100 * r.coverage:8.1f}% {r.largest_gap_s:10.2f} s" for n, r in run.resampled.items()]
+    lines += ["", *(f"finding: {f}" for f in document["findings"])] if document["findings"] else []
+    lines += [f"{k}: {v}" for k, v in document["properties"].items()]
+    return "\n".join(lines), lambda: document

@@ -1,0 +1,70 @@
+"""Arguments and options that several commands share, each stated once."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rovval.cli import complete
+
+
+class Model(StrEnum):
+    """The two simulators of the thesis."""
+
+    fossen = "fossen"
+    freefloating = "freefloating"
+
+
+Source = Annotated[
+    str,
+    typer.Argument(
+        metavar="LOG|RUN", help="A log file, a bag folder, or a run of the archive.", autocompletion=complete.sources
+    ),
+]
+Sources = Annotated[
+    list[str],
+    typer.Argument(metavar="LOG|RUN...", help="Log files or runs of the archive.", autocompletion=complete.sources),
+]
+ProfileOption = Annotated[
+    str | None,
+    typer.Option(
+        "--profile",
+        metavar="P",
+        autocompletion=complete.profiles,
+        help="How to read the log: a name of `rovval list profile` or a TOML file. Default: the profile that fits the log.",
+    ),
+]
+VehicleOption = Annotated[
+    str | None,
+    typer.Option(
+        "--vehicle",
+        metavar="V",
+        autocompletion=complete.vehicles,
+        help="A name of `rovval list vehicle` or a TOML file. Default: the vehicle that the run names.",
+    ),
+]
+ModelOption = Annotated[Model, typer.Option("--model", help="Equations of motion.")]
+ArchiveOption = Annotated[Path, typer.Option("--archive", metavar="DIR", help="Where runs are kept.")]
+EffectOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--effect",
+        metavar="NAME[TARGET]:PARAM=VALUE",
+        autocompletion=complete.effects,
+        help="Add an effect to the simulator, for example inflow_loss:loss=0.3; repeatable.",
+    ),
+]
+WindowOption = Annotated[float, typer.Option("--window", metavar="S", min=0.5, help="Length of the restarted windows, s.")]
+JsonFlag = Annotated[bool, typer.Option("--json", help="Print only the machine-readable result on stdout.")]
+QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No messages or progress on stderr.")]
+FailAbove = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--fail-above",
+        metavar="AXIS[.METRIC]=VALUE",
+        help="Exit 1 if the axis's rmse (or the metric named) is above VALUE in SI, or was not measured; repeatable.",
+    ),
+]

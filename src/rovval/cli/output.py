@@ -1,0 +1,56 @@
+"""Results on stdout, messages and progress on stderr."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import typer
+
+Progress = Callable[[str, float], None]
+
+
+def result(text: str) -> None:
+    """What the user asked for, on stdout."""
+    typer.echo(text)
+
+
+def result_json(document: object) -> None:
+    """The machine-readable result, alone on stdout."""
+    typer.echo(json.dumps(document, indent=2, allow_nan=False))
+
+
+def say(text: str, quiet: bool = False) -> None:
+    """A message, on stderr."""
+    if not quiet:
+        typer.echo(text, err=True)
+
+
+def progress(quiet: bool) -> Progress:
+    """Shows a step and its share done (0 to 1) on one line of stderr, if that is a terminal."""
+    if quiet or not sys.stderr.isatty():
+        return lambda step, share: None
+    widest = 0
+
+    def show(step: str, share: float) -> None:
+        nonlocal widest
+        line = f"{step}: {100 * share:.0f} %"
+        widest = max(widest, len(line))
+        sys.stderr.write("\r" + line.ljust(widest) + ("\r" + " " * widest + "\r" if share >= 1 else ""))
+        sys.stderr.flush()
+
+    return show
+
+
+def places(files: Mapping[str, Path]) -> str:
+    """Where the report lies and how to open it, one line a file."""
+    how = {
+        "html": "open it in a browser",
+        "rrd": f"`rerun {files.get('rrd', '')}`, or `rovval view`",
+        "md": "text",
+        "json": "for programs",
+    }
+    width = max((len(str(p)) for p in files.values()), default=0)
+    return "\n".join(f"  {p!s:<{width}}  {how.get(kind, kind)}" for kind, p in files.items())

@@ -1,0 +1,47 @@
+"""`rovval view`: a run beside its simulation in the rerun viewer."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rovval.cli import options, output
+
+
+def command(
+    source: options.Source,
+    vehicle: options.VehicleOption = None,
+    model: options.ModelOption = options.Model.fossen,
+    effect: options.EffectOption = None,
+    profile: options.ProfileOption = None,
+    archive: options.ArchiveOption = Path("archive"),
+    out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Report folder. Default: reports/RUN.")] = None,
+    open_: Annotated[
+        bool, typer.Option("--open/--no-open", help="Start the viewer; otherwise only write the recording.")
+    ] = True,
+    quiet: options.QuietOption = False,
+) -> None:
+    """Open a run and its simulation in the rerun viewer: velocities, errors, thrusters, both trajectories in 3-D.
+
+    \b
+    Example:
+      rovval view dive.csv --profile merlin
+      rovval view dive.csv --no-open --out /tmp/view
+    """
+    import subprocess
+    import sys
+
+    from rovval import report, store
+    from rovval.compare import compare
+    from rovval.pipeline.steps import simulated, vehicle_of
+
+    run = store.open_run(source, profile, archive)
+    nominal = vehicle_of(run, vehicle)
+    comparison = compare(run, simulated(run, nominal, model.value, tuple(effect or ()), 10.0))
+    files = report.write(comparison, out or Path("reports") / run.id, nominal)
+    output.result(str(files["rrd"]))
+    if open_:
+        output.say("opening the viewer; close it to return", quiet)
+        raise typer.Exit(subprocess.run([sys.executable, "-m", "rerun", str(files["rrd"])], check=False).returncode and 70)

@@ -1,0 +1,64 @@
+"""A whole batch: lock, sweep, plan, execute, sum up. A kill at any point loses nothing that was finished."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from rovval.errors import UsageProblem
+from rovval.pipeline import atomic, cluster, config, lock, summary
+from rovval.pipeline.execute import execute
+from rovval.pipeline.plan import Plan, Task, plan
+from rovval.pipeline.work import Outcome, set_aside, work
+
+SUMMARY = "summary.json"
+
+
+def run(
+    path: Path,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    retry: bool = False,
+    progress: Callable[[str, float], None] = lambda step, share: None,
+) -> dict[str, Any]:
+    """Run the pipeline of a file; returns the summary, which also stands as summary.json among the reports."""
+    if workers is not None and scheduler:
+        raise UsageProblem("--workers and --scheduler are two ways to run", "give one of them")
+    pipeline = config.load(path)
+    began = time.monotonic()
+    with lock.held(pipeline.reports):
+        atomic.sweep(pipeline.reports)
+        progress("plan", 0.0)
+        todo = plan(pipeline, path.resolve().parent, retry)
+        finished: list[Mapping[str, Any]] = []
+        aside = list(todo.set_aside)
+        count = len(todo.todo)
+        spread = (
+            cluster.execute(todo.todo, work, died, scheduler)
+            if scheduler
+            else execute(todo.todo, work, died, workers or pipeline.workers or os.cpu_count() or 1, pipeline.timeout_s)
+        )
+        for number, (task, outcome) in enumerate(spread, 1):
+            (finished if outcome["status"] == "done" else aside).append(outcome["record"])
+            progress(f"{number} of {count} logs, {task.log.name}", number / count)
+        document = summary.summarise(
+            pipeline.name, finished, todo.done, aside, todo.waiting, pipeline.tolerances, time.monotonic() - began
+        )
+        atomic.write_json(pipeline.reports / SUMMARY, document)
+    return document
+
+
+def dry_run(path: Path, retry: bool = False) -> Plan:
+    """What a run would do, without doing it."""
+    pipeline = config.load(path)
+    return plan(pipeline, path.resolve().parent, retry)
+
+
+def died(task: Task, why: str) -> Outcome:
+    """A task whose worker did not survive it."""
+    return set_aside(
+        task, "crash", why, 70, hint="it is tried again by the next run; look at the log's size and the memory there is"
+    )

@@ -1,0 +1,105 @@
+"""A pipeline file: which logs, which vehicle and profile, which steps, which tolerances. Checked whole before anything runs."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+
+from rovval.errors import RovvalError, UsageProblem, all_at_once
+from rovval.pipeline import tolerances
+
+Step = Literal["ingest", "simulate", "compare", "diagnose"]
+STEPS: tuple[Step, ...] = ("ingest", "simulate", "compare", "diagnose")
+
+
+class Strict(BaseModel):
+    """Immutable, and a misspelt key is an error rather than ignored."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Source(Strict):
+    """Logs of one kind. Patterns are globs relative to the pipeline file; ``vehicle`` "" is the one that the profile names."""
+
+    logs: Annotated[tuple[str, ...], Field(min_length=1)]
+    profile: str | None = None
+    vehicle: str = ""
+
+
+class Pipeline(Strict):
+    """The file. Folders are relative to it, so that it works from any working directory (cron has its own)."""
+
+    name: str
+    source: Annotated[tuple[Source, ...], Field(min_length=1)]
+    steps: Annotated[tuple[Step, ...], Field(min_length=1)] = ("ingest", "simulate", "compare")
+    archive: Path = Path("../archive")
+    reports: Path = Path("../reports")
+    model: Literal["fossen", "freefloating"] = "fossen"
+    effects: tuple[str, ...] = ()
+    window_s: Annotated[float, Field(ge=0.5)] = 10.0
+    calibration_slop: Annotated[float, Field(ge=0, le=0.5)] = 0.05
+    workers: Annotated[int, Field(ge=1, le=1024)] | None = None
+    timeout_s: Annotated[float, Field(gt=0)] | None = None
+    settle_s: Annotated[float, Field(ge=0)] = 0.0
+    tolerances: tuple[str, ...] = ()
+
+    @field_validator("tolerances")
+    @classmethod
+    def _parsed(cls, texts: tuple[str, ...]) -> tuple[str, ...]:
+        try:
+            tolerances.parse(texts)
+        except UsageProblem as problem:
+            raise ValueError(problem.message) from None
+        return texts
+
+    @field_validator("steps")
+    @classmethod
+    def _in_order(cls, steps: tuple[Step, ...]) -> tuple[Step, ...]:
+        return tuple(step for step in STEPS if step in steps)
+
+
+def load(path: Path) -> Pipeline:
+    """The pipeline of a TOML file with its folders made absolute; every problem is named at once (UsageProblem)."""
+    if not path.is_file():
+        raise UsageProblem(f"pipeline file {path} does not exist", "pipelines/nightly.toml is one to copy")
+    try:
+        pipeline = Pipeline.model_validate(tomllib.loads(path.read_text(encoding="utf-8")))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise UsageProblem(f"{path} is not TOML: {error}", "mend the line that is named") from None
+    except ValidationError as error:
+        lines = [f"{'.'.join(map(str, e['loc']))}: {e['msg']} (is {e['input']!r:.60})" for e in error.errors()]
+        raise UsageProblem(all_at_once(lines, str(path)), "compare with pipelines/nightly.toml") from None
+    base = path.resolve().parent
+    sources = tuple(
+        s.model_copy(update={"vehicle": _path(s.vehicle, base), "profile": s.profile and _path(s.profile, base)})
+        for s in pipeline.source
+    )
+    pipeline = pipeline.model_copy(
+        update={"archive": base / pipeline.archive, "reports": base / pipeline.reports, "source": sources}
+    )
+    if problems := _unknown(pipeline):
+        raise UsageProblem(all_at_once(problems, str(path)), "see `rovval list vehicle|profile`")
+    return pipeline
+
+
+def _path(name: str, base: Path) -> str:
+    return str(base / name) if name.endswith(".toml") else name
+
+
+def _unknown(pipeline: Pipeline) -> list[str]:
+    """Vehicles and profiles that do not load, before the first log is touched."""
+    from rovval import vehicle
+    from rovval.ingest.profile import load_profile
+
+    problems = []
+    for number, source in enumerate(pipeline.source):
+        for loader, name in ((vehicle.load, source.vehicle), (load_profile, source.profile)):
+            try:
+                if name:
+                    loader(name)
+            except RovvalError as error:
+                problems.append(f"source.{number}: {error.message}")
+    return problems

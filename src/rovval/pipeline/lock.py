@@ -1,0 +1,38 @@
+"""Two runs of one pipeline never overlap: the second says so and leaves."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from rovval.errors import UsageProblem
+
+
+@contextmanager
+def held(folder: Path) -> Iterator[None]:
+    """Hold ``folder``'s lock; the kernel lets go of it when the process ends, however it ends.
+
+    Raises:
+        UsageProblem: another process holds it, or the system has no flock.
+    """
+    try:
+        import fcntl
+    except ImportError:
+        raise UsageProblem(
+            "this system has no flock, which keeps two batches apart", "run the batch on Linux or macOS"
+        ) from None
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / ".lock").open("a+", encoding="utf-8") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            file.seek(0)
+            raise UsageProblem(
+                f"{folder}: another run is at work (process {file.read().strip() or 'unknown'})", "wait for it, or end it"
+            ) from None
+        file.truncate(0)
+        file.write(str(os.getpid()))
+        file.flush()
+        yield

@@ -1,0 +1,71 @@
+"""What the commands and the batch do with one log: each step a call of the room below it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rovval.errors import BadInput, UsageProblem
+
+if TYPE_CHECKING:
+    from rovval.data import Array, Run, SimResult
+    from rovval.vehicle.model import Vehicle
+
+
+def vehicle_of(run: Run, wanted: str | None) -> Vehicle:
+    """The vehicle that was asked for, else the one that the run names."""
+    from rovval import vehicle
+
+    if wanted or run.vehicle:
+        return vehicle.load(wanted or run.vehicle)
+    raise UsageProblem(
+        f"run {run.id} (profile {run.profile!r}) names no vehicle",
+        f"add --vehicle with one of {', '.join(vehicle.names())}, or a path to a .toml file",
+    )
+
+
+def other_velocities(path: Path, run: Run, profile: str | None, archive: Path) -> Array:
+    """Body velocities of another simulation of ``run`` on its grid (n, 6), NaN where there is none.
+
+    ``path`` is a parquet file of `rovval simulate` or any file that a profile reads.
+    """
+    import numpy as np
+
+    from rovval import simulate, store
+    from rovval.channels import VELOCITIES
+
+    if not path.exists():
+        raise UsageProblem(f"{path} does not exist", "give --with a .parquet of `rovval simulate` or a log of velocities")
+    if path.suffix == ".parquet":
+        nu = simulate.load(path).free.nu
+        if len(nu) != len(run):
+            raise BadInput(f"{path}: {len(nu)} samples, run {run.id} has {len(run)}", "give the simulation of this run")
+        return nu
+    other = store.open_run(str(path), profile, archive)
+    if not any(other.measured(name) for name in VELOCITIES):
+        raise BadInput(
+            f"{path}: holds none of {', '.join(VELOCITIES)} by profile {other.profile!r}",
+            "name its profile with --with-profile",
+        )
+    shift = _shift(run, other)
+    nu = np.full((len(run), len(VELOCITIES)), np.nan)
+    first, last = max(shift, 0), min(shift + len(other), len(run))
+    if first >= last:
+        raise BadInput(f"{path}: its stamps do not overlap those of run {run.id}", "give the simulation of this run")
+    nu[first:last] = other.stack(VELOCITIES)[first - shift : last - shift]
+    return nu
+
+
+def _shift(run: Run, other: Run) -> int:
+    """Grid point of ``run`` at which ``other`` begins: by their clocks where both know it, else they begin together."""
+    if run.t0_ns is None or other.t0_ns is None:
+        return 0
+    return round((other.t0_ns - run.t0_ns) * 1e-9 / run.dt)
+
+
+def simulated(run: Run, vehicle: Vehicle, model: str, effects: Sequence[str], window_s: float) -> SimResult:
+    """`rovval.simulate.simulate`, imported when called."""
+    from rovval.simulate import simulate
+
+    return simulate(run, vehicle, model, effects, window_s)

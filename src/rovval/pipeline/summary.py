@@ -1,0 +1,60 @@
+"""What a batch did, for people and for programs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from rovval.pipeline import tolerances
+
+DONE, BEYOND, QUARANTINED = 0, 1, 3
+
+
+def summarise(
+    name: str,
+    finished: Sequence[Mapping[str, Any]],
+    skipped: Sequence[Mapping[str, Any]],
+    set_aside: Sequence[Mapping[str, Any]],
+    waiting: Sequence[tuple[Any, str]],
+    limits: Sequence[str],
+    seconds: float,
+) -> dict[str, Any]:
+    """The summary document. Tolerances are held against every run of the plan, new or unchanged."""
+    parsed = tolerances.parse(limits)
+    beyond = []
+    for record in (*finished, *skipped):
+        compared = record["steps"].get("compare")
+        lines = tolerances.exceeded(parsed, compared["comparison"]) if compared else ()
+        beyond += [{"log": record["log"], "run": record["run"], "limit": line} for line in lines]
+    code = QUARANTINED if set_aside else BEYOND if beyond else DONE
+    return {
+        "schema": "rovval.summary/1",
+        "pipeline": name,
+        "exit_code": code,
+        "seconds": round(seconds, 3),
+        "counts": {
+            "done": len(finished),
+            "unchanged": len(skipped),
+            "quarantined": len(set_aside),
+            "waiting": len(waiting),
+            "tolerances_exceeded": len(beyond),
+        },
+        "done": [{"log": r["log"], "run": r["run"]} for r in finished],
+        "tolerances_exceeded": beyond,
+        "quarantined": [{k: r[k] for k in ("log", "kind", "reason", "next")} for r in set_aside],
+        "waiting": [{"log": str(log), "why": why} for log, why in waiting],
+    }
+
+
+def text(summary: Mapping[str, Any]) -> str:
+    """The summary in a few lines."""
+    counts = summary["counts"]
+    lines = [
+        f"{summary['pipeline']}: "
+        + ", ".join(f"{n} {what.replace('_', ' ')}" for what, n in counts.items())
+        + f" in {summary['seconds']:.1f} s"
+    ]
+    lines += [f"  quarantined  {row['log']}: {row['reason']}" for row in summary["quarantined"]]
+    lines += [f"  exceeded     {row['log']}: {row['limit']}" for row in summary["tolerances_exceeded"]]
+    lines += [f"  waiting      {row['log']}: {row['why']}" for row in summary["waiting"]]
+    return "\n".join(lines)

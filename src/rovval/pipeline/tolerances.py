@@ -1,0 +1,79 @@
+"""Stated tolerances: ``surge=0.1`` (rmse of the free run), ``surge.iae=12``, ``window.surge.rms=0.05``, all in SI."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rovval.errors import UsageProblem, all_at_once
+
+AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
+FREE = ("rmse", "mae", "iae", "mean_error")
+WINDOWED = ("rms", "iae")
+
+
+@dataclass(frozen=True, slots=True)
+class Tolerance:
+    """One limit: where (free run or restarted windows), which axis, which number of the comparison, and its limit in SI."""
+
+    windowed: bool
+    axis: str
+    metric: str
+    limit: float
+
+    def __str__(self) -> str:
+        return f"{'window.' if self.windowed else ''}{self.axis}.{self.metric}"
+
+
+def parse(texts: Sequence[str]) -> tuple[Tolerance, ...]:
+    """Limits of the command line or of a pipeline file; every wrong one is named at once."""
+    found, problems = [], []
+    for text in texts:
+        tolerance = _one(text)
+        found.append(tolerance) if isinstance(tolerance, Tolerance) else problems.append(tolerance)
+    if problems:
+        raise UsageProblem(
+            all_at_once(problems, "tolerance"), "write AXIS=VALUE, AXIS.METRIC=VALUE or window.AXIS.METRIC=VALUE"
+        )
+    return tuple(found)
+
+
+def _one(text: str) -> Tolerance | str:
+    name, equals, value = text.partition("=")
+    windowed = name.startswith("window.")
+    axis, _, metric = name.removeprefix("window.").partition(".")
+    metric = metric or ("rms" if windowed else "rmse")
+    known = WINDOWED if windowed else FREE
+    if axis not in AXES:
+        return f"{text!r}: axis {axis!r} is none of {', '.join(AXES)}"
+    if metric not in known:
+        return f"{text!r}: metric {metric!r} is none of {', '.join(known)}"
+    try:
+        limit = float(value)
+    except ValueError:
+        limit = float("nan")
+    if not equals or not 0 <= limit < float("inf"):
+        return f"{text!r}: the limit {value!r} is not a number from 0 up"
+    return Tolerance(windowed, axis, metric, limit)
+
+
+def exceeded(tolerances: Sequence[Tolerance], comparison: Mapping[str, Any]) -> tuple[str, ...]:
+    """One sentence for each limit that the comparison's JSON does not keep. An axis that was not measured keeps none."""
+    sentences = []
+    for t in tolerances:
+        axes = comparison.get("window", {}).get("axes", {}) if t.windowed else comparison["axes"]
+        row = axes.get(t.axis)
+        value = None if row is None else row.get(t.metric)
+        if value is None:
+            sentences.append(f"{t}: limit {t.limit:g}, but {t.axis} was not measured in this run")
+        elif abs(value) > t.limit:
+            sentences.append(f"{t}: {abs(value):.4g} {_unit(t, comparison)} is above the limit {t.limit:g}")
+    return tuple(sentences)
+
+
+def _unit(tolerance: Tolerance, comparison: Mapping[str, Any]) -> str:
+    unit = comparison["axes"].get(tolerance.axis, {}).get("unit", "")
+    if tolerance.metric == "iae":
+        return {"m/s": "m", "rad/s": "rad"}.get(unit, f"{unit} s")
+    return str(unit)

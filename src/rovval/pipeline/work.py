@@ -1,0 +1,142 @@
+"""One log through its steps, in a worker. Every step that is done is on disk and in the record before the next begins."""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+import traceback
+from collections.abc import Callable
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rovval.errors import RovvalError
+from rovval.pipeline import atomic
+from rovval.pipeline.plan import RECORD, Task, read_record
+
+if TYPE_CHECKING:
+    from rovval.data import Run, SimResult
+    from rovval.vehicle.model import Vehicle
+
+Outcome = dict[str, Any]
+
+
+def work(task: Task) -> Outcome:
+    """Do what is missing of one task. Returns its record, or why it is set aside; never raises for what one log can do."""
+    began = time.monotonic()
+    try:
+        record = _steps(task)
+    except RovvalError as error:
+        return set_aside(task, "refused", error.message, error.exit_code, hint=error.hint)
+    except MemoryError:
+        return set_aside(task, "crash", "out of memory", 70)
+    except Exception as error:
+        text = "".join(traceback.format_exception(error))
+        return set_aside(task, "internal", f"{type(error).__name__}: {error}", 70, trace=text)
+    task.quarantine.unlink(missing_ok=True)
+    return {"status": "done", "seconds": round(time.monotonic() - began, 3), "record": record}
+
+
+def set_aside(task: Task, kind: str, reason: str, code: int, hint: str = "", trace: str = "") -> Outcome:
+    """Write the quarantine record of a log; the log itself stays where it is."""
+    record = {
+        "schema": "rovval.quarantine/1",
+        "log": str(task.log),
+        "sha256": task.sha256,
+        "key": task.key,
+        "kind": kind,
+        "reason": reason,
+        "next": hint,
+        "exit_code": code,
+        "traceback": trace,
+        "when": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()),
+    }
+    atomic.write_json(task.quarantine, record)
+    return {"status": "quarantined", "record": record}
+
+
+def _steps(task: Task) -> dict[str, Any]:
+    record = read_record(task) or {"schema": "rovval.batch/1", "steps": {}}
+    record |= {"log": str(task.log), "sha256": task.sha256}
+    bench = _Bench(task)
+    stale = False
+    for step, key in task.keys:
+        before = record["steps"].get(step)
+        stale = stale or not before or before["key"] != key or not all((task.reports / p).exists() for p in before["outputs"])
+        if stale:
+            facts, outputs = bench.do(step)
+            record["run"] = bench.run.id
+            record["steps"][step] = {"key": key, "outputs": [os.path.relpath(p, task.reports) for p in outputs], **facts}
+            atomic.write_json(task.folder / RECORD, record)
+    return record
+
+
+class _Bench:
+    """Run, vehicle and simulation of a task, each made once and only if a step asks for it."""
+
+    def __init__(self, task: Task) -> None:
+        self.task = task
+
+    @cached_property
+    def run(self) -> Run:
+        from rovval import store
+
+        return store.open_run(str(self.task.log), self.task.profile, self.task.archive)
+
+    @cached_property
+    def vehicle(self) -> Vehicle:
+        from rovval.pipeline.steps import vehicle_of
+
+        return vehicle_of(self.run, self.task.vehicle or None)
+
+    @cached_property
+    def sim(self) -> SimResult:
+        from rovval.pipeline.steps import simulated
+
+        return simulated(self.run, self.vehicle, self.task.model, self.task.effects, self.task.window_s)
+
+    def do(self, step: str) -> tuple[dict[str, Any], list[Path]]:
+        """Do one step; its facts for the record, and its outputs."""
+        steps: dict[str, Callable[[], tuple[dict[str, Any], list[Path]]]] = {
+            "ingest": self.ingest,
+            "simulate": self.simulate,
+            "compare": self.compare,
+            "diagnose": self.diagnose,
+        }
+        return steps[step]()
+
+    def ingest(self) -> tuple[dict[str, Any], list[Path]]:
+        from rovval import store
+
+        store.save(self.run, self.task.archive)
+        return {"findings": [str(f) for f in self.run.findings]}, []
+
+    def simulate(self) -> tuple[dict[str, Any], list[Path]]:
+        from rovval import simulate
+
+        path = self.task.folder / "simulation.parquet"
+        simulate.save(self.sim, new := atomic.beside(path))
+        new.replace(path)
+        return {"stops": list(self.sim.stops)}, [path]
+
+    def compare(self) -> tuple[dict[str, Any], list[Path]]:
+        from rovval import report
+        from rovval.compare import compare
+
+        comparison = compare(self.run, self.sim)
+        files = report.write(comparison, self.task.folder / "comparison", self.vehicle)
+        return {"comparison": report.comparison_json(comparison)}, list(files.values())
+
+    def diagnose(self) -> tuple[dict[str, Any], list[Path]]:
+        from rovval import report
+        from rovval.diagnose import diagnose
+
+        task, place = self.task, self.task.folder / "diagnosis"
+        found = diagnose(
+            [self.run], self.vehicle, model=task.model, window_s=task.window_s, calibration_slop=task.calibration_slop
+        )
+        report.write_diagnosis(found.document, place)
+        atomic.write_text(place / "vehicle_fixed.toml", found.vehicle_fixed)
+        document = json.loads(json.dumps(found.document))
+        return {"verdict": document["verdict"], "causes": document["causes"]}, [place]
