@@ -20,7 +20,7 @@ def main() -> NoReturn:
     from rovval.cli.app import app
 
     try:
-        app()
+        app(prog_name="rovval")
     except RovvalError as error:
         leave(f"rovval: {error}", error.exit_code)
     except OSError as error:

@@ -122,7 +122,7 @@ def _content(source: Source) -> tuple[str, str]:
     from rovval.ingest.profile import load_profile
 
     wanted = vehicle.load(source.vehicle).hash if source.vehicle else ""
-    return wanted, _hash(repr(load_profile(source.profile))) if source.profile else ""
+    return wanted, load_profile(source.profile).sha256 if source.profile else ""
 
 
 def _finished(task: Task) -> Mapping[str, Any] | None:

@@ -109,8 +109,8 @@ class _Bench:
     def ingest(self) -> tuple[dict[str, Any], list[Path]]:
         from rovval import store
 
-        store.save(self.run, self.task.archive)
-        return {"findings": [str(f) for f in self.run.findings]}, []
+        place = store.save(self.run, self.task.archive)
+        return {"findings": [str(f) for f in self.run.findings]}, [place]
 
     def simulate(self) -> tuple[dict[str, Any], list[Path]]:
         from rovval import simulate

@@ -1,0 +1,24 @@
+"""Shared by all tests."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+REAL_DATA = ROOT.parent / "shared" / "data"
+
+
+@pytest.fixture(scope="session")
+def real_data() -> Path:
+    """Published logs of real vehicles, which are not part of the repository; skips where they are absent."""
+    if not REAL_DATA.is_dir():
+        pytest.skip("the published logs of real vehicles (../shared/data) are not here")
+    return REAL_DATA
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _plain_terminal() -> None:
+    """Help texts have one width and no colour, whatever terminal runs the tests."""
+    os.environ.update({"COLUMNS": "100", "NO_COLOR": "1", "TERM": "dumb"})
+    os.environ.pop("ROVVAL_DEBUG", None)
