@@ -73,19 +73,24 @@ def relative(row: ChannelError) -> float | None:
 
 
 def verdict(comparison: Comparison) -> str:
-    """One sentence: the axes with the largest gap, and whether the simulator does better than predicting no motion."""
+    """The answer in words, see `sentences`."""
+    return " ".join(sentences(comparison))
+
+
+def sentences(comparison: Comparison) -> list[str]:
+    """One sentence, and what must be said beside it: the axes with the largest gap, and whether the simulator does better than predicting no motion."""
     table, where = comparison.windowed, f"over windows of {comparison.sim.window_s:g} s"
     if not table:
         table, where = comparison.free, "over the free run"
     lines, turns = [a for a in table if a in LINEAR], [a for a in table if a not in LINEAR]
     worst = [max(group, key=lambda a: table[a].rmse) for group in (lines, turns) if group]
     gaps = " and, turning, in ".join(_gap(a, table[a]) for a in worst)
-    sentence = f"{where.capitalize()}, the simulator is furthest from the vehicle in {gaps}; {_skill(table)}."
+    said = [f"{where.capitalize()}, the simulator is furthest from the vehicle in {gaps}; {_skill(table)}."]
     if comparison.other:
-        sentence += f" {_beside(comparison)}"
+        said.append(_beside(comparison))
     if comparison.not_measured:
-        sentence += f" Not measured in this log: {listed(comparison.not_measured)}."
-    return sentence
+        said.append(f"Not measured in this log: {listed(comparison.not_measured)}.")
+    return said
 
 
 def _gap(axis: str, row: ChannelError) -> str:
@@ -137,7 +142,7 @@ def facts(comparison: Comparison) -> dict[str, Any]:
     run, sim = comparison.run, comparison.sim
     return {
         "log": run.source,
-        "length": f"{duration(run.duration_s)} at {number(1.0 / run.dt)} Hz",
+        "length": f"{duration(run.duration_s)} at {1.0 / run.dt:g} Hz",
         "vehicle": f"{sim.vehicle} ({sim.vehicle_hash})",
         "model": sim.model,
         "effects": ", ".join(sim.effects) or "none (nominal)",

@@ -1,0 +1,48 @@
+"""What the viewer shows when a recording is opened: 3-D beside the curves, the whole run in view."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rovval.channels import AXES
+from rovval.data import Comparison
+from rovval.report import words
+
+
+def blueprint(comparison: Comparison, corrected: bool) -> Any:
+    """The layout: world and notes on the left, velocities, errors, pose and thrusters in tabs on the right."""
+    import rerun.blueprint as rrb
+
+    c = comparison
+    measured = [a for a in AXES if a not in c.not_measured]
+    velocities = [_curves(f"/velocity/{a}", a if a in measured else f"{a} (not measured)") for a in AXES]
+    tabs: list[Any] = [
+        rrb.Grid(*velocities, grid_columns=2, name="Velocities"),
+        rrb.Grid(*[_curves(f"/error/{a}", f"{a} error") for a in measured], grid_columns=2, name="Errors"),
+    ]
+    if c.pose:
+        titles = [words.TITLES[n] for n in c.pose]
+        pose = [_curves(f"/pose/{t.replace(' ', '_')}", t) for t in titles]
+        tabs.append(rrb.Grid(*pose, grid_columns=1, name="Depth and attitude"))
+    if c.sim.thrusters:
+        thrusters = [_curves("/thruster/speed", "speed, rpm"), _curves("/thruster/force", "force, N")]
+        tabs.append(rrb.Vertical(*thrusters, name="Thrusters"))
+    third = ", corrected" if corrected else ""
+    world = rrb.Spatial3DView(origin="/world", name=f"Measured (solid) and simulated{third}, north-east-down")
+    left = rrb.Vertical(world, rrb.TextDocumentView(origin="/notes", name="Notes"), row_shares=[4, 1])
+    return rrb.Blueprint(
+        rrb.Horizontal(left, rrb.Tabs(*tabs, active_tab=0), column_shares=[2, 3]),
+        rrb.TimePanel(timeline="run_time", state="collapsed"),
+        rrb.SelectionPanel(state="hidden"),
+        rrb.BlueprintPanel(state="collapsed"),
+        auto_views=False,
+    )
+
+
+def _curves(origin: str, name: str) -> Any:
+    """A plot of the whole run; the viewer's own default would show half a minute round the cursor."""
+    import rerun as rr
+    import rerun.blueprint as rrb
+
+    whole = rr.TimeRange(start=rr.TimeRangeBoundary.infinite(), end=rr.TimeRangeBoundary.infinite())
+    return rrb.TimeSeriesView(origin=origin, name=name, axis_x=rrb.TimeAxis(view_range=whole))
