@@ -29,6 +29,7 @@ class Entry:
     form: str
     targets: tuple[str, ...]
     event: bool
+    signed: bool
     about: str
     severity_one: str
     build: type[Effect]
@@ -45,7 +46,9 @@ def catalogue() -> dict[str, Entry]:
                 about = " ".join((item.__doc__ or "").split())
                 place = item.place if item.known else "foreign"
                 form = item.form if item.known else "foreign"
-                rows[item.name] = Entry(item.name, place, item.place, form, item.targets, item.event, about, item.unit, item)
+                rows[item.name] = Entry(
+                    item.name, place, item.place, form, item.targets, item.event, item.signed, about, item.unit, item
+                )
     return rows
 
 
@@ -60,7 +63,7 @@ def build(item: Planted, hull: Hull, scale: Scales, setting: Setting) -> Effect:
         entry = catalogue()[item.name]
     except KeyError:
         raise ValueError(f"unknown effect {item.name!r}; one of: {', '.join(catalogue())}") from None
-    if not np.isfinite(item.severity):
-        raise ValueError(f"{item.name}: severity must be finite")
+    if not np.isfinite(item.severity) or (item.severity < 0.0 and not entry.signed):
+        raise ValueError(f"{item.name}: severity {item.severity} means nothing here")
     rng = stream(setting.seed, "effect", item.name, item.target or "")
     return entry.build(Planting(item, hull, scale, setting, rng))

@@ -17,7 +17,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from rovval.blind.effect import Effect, Kin
-from rovval.blind.motor import Motor
+from rovval.blind.motor import Drive
 from rovval.blind.params import Params
 from rovval.blind.rotation import matrix, to_body
 from rovval.blind.scales import Scales
@@ -27,9 +27,9 @@ BASE = 13  # position 3, quaternion 4, momentum 6
 
 
 class Plant:
-    """One vehicle with its effects; ``rhs(t, y)`` for any solver. ``speeds_given`` freezes the motors (replay)."""
+    """One vehicle with its effects; ``rhs(t, y)`` for any solver."""
 
-    def __init__(self, healthy: Params, effects: Sequence[Effect], scale: Scales, motor: Motor, bottom: float) -> None:
+    def __init__(self, healthy: Params, effects: Sequence[Effect], scale: Scales, motor: Drive, bottom: float) -> None:
         self.healthy, self.effects, self.scale, self.motor, self.bottom = healthy, effects, scale, motor, bottom
         self.many = len(healthy.k_pos)
         self.set_point = np.zeros(self.many)

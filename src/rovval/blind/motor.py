@@ -8,6 +8,7 @@ with c the set-point and n the shaft speed in rpm. Form and numbers are chosen; 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -17,6 +18,13 @@ from rovval.blind.spec import Array
 TAU_WORK_S = 0.25  # chosen: hydraulic or large electric thruster
 TAU_SMALL_S = 0.08  # slow pole of the published BlueROV2 thruster, 0.076 s (von Benzon 2022)
 DROOP = 0.10  # chosen: share of full speed that the load costs an open loop
+
+
+class Drive(Protocol):
+    """Anything that can turn the shafts."""
+
+    def derivative(self, command: Array, y: Array, out: Array, at: int, many: int) -> None:
+        """Write the rates of speed and integral of every unit into ``out``."""
 
 
 @dataclass(frozen=True, slots=True)

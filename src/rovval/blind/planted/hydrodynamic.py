@@ -22,6 +22,7 @@ class QuadraticDrag(Effect):
     """Extra form drag on one axis, with a drag coefficient that falls with the Reynolds number as Re^-0.2."""
 
     name = "quadratic_drag"
+    signed = True
     targets = AXES
     unit = "half of the axis's working drag more, at working speed"
 
@@ -42,6 +43,7 @@ class LinearDrag(Effect):
     """Extra drag in proportion to speed on one axis."""
 
     name = "linear_drag"
+    signed = True
     form = "equal"
     targets = AXES
     unit = "0.4 of the axis's working drag more at working speed, in proportion to speed"
@@ -61,6 +63,7 @@ class AddedMass(Effect):
     """More (or, below zero, less) added mass on one axis; its Coriolis and Munk terms follow from the momentum."""
 
     name = "added_mass"
+    signed = True
     form = "equal"
     place = "vehicle"
     targets = AXES
@@ -82,13 +85,14 @@ class CrossDrag(Effect):
     """Bow-heavy lateral drag by strips: sideways motion turns the vehicle, turning pushes it sideways (and heave-pitch)."""
 
     name = "cross_drag"
-    unit = "centre of lateral pressure 0.35 of the vehicle's half-length ahead"
+    signed = True
+    unit = "centre of lateral pressure 0.2 of the vehicle's half-length ahead"
 
     def setup(self, plan: Planting) -> None:
         """Strip stations and weights; the weights sum to zero so that straight drag is unchanged."""
         reach = plan.scale.length
         self.stations: list[float] = (reach * np.linspace(-1.0, 1.0, 7)).tolist()
-        arm = 0.35 * self.s * reach
+        arm = 0.2 * self.s * reach
         total = sum(x * x for x in self.stations)
         self.weights = [arm * x / total for x in self.stations]
         self.qy, self.qz = (working_drag(plan, i)[1] / plan.scale.speed**2 for i in (1, 2))

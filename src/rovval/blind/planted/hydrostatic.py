@@ -12,6 +12,7 @@ class BuoyancyError(Effect):
     """Net buoyancy differs: more volume of foam (severity above zero) or less."""
 
     name = "buoyancy_error"
+    signed = True
     form = "equal"
     place = "vehicle"
     unit = "net lift of 0.15 of the working force"
@@ -31,13 +32,14 @@ class CgOffset(Effect):
     """The centre of gravity is off along surge (x) or sway (y), in the weight's moment and in the mass matrix alike."""
 
     name = "cg_offset"
+    signed = True
     place = "vehicle"
     targets = ("surge", "sway")
-    unit = "a static tilt of 5 degrees"
+    unit = "a static tilt of 4 degrees"
 
     def setup(self, plan: Planting) -> None:
         """Offset (m) for the tilt, by the vehicle's own righting arm."""
-        self.offset = float(np.tan(np.radians(5.0)) * self.s * plan.scale.bar / (plan.hull.mass * plan.hull.gravity))
+        self.offset = float(np.tan(np.radians(4.0)) * self.s * plan.scale.bar / (plan.hull.mass * plan.hull.gravity))
         self.values = {"offset": self.offset}
 
     def change(self, p: Params, a: float) -> None:
@@ -49,9 +51,10 @@ class PayloadChange(Effect):
     """A payload is picked up at the bow (severity above zero) or lost there, at the onset: mass, weight, trim, inertia."""
 
     name = "payload_change"
+    signed = True
     place = "vehicle"
     event = True
-    unit = "a wet weight of 0.15 of the working force, four times as much in mass x g x 0.25, half a length forward"
+    unit = "a wet weight of 0.15 of the working force (mass x g is four times that), a quarter of the half-length forward"
 
     def setup(self, plan: Planting) -> None:
         """Mass (kg), volume (m3) and place (m) of the payload: a body of four thirds the density of water."""
@@ -75,6 +78,7 @@ class InertiaError(Effect):
     """Mass (surge, sway, heave: the same) or one moment of inertia differs, weight and buoyancy kept in balance."""
 
     name = "inertia_error"
+    signed = True
     place = "vehicle"
     targets = ("yaw", "roll", "pitch", "surge")
     unit = "0.4 more of the moment of inertia, or 0.25 more of the mass (flooded volume, weightless)"

@@ -20,6 +20,7 @@ class DvlScale(_Sensor):
     """Sound speed set wrong: velocities too large, slightly more so deeper (warmer water above)."""
 
     name = "dvl_scale"
+    signed = True
     unit = "0.07 too fast at the starting depth"
 
     def setup(self, plan: Planting) -> None:
@@ -38,6 +39,7 @@ class DvlMisalignment(_Sensor):
     """The DVL is mounted turned, about the body's yaw (default), pitch or roll axis."""
 
     name = "dvl_misalignment"
+    signed = True
     form = "equal"
     targets = ("yaw", "pitch", "roll")
     unit = "7 degrees"
@@ -80,6 +82,7 @@ class GyroBias(_Sensor):
     """A bias on one rate, with a slow walk of a fifth of it."""
 
     name = "gyro_bias"
+    signed = True
     targets = ("yaw", "pitch", "roll")
     unit = "1 degree a second"
 
@@ -119,13 +122,14 @@ class AttitudeBias(_Sensor):
     """The attitude unit is mounted with a tilt."""
 
     name = "attitude_bias"
+    signed = True
     form = "equal"
     targets = ("pitch", "roll")
-    unit = "4 degrees"
+    unit = "3 degrees"
 
     def setup(self, plan: Planting) -> None:
         """Tilt, deg."""
-        self.tilt = 4.0 * self.s * float(plan.rng.choice([-1.0, 1.0]))
+        self.tilt = 3.0 * self.s * float(plan.rng.choice([-1.0, 1.0]))
         self.values = {"tilt_deg": self.tilt}
 
     def record(self, log: dict[str, Array], true: Mapping[str, Array], t: Array) -> None:

@@ -133,6 +133,7 @@ class ThrusterMisaligned(Effect):
     """One unit points elsewhere: turned about a random axis across its own."""
 
     name = "thruster_misaligned"
+    signed = True
     form = "equal"
     place = "vehicle"
     targets = ("thruster",)
