@@ -34,6 +34,16 @@ class Channel:
     high: float
 
 
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """What a source's profile says otherwise than the table: None leaves the table's value. A run of equal values longer than
+    ``stuck_s`` (s) is masked only where this is given."""
+
+    resampling: Resampling | None = None
+    longest_gap_s: float | None = None
+    stuck_s: float | None = None
+
+
 def _table() -> Mapping[str, Channel]:
     rows = [
         *(Channel(n, "m/s", f"body velocity over ground, {a}", "mean", 0.5, -15.0, 15.0) for n, a in zip("uvw", AXES[:3], strict=True)),
@@ -47,7 +57,8 @@ def _table() -> Mapping[str, Channel]:
         Channel("wall_distance", "m", "distance to the nearest wall", "linear", 1.0, 0.0, 12000.0),
         Channel("voltage", "V", "supply voltage at the thrusters", "mean", 5.0, 0.0, 10000.0),
         Channel("tether_length", "m", "tether paid out", "linear", 5.0, 0.0, 20000.0),
-        Channel("n", "rev/s", "measured thruster speed", "hold", 0.5, -500.0, 500.0),
+        # a shaft turns continuously: holding its last sample would make the log half a sample late
+        Channel("n", "rev/s", "measured thruster speed", "mean", 0.5, -500.0, 500.0),
         Channel("n_cmd", "rev/s", "thruster speed set-point", "hold", 1.0, -500.0, 500.0),
         Channel("pwm", "us", "thruster pulse width", "hold", 1.0, 500.0, 2500.0),
         Channel("stick", "1", "pilot's command on an axis, -1 to 1", "hold", 1.0, -2.0, 2.0),

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rovval.channels import channel
+from rovval.channels import Rule, channel
 from rovval.errors import BadInput, Finding
 
 Array = NDArray[np.float64]
@@ -67,7 +67,8 @@ class RawLog:
     """A log as logged: channels by their name of `rovval.channels`, already SI, forward-starboard-down and north-east-down.
 
     ``t0_ns`` is the UTC epoch of t = 0 in ns where the log knows it; ``properties`` are facts beside the channels (latitude of
-    the origin, topics read). ``vehicle`` is the profile's vehicle name or "".
+    the origin, topics read). ``vehicle`` is the profile's vehicle name or "". ``rules`` is what the profile says of a channel's
+    resampling otherwise than the channel table.
     """
 
     source: str
@@ -78,10 +79,12 @@ class RawLog:
     channels: Mapping[str, Series]
     findings: tuple[Finding, ...] = ()
     properties: Mapping[str, str] = field(default_factory=dict)
+    rules: Mapping[str, Rule] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "channels", MappingProxyType(dict(self.channels)))
         object.__setattr__(self, "properties", MappingProxyType(dict(self.properties)))
+        object.__setattr__(self, "rules", MappingProxyType(dict(self.rules)))
         if not self.channels:
             raise BadInput(f"{self.source}: no channel of profile {self.profile!r} is in this log", "see `rovval show profile`")
         for name in self.channels:
@@ -151,10 +154,11 @@ class Run:
     @property
     def t(self) -> Array:
         """Time of each grid point, s since the first (n,)."""
-        return np.arange(len(self)) * self.dt
+        return np.asarray(np.arange(len(self)) * self.dt, dtype=np.float64)
 
     @property
     def duration_s(self) -> float:
+        """From the first grid point to the last (s)."""
         return (len(self) - 1) * self.dt
 
     def measured(self, name: str) -> bool:
@@ -193,6 +197,7 @@ class Trajectory:
 
     @property
     def ok(self) -> Flags:
+        """Where the motion was simulated (n,)."""
         return np.asarray(self.reasons == Reason.OK)
 
 

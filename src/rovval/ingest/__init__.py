@@ -1,1 +1,101 @@
-"""ingest"""
+"""File -> `RawLog`. A reader is one file of this folder without leading underscore; it is imported when a log needs it.
+
+A reader has ``SUFFIXES`` (lower case, with dot), ``sniff(path) -> bool``, ``missing(path, profile) -> tuple[str, ...]`` (what the
+profile requires and the log has not) and ``read(path, profile) -> RawLog``. A source is one TOML file of ``profiles``.
+"""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from pathlib import Path
+from typing import Protocol, cast
+
+from rovval.data import RawLog
+from rovval.errors import BadInput, RovvalError, UsageProblem
+from rovval.ingest._files import refuse_unusable
+from rovval.ingest.profile import Profile, load_profile, profiles
+
+__all__ = ["Profile", "Reader", "load_profile", "profiles", "read", "reader", "readers"]
+
+
+class Reader(Protocol):
+    """What a reader module offers."""
+
+    SUFFIXES: tuple[str, ...]
+
+    def sniff(self, path: Path) -> bool:
+        """Whether the file can be of this format, from its first bytes."""
+        ...
+
+    def missing(self, path: Path, profile: Profile) -> tuple[str, ...]:
+        """What ``profile`` requires and the file has not; () when the file is of this source."""
+        ...
+
+    def read(self, path: Path, profile: Profile) -> RawLog:
+        """The log; raises `BadInput`."""
+        ...
+
+
+def readers() -> tuple[str, ...]:
+    """Names of the readers, by looking at file names only."""
+    return tuple(sorted(m.name for m in pkgutil.iter_modules(__path__) if not m.name.startswith("_") and m.name != "profile"))
+
+
+def reader(name: str) -> Reader:
+    """A reader by name; refuses one that does not exist (`UsageProblem`)."""
+    if name not in readers():
+        raise UsageProblem(f"unknown format {name!r}", f"use one of: {', '.join(readers())}")
+    return cast(Reader, importlib.import_module(f"{__name__}.{name}"))
+
+
+def read(path: Path, profile: str | None = None) -> RawLog:
+    """The log of ``path`` in SI, forward-starboard-down and north-east-down, each channel at its own stamps.
+
+    ``profile`` is a built-in name or a path to a TOML file; without it the one built-in profile is taken whose required columns
+    or topics the log has. Raises `BadInput` for a log that cannot be used or that fits none or several profiles, `UsageProblem`
+    for a profile that does not exist or is wrong.
+    """
+    path = Path(path)
+    refuse_unusable(path)
+    chosen = load_profile(profile) if profile is not None else _the_one_that_fits(path)
+    return reader(chosen.format).read(path, chosen)
+
+
+def _the_one_that_fits(path: Path) -> Profile:
+    able = [name for name in readers() if _able(name, path)]
+    if not able:
+        known = ", ".join(sorted({s for name in readers() for s in reader(name).SUFFIXES}))
+        raise BadInput(f"{path}: of no known format (known: {known})", "give --profile if the file has an unusual name")
+    fits, near = [], []
+    for candidate in (load_profile(name) for name in profiles()):
+        if candidate.format not in able:
+            continue
+        try:
+            gone = reader(candidate.format).missing(path, candidate)
+        except BadInput as error:
+            raise BadInput(error.message, error.hint or "is the file whole?") from None
+        if gone:
+            shown = ", ".join(gone[:6]) + (", ..." if len(gone) > 6 else "")
+            near.append(f"\n  - {candidate.name} misses {len(gone)}: {shown}")
+        else:
+            fits.append(candidate)
+    if len(fits) == 1:
+        return fits[0]
+    if fits:
+        names = ", ".join(p.name for p in fits)
+        raise BadInput(f"{path}: fits several profiles: {names}", "say which with --profile")
+    hint = "give --profile: one of these, or a TOML file of your own"
+    raise BadInput(f"{path}: fits no built-in profile" + "".join(near), hint)
+
+
+def _able(name: str, path: Path) -> bool:
+    candidate = reader(name)
+    if path.suffix.lower() not in candidate.SUFFIXES and not (path.is_dir() and "" in candidate.SUFFIXES):
+        return False
+    try:
+        return candidate.sniff(path)
+    except OSError as error:
+        raise BadInput(f"{path}: cannot be read: {error}", "check the file") from None
+    except RovvalError:
+        return False

@@ -1,0 +1,115 @@
+"""What a reader of any result should know about a log: every finding at once, none raised."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from rovval.channels import channel
+from rovval.data import Array, RawLog, Series
+from rovval.errors import Finding
+from rovval.frames import euler_rates, rotation_from_euler
+from rovval.ingest._series import bad_samples, still_runs
+
+STUCK_S = 3.0  # a living sensor does not repeat itself to the last digit for so long, unless the vehicle rests
+SENSORS = ("u", "v", "w", "p", "q", "r", "x", "y", "z", "phi", "theta", "psi", "udot", "vdot", "wdot", "altitude")
+SURE = 0.5  # correlation of two signals that are one by kinematics, beyond which a sign or a scale may be named
+
+
+def check(raw: RawLog) -> tuple[Finding, ...]:
+    """Gaps, stuck channels, absurd values, changes of rate, and kinematic identities with the wrong sign or scale."""
+    found: list[Finding] = []
+    for name, series in raw.channels.items():
+        found += _gaps(raw, name, series)
+        found += _stuck(raw, name, series)
+        found += bad_samples(name, series, None)[1]
+        found += _rate(name, series)
+    return (*found, *_kinematics(raw))
+
+
+def _gaps(raw: RawLog, name: str, series: Series) -> list[Finding]:
+    rule = raw.rules.get(name)
+    limit = (rule.longest_gap_s if rule else None) or channel(name).longest_gap_s
+    steps = np.diff(series.t)
+    wide = np.flatnonzero(steps > limit + 1e-6)
+    if not len(wide):
+        return []
+    longest = wide[np.argmax(steps[wide])]
+    detail = (
+        f"{len(wide)} gaps longer than {limit:g} s, {steps[wide].sum():.1f} s in all; "
+        f"the longest {steps[longest]:.2f} s from t = {series.t[longest]:.1f} s; not bridged"
+    )
+    return [Finding("gap", name, detail)]
+
+
+def _stuck(raw: RawLog, name: str, series: Series) -> list[Finding]:
+    rule = raw.rules.get(name)
+    if name.partition(":")[0] not in SENSORS or (rule is not None and rule.stuck_s is not None):
+        return []
+    if np.ptp(series.values) == 0.0:
+        return [Finding("constant", name, f"holds {series.values[0]:.6g} {channel(name).unit} throughout")] if len(series.t) > 1 else []
+    runs = still_runs(series, STUCK_S)
+    usual = [b - a for a, b in still_runs(series, 0.0)]
+    if not runs or np.median(np.diff(series.t)) > STUCK_S or len(usual) > 0.5 * len(series.t):
+        return []
+    first, last = max(runs, key=lambda run: series.t[run[1]] - series.t[run[0]])
+    detail = (
+        f"{len(runs)} runs of equal values longer than {STUCK_S:g} s; the longest {series.t[last] - series.t[first]:.1f} s "
+        f"from t = {series.t[first]:.1f} s; not masked (declare stuck_s in the profile to mask)"
+    )
+    return [Finding("stuck", name, detail)]
+
+
+def _rate(name: str, series: Series) -> list[Finding]:
+    """A rate that changes by half and stays so, between tenths of the log."""
+    if len(series.t) < 200:
+        return []
+    periods = [float(np.median(part)) for part in np.array_split(np.diff(series.t), 10)]
+    changes = [(i, a, b) for i, (a, b) in enumerate(pairwise(periods)) if max(a, b) > 1.5 * min(a, b)]
+    if not changes:
+        return []
+    i, a, b = changes[0]
+    at = series.t[(i + 1) * len(series.t) // 10]
+    return [Finding("rate_change", name, f"from {1 / a:.3g} to {1 / b:.3g} Hz near t = {at:.0f} s")]
+
+
+def _kinematics(raw: RawLog) -> list[Finding]:
+    """Pose rates against body velocities: the same quantity twice, so sign and scale can be told without any dynamics."""
+    c = raw.channels
+    if not all(n in c for n in ("phi", "theta", "psi")):
+        return []
+    end = min(float(s.t[-1]) for s in c.values())
+    t = np.arange(max(float(s.t[0]) for s in c.values()), end, 0.5)
+    if len(t) < 40:
+        return []
+    euler = np.stack([np.interp(t, c[n].t, np.unwrap(c[n].values)) for n in ("phi", "theta", "psi")], axis=1)
+    pairs: list[tuple[str, str, Array, Array]] = []
+    if all(n in c for n in "pqr"):
+        rates = euler_rates(euler, np.stack([_mean(c[n], t) for n in "pqr"], axis=1))
+        pairs += [(n, b, np.gradient(euler[:, i], t), rates[:, i]) for i, (n, b) in enumerate(zip(("phi", "theta", "psi"), "pqr", strict=True))]
+    if all(n in c for n in "uvw"):
+        world = np.einsum("nij,nj->ni", rotation_from_euler(euler), np.stack([_mean(c[n], t) for n in "uvw"], axis=1))
+        pairs += [(n, b, np.gradient(np.interp(t, c[n].t, c[n].values), t), world[:, i])
+                  for i, (n, b) in enumerate(zip("xyz", "uvw", strict=True)) if n in c]  # fmt: skip
+    return [f for pose, body, rate, said in pairs for f in _agree(pose, body, rate, said)]
+
+
+def _mean(series: Series, t: Array) -> Array:
+    total = np.concatenate(([0.0], np.cumsum(np.diff(series.t) * 0.5 * (series.values[1:] + series.values[:-1]))))
+    return np.asarray((np.interp(t + 0.5, series.t, total) - np.interp(t - 0.5, series.t, total)) / 1.0)
+
+
+def _agree(pose: str, body: str, rate: Array, said: Array) -> list[Finding]:
+    a, b = rate - rate.mean(), said - said.mean()
+    size = float(np.sqrt((a @ a) * (b @ b)))
+    if size < 1e-12 * len(a):
+        return []
+    correlation, scale = float(a @ b) / size, float(a @ b) / float(b @ b)
+    if correlation < -SURE:
+        detail = f"rate of {pose} runs against the body velocities (correlation {correlation:.2f}): a sign of {pose} or {body} is wrong"
+        return [Finding("sign", f"{pose}, {body}", detail)]
+    if correlation > 0.9 and not 0.8 < scale < 1.25:
+        detail = f"rate of {pose} is {scale:.2f} times what the body velocities give: a unit or scale of {pose} or {body} is wrong"
+        return [Finding("scale", f"{pose}, {body}", detail)]
+    return []

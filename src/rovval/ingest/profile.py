@@ -1,0 +1,168 @@
+"""A profile: one TOML file that says, for one source of logs, which column or topic is which channel, in which unit and frame.
+
+Nothing is guessed: a mapped channel without unit is refused by name. Keys of `[channels]` are names of `rovval.channels`;
+`"n:*" = {column = "*_PV", unit = "rpm"}` maps every column that fits the pattern, and `attitude` with the unit `quaternion`
+stands for the three Euler angles.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from rovval.channels import CHANNELS, POSE, VELOCITIES, Resampling
+from rovval.errors import UsageProblem, all_at_once
+from rovval.units import SI
+
+FOLDER = Path(__file__).parent / "profiles"
+ATTITUDE = "attitude"  # a quaternion that becomes phi, theta, psi
+WORLD_VELOCITY = ("u", "v", "w")  # may be logged along world axes (`frame = "world"`) and are rotated into the body
+GEODETIC = "degree_latitude"  # the unit of x and y when they are logged as latitude and longitude
+
+BodyFrame = Literal["fsd", "flu"]
+WorldFrame = Literal["ned", "enu", "nwu"]
+
+
+class Source(BaseModel):
+    """Where a channel stands in the log and how it becomes SI: ``sign * (raw - zero) / span`` in ``unit``."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    unit: str
+    column: str | None = None
+    columns: tuple[str, ...] = ()
+    topic: str | None = None
+    field: str | None = None
+    sign: Literal[1, -1] = 1
+    zero: float = 0.0
+    span: float = 1.0
+    missing: tuple[float, ...] = ()
+    optional: bool = False
+    frame: Literal["fsd", "flu", "world"] | None = None
+    resampling: Resampling | None = None
+    longest_gap_s: float | None = Field(default=None, gt=0.0)
+    stuck_s: float | None = Field(default=None, gt=0.0)
+
+
+class Clock(BaseModel):
+    """Where the stamps come from. ``time_of_day``: columns hour, minute, second and perhaps millisecond, wrapping at midnight.
+    ``epoch``: since 1970 UTC, ``elapsed``: since any start, both in ``unit``. ``datetime``: text. ``header``, ``record``: a bag's
+    clocks: when the sensor says it measured, when the recorder wrote."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    kind: Literal["time_of_day", "epoch", "elapsed", "datetime", "header", "record"]
+    columns: tuple[str, ...] = ()
+    unit: str = "s"
+
+
+class Profile(BaseModel):
+    """One source of logs. ``format`` is the name of the reader (a file of `rovval.ingest`); ``absent`` names columns or topics
+    whose presence says that a log is *not* of this source."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    name: str = Field(pattern=r"^[A-Za-z0-9_\-]+$")
+    description: str
+    notes: str = ""
+    format: str
+    vehicle: str = ""
+    frame: BodyFrame
+    world: WorldFrame
+    time: Clock
+    channels: dict[str, Source] = Field(min_length=1)
+    absent: tuple[str, ...] = ()
+    messages: tuple[str, ...] = ()
+
+    @property
+    def sha256(self) -> str:
+        """Digest of everything that the profile says, so that a run's id changes with it."""
+        return hashlib.sha256(self.model_dump_json().encode()).hexdigest()
+
+
+def profiles() -> tuple[str, ...]:
+    """Names of the built-in profiles."""
+    return tuple(sorted(path.stem for path in FOLDER.glob("*.toml")))
+
+
+def load_profile(name_or_path: str | Path) -> Profile:
+    """A built-in profile by name, or a user's by path; refuses with every problem at once (`UsageProblem`)."""
+    built_in = FOLDER / f"{name_or_path}.toml"
+    path = built_in if built_in.parent == FOLDER and built_in.is_file() else Path(name_or_path)
+    try:
+        table = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (FileNotFoundError, IsADirectoryError):
+        hint = f"use a path to a TOML file or one of: {', '.join(profiles())}"
+        raise UsageProblem(f"unknown profile {str(name_or_path)!r}", hint) from None
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise UsageProblem(f"profile {path}: not readable as TOML: {error}") from None
+    return parse_profile(table, str(path))
+
+
+def parse_profile(table: Mapping[str, Any], where: str) -> Profile:
+    """A checked profile from TOML's tables; ``where`` names it in messages. Raises `UsageProblem` with every problem."""
+    try:
+        profile = Profile.model_validate(dict(table))
+    except ValidationError as error:
+        raise UsageProblem(all_at_once([_say(e) for e in error.errors()], f"profile {where}"), _HINT) from None
+    if problems := _problems(profile):
+        raise UsageProblem(all_at_once(problems, f"profile {where}"), _HINT)
+    return profile
+
+
+_HINT = "see `rovval show profile merlin` for one that works"
+
+
+def _say(error: Any) -> str:
+    place = [str(part) for part in error["loc"]]
+    if place[:1] == ["channels"] and place[2:] == ["unit"]:
+        return f"channel {place[1]!r}: states no unit; nothing is guessed"
+    return f"{'.'.join(place)}: {error['msg']}" + (f" (got {error['input']!r})" if error["type"] != "missing" else "")
+
+
+def _problems(profile: Profile) -> list[str]:
+    found = [p for name, source in profile.channels.items() for p in _channel_problems(name, source)]
+    if profile.time.unit not in SI:
+        found.append(f"time: unknown unit {profile.time.unit!r}")
+    wanted = {"time_of_day": (3, 4), "epoch": (0, 1), "elapsed": (1, 1), "datetime": (1, 2), "header": (0, 0), "record": (0, 0)}
+    low, high = wanted[profile.time.kind]
+    if not low <= len(profile.time.columns) <= high:
+        found.append(f"time: {profile.time.kind} needs {low} to {high} columns, not {len(profile.time.columns)}")
+    world = [n for n in WORLD_VELOCITY if n in profile.channels and profile.channels[n].frame == "world"]
+    if world and len(world) < 3:
+        found.append(f"{', '.join(world)}: velocity along world axes needs all of u, v, w with frame = 'world'")
+    geodetic = [n for n in ("x", "y") if n in profile.channels and profile.channels[n].unit == GEODETIC]
+    if len(geodetic) == 1:
+        found.append(f"{geodetic[0]}: latitude and longitude go together; map x and y both with unit {GEODETIC}")
+    return found
+
+
+def _channel_problems(name: str, source: Source) -> list[str]:
+    found = []
+    family, _, member = name.partition(":")
+    if name != ATTITUDE and family not in CHANNELS:
+        found.append(f"channel {name!r}: unknown; use one of: {', '.join(CHANNELS)}, {ATTITUDE}")
+    addresses = [source.column is not None, bool(source.columns), source.topic is not None]
+    if sum(addresses) != 1:
+        found.append(f"channel {name!r}: needs exactly one of column, columns, topic")
+    if (source.topic is None) != (source.field is None):
+        found.append(f"channel {name!r}: topic and field go together")
+    if source.columns and (name != ATTITUDE or len(source.columns) != 4):
+        found.append(f"channel {name!r}: columns is for attitude, as four columns w, x, y, z")
+    if (source.unit == "quaternion") != (name == ATTITUDE) or (source.unit != "quaternion" and source.unit not in SI):
+        found.append(f"channel {name!r}: unknown unit {source.unit!r}; use one of: {', '.join(sorted(SI))}")
+    address = source.column or source.topic or ""
+    if ("*" in member) != ("*" in address + (source.field or "")) or member.count("*") > 1:
+        found.append(f"channel {name!r}: a pattern needs one * in the channel and one in its column")
+    if source.frame == "world" and name not in WORLD_VELOCITY:
+        found.append(f"channel {name!r}: frame = 'world' is for u, v, w")
+    if source.frame is not None and family not in (*VELOCITIES, *POSE, "udot", "vdot", "wdot", ATTITUDE):
+        found.append(f"channel {name!r}: has no frame")
+    if source.span == 0.0:
+        found.append(f"channel {name!r}: span must not be 0")
+    return found
