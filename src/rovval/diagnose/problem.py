@@ -1,0 +1,135 @@
+"""A diagnosis problem: the windows of one or several runs, the metric in which residuals are judged, and products at any point.
+
+The metric's variance per channel and time in the window is noise (from the log), calibration slop (what coefficients that are a few
+per cent off would do) and what no hypothesis of the library explains (model form, disturbance); never sensor noise alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rovval.data import Array
+from rovval.diagnose.contest import Fold, Prior, fit, folds_of, inflation_of
+from rovval.diagnose.library import Hypothesis
+from rovval.diagnose.linearise import Linear, linearise, state_spread
+from rovval.diagnose.parity import Parity, parity
+from rovval.diagnose.products import Products, joined, products, start_corrected
+from rovval.diagnose.stretches import Stretches
+from rovval.plant import Plant, parse_settings
+from rovval.simulate import carried_effects
+
+SMOOTH = 11  # samples over which the unexplained variance is smoothed along the window (1 s at 10 Hz)
+DRIFT = {"u": 1e-3, "v": 1e-3, "w": 1e-3, "p": 1e-3, "q": 1e-3, "r": 1e-3, "phi": 1e-3, "theta": 1e-3, "psi": 2e-3, "x": 5e-3, "y": 5e-3, "z": 5e-3}
+# m/s, rad/s, rad, m: below these no ROV sensor is believed (chosen; keeps a noise-free log from dividing by zero)
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """``parts`` one per run; ``origin`` (k,) the parameters it starts from; ``variance`` (n, c); ``at_null`` the linearisation
+    and ``data`` the products (with parity) at the nominal vehicle; ``inflation`` the design effect of autocorrelated residuals."""
+
+    parts: tuple[Stretches, ...]
+    origin: Array
+    variance: Array
+    slop: Prior
+    at_null: tuple[Linear, ...]
+    dynamic: Products
+    data: Products
+    parity: tuple[Parity, ...]
+    folds: tuple[Fold, ...]
+    inflation: float
+    run_of_window: np.ndarray
+
+    @property
+    def plant(self) -> Plant:
+        return self.parts[0].plant
+
+    @property
+    def blocks(self) -> int:
+        return len(self.run_of_window)
+
+
+def pose(parts: tuple[Stretches, ...], library: Sequence[Hypothesis], slop: float) -> Problem:
+    """Set the problem up about the vehicle as it is (with the effects that its file carries)."""
+    plant = parts[0].plant
+    origin = parse_settings(plant, carried_effects(plant.vehicle))
+    prior = slop_prior(plant, slop)
+    plain = {s for h in library if h.label == h.name for s in h.linear}
+    with_slop = tuple(sorted({*plain, *prior.sd}))
+    linear = tuple(linearise(part, origin, with_slop) for part in parts)
+    first = _variance(parts, linear, prior)
+    run_of_window = np.concatenate([np.full(part.count, i) for i, part in enumerate(parts)])
+    folds = folds_of(run_of_window)
+    checks = tuple(parity(part, with_slop) for part in parts)
+    early = _joined(parts, linear, first)
+    everything = Prior({c: plant.slots[c].parameter.typical for c in with_slop})
+    inflation = inflation_of(early, fit(early, folds, everything, 10.0).step)
+    best = fit(early, folds, everything, inflation).step
+    variance = first + _unexplained(parts, linear, first, best)
+    dynamic = _joined(parts, linear, variance)
+    inflation = inflation_of(dynamic, fit(dynamic, folds, everything, inflation).step)
+    data = dynamic + joined([check.products(inflation) for check in checks])
+    return Problem(parts, origin, variance, prior, linear, dynamic, data, checks, folds, inflation, run_of_window)
+
+
+def at(problem: Problem, beta: Array, columns: tuple[int, ...]) -> tuple[Products, Products]:
+    """Products of every window about ``beta`` for the given columns: (dynamics alone, dynamics and parity)."""
+    linear = tuple(linearise(part, beta, columns) for part in problem.parts)
+    dynamic = _joined(problem.parts, linear, problem.variance)
+    moved = joined([check.moved(beta, columns).products(problem.inflation) for check in problem.parity])
+    return dynamic, dynamic + moved
+
+
+def corrected_residuals(problem: Problem, beta: Array | None = None) -> list[Array]:
+    """Residual of each run's windows (m, n, c), its best initial states taken out; at the nominal vehicle by default."""
+    linear = problem.at_null if beta is None else tuple(linearise(part, beta, ()) for part in problem.parts)
+    return [
+        start_corrected(one, part.ok, problem.variance, state_spread(part)) for part, one in zip(problem.parts, linear, strict=True)
+    ]
+
+
+SLOP = {"added_mass": 1.0, "linear_drag": 1.0, "quadratic_drag": 1.0, "inertia_error": 1.0, "thruster_degraded": 1.0, "reverse_asymmetry": 1.0}
+
+
+def slop_prior(plant: Plant, slop: float) -> Prior:
+    """The nominal coefficients that calibration slop moves, each within ``slop`` of itself (one standard deviation)."""
+    if slop <= 0:
+        return Prior({})
+    sd = {i: slop * SLOP[s.effect] for i, s in enumerate(plant.slots) if s.effect in SLOP and s.parameter.unit in ("1", "fraction")}
+    return Prior(sd)
+
+
+def _joined(parts: Sequence[Stretches], linear: Sequence[Linear], variance: Array) -> Products:
+    return joined(
+        [products(one, part.ok, variance, state_spread(part)) for part, one in zip(parts, linear, strict=True)]
+    )
+
+
+def _variance(parts: Sequence[Stretches], linear: Sequence[Linear], slop: Prior) -> Array:
+    """Noise and slop of each channel at each time in the window (n, c)."""
+    least = np.array([DRIFT[c] for c in parts[0].channels])
+    noise = np.maximum(np.mean([part.noise for part in parts], axis=0), least)
+    total = np.tile(noise**2, (parts[0].steps + 1, 1))
+    windows = sum(part.count for part in parts)
+    for one in linear:
+        place = [one.columns.index(c) for c in slop.sd]
+        sd = np.array(list(slop.sd.values()))
+        total = total + np.einsum("wtck,k->tc", one.S[..., place] ** 2, sd**2) / windows
+    return total
+
+
+def _unexplained(parts: Sequence[Stretches], linear: Sequence[Linear], variance: Array, step: Array) -> Array:
+    """Mean square (n, c) of what the whole library leaves, smoothed along the window."""
+    total, count = np.zeros_like(variance), np.zeros_like(variance)
+    for part, one in zip(parts, linear, strict=True):
+        left = replace(one, r=np.where(part.ok, one.r - one.S @ step, 0.0))
+        rest = start_corrected(left, part.ok, variance, state_spread(part))
+        total += (rest**2 * part.ok).sum(axis=0)
+        count += part.ok.sum(axis=0)
+    kernel = np.ones(SMOOTH) / SMOOTH
+    mean = total / np.maximum(count, 1)
+    padded = np.pad(mean, ((SMOOTH // 2, SMOOTH // 2), (0, 0)), mode="edge")
+    return np.stack([np.convolve(padded[:, i], kernel, mode="valid") for i in range(mean.shape[1])], axis=1)
