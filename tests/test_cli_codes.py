@@ -33,7 +33,11 @@ def ends_with(monkeypatch, capsys):
 
 @pytest.mark.parametrize(
     ("error", "code"),
-    [(UsageProblem("no such thing", "take another"), 2), (BadInput("log.csv: no rows", "look"), 3), (SimulationStopped("ran off"), 4)],
+    [
+        (UsageProblem("no such thing", "take another"), 2),
+        (BadInput("log.csv: no rows", "look"), 3),
+        (SimulationStopped("ran off"), 4),
+    ],
 )
 def test_refusals_keep_their_code_and_say_what_next(ends_with, error: RovvalError, code: int):
     left, err = ends_with(error)

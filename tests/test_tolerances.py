@@ -6,7 +6,10 @@ from rovval.errors import UsageProblem
 from rovval.pipeline.tolerances import exceeded, parse
 
 COMPARISON = {
-    "axes": {"surge": {"unit": "m/s", "rmse": 0.08, "mae": 0.06, "iae": 10.0, "mean_error": -0.05}, "yaw": {"unit": "rad/s", "rmse": 0.01}},
+    "axes": {
+        "surge": {"unit": "m/s", "rmse": 0.08, "mae": 0.06, "iae": 10.0, "mean_error": -0.05},
+        "yaw": {"unit": "rad/s", "rmse": 0.01},
+    },
     "window": {"axes": {"surge": {"rms": 0.03, "iae": 5.0}}},
 }
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
@@ -70,7 +70,7 @@ def load(path: Path) -> Pipeline:
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise UsageProblem(f"{path} is not TOML: {error}", "mend the line that is named") from None
     except ValidationError as error:
-        lines = [f"{'.'.join(map(str, e['loc']))}: {e['msg']} (is {e['input']!r:.60})" for e in error.errors()]
+        lines = [_problem(e) for e in error.errors()]
         raise UsageProblem(all_at_once(lines, str(path)), "compare with pipelines/nightly.toml") from None
     base = path.resolve().parent
     sources = tuple(
@@ -83,6 +83,11 @@ def load(path: Path) -> Pipeline:
     if problems := _unknown(pipeline):
         raise UsageProblem(all_at_once(problems, str(path)), "see `rovval list vehicle|profile`")
     return pipeline
+
+
+def _problem(error: Any) -> str:
+    got = "" if error["type"] == "missing" else f" (is {error['input']!r:.60})"
+    return f"{'.'.join(map(str, error['loc']))}: {error['msg']}{got}"
 
 
 def _path(name: str, base: Path) -> str:

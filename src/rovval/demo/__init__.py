@@ -1,0 +1,90 @@
+"""The sample dive that comes with rovval, and the whole job done on it. The dive is SYNTHETIC: see `demo.make`."""
+
+from __future__ import annotations
+
+import gzip
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rovval.data import Run
+
+SAMPLE = Path(__file__).parent / "SYNTHETIC_merlin_dive.csv.gz"
+EFFECT = "inflow_loss:loss=0.3"
+SYNTHETIC = f"SYNTHETIC log: a Merlin dive made by rovval's own plant with sensor noise and the effect {EFFECT} left in"
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """What the demo shows: text for people, a document for programs, and where the files are."""
+
+    text: str
+    document: Mapping[str, Any]
+    files: Mapping[str, Path]
+
+
+def unpack(folder: Path) -> Path:
+    """The sample log as the CSV file that a vehicle would have written."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / SAMPLE.stem
+    path.write_bytes(gzip.decompress(SAMPLE.read_bytes()))
+    return path
+
+
+def sample() -> Run:
+    """The sample dive on the 10 Hz grid, labelled as synthetic."""
+    with TemporaryDirectory() as folder:
+        return _read(unpack(Path(folder)))
+
+
+def run(folder: Path, with_diagnosis: bool, progress: Callable[[str, float], None]) -> Shown:
+    """Ingest, align, simulate, compare and diagnose the sample; reports and the log itself go to ``folder``."""
+    from rovval import report
+    from rovval.compare import compare
+    from rovval.report.table import text
+    from rovval.simulate import simulate
+    from rovval.vehicle import load
+
+    progress("read the sample log", 0.0)
+    log = unpack(folder)
+    dive = _read(log)
+    vehicle = load(dive.vehicle)
+    progress("simulate", 0.1)
+    comparison = compare(dive, simulate(dive, vehicle))
+    progress("report", 0.2)
+    files = {"log": log, **report.write(comparison, folder, vehicle)}
+    document: dict[str, Any] = {
+        "schema": "rovval.demo/1",
+        "synthetic": SYNTHETIC,
+        "comparison": report.comparison_json(comparison),
+    }
+    parts = [text(comparison)]
+    if with_diagnosis:
+        words, document["diagnosis"] = _diagnosis(dive, folder / "diagnosis", progress)
+        parts.append(words)
+        files["diagnosis"] = folder / "diagnosis"
+    progress("demo", 1.0)
+    document["files"] = {kind: str(path) for kind, path in files.items()}
+    return Shown("\n\n".join(parts), document, files)
+
+
+def _read(log: Path) -> Run:
+    from rovval import store
+
+    dive = store.open_run(log, "merlin")
+    return replace(dive, properties={**dive.properties, "synthetic": SYNTHETIC})
+
+
+def _diagnosis(dive: Run, folder: Path, progress: Callable[[str, float], None]) -> tuple[str, Mapping[str, Any]]:
+    from rovval import report
+    from rovval.diagnose import diagnose
+    from rovval.report.table import diagnosis_text
+    from rovval.vehicle import load
+
+    found = diagnose([dive], load(dive.vehicle), progress=lambda step, share: progress(step, 0.3 + 0.7 * share))
+    report.write_diagnosis(found.document, folder)
+    answer = f"The effect that was left in this synthetic log, for you to judge the diagnosis by: {EFFECT}"
+    return f"{diagnosis_text(found.document)}\n{answer}", found.document

@@ -1,0 +1,54 @@
+"""Small Merlin logs, pipeline files, and work that misbehaves, for the tests of the batch."""
+
+import os
+import signal
+import time
+from pathlib import Path
+
+import numpy as np
+
+from rovval.demo import make
+from rovval.pipeline.plan import Task
+from rovval.pipeline.work import Outcome, work
+
+
+def write_log(path: Path, seconds: float = 5.0, seed: int = 0) -> Path:
+    """A Merlin log of a vehicle that hardly moves; different seeds have different content."""
+    n, k = round(seconds * 10), len(make.THRUSTERS)
+    rpm = np.full((n, k), 40.0)
+    columns = make.noisy_rows(np.zeros((n, 6)), np.zeros((n, 6)) + 5.0, rpm, rpm, np.random.default_rng(seed))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(make.as_csv(columns))
+    return path
+
+
+def write_pipeline(folder: Path, *lines: str, steps: str = '["ingest"]') -> Path:
+    """A pipeline over folder/logs/*.csv."""
+    path = folder / "nightly.toml"
+    head = ['name = "nightly"', f"steps = {steps}", 'archive = "archive"', 'reports = "reports"', *lines]
+    path.write_text(
+        "\n".join([*head, "[[source]]", 'logs = ["logs/*.csv"]', 'profile = "merlin"', 'vehicle = "merlin"']) + "\n"
+    )
+    return path
+
+
+def deadly(task: Task) -> Outcome:
+    """Work that kills its own process on the log named killer, as the kernel does when memory runs out, and leaves it on leaver."""
+    if task.log.stem == "killer":
+        os.kill(os.getpid(), signal.SIGKILL)
+    if task.log.stem == "leaver":
+        os._exit(9)
+    return work(task)
+
+
+def slow(task: Task) -> Outcome:
+    """Work that never ends on the log named hanger."""
+    if task.log.stem == "hanger":
+        time.sleep(60)
+    return work(task)
+
+
+def paused(task: Task) -> Outcome:
+    """Work that takes its time, so that a test can kill the batch in the middle."""
+    time.sleep(0.5)
+    return work(task)
