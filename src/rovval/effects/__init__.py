@@ -1,1 +1,97 @@
-"""effects"""
+"""Effects: what can be wrong with a nominal simulator, one file each; a file that is added here is in the library.
+
+A file declares ``EFFECT`` and, where it needs them, any of these functions (``p[name]`` is (B,), (B, 6) per axis or (B, k) per
+thruster; every one changes nothing at the null value, to the last bit):
+
+- ``lower(lanes, p) -> Lanes``           vehicle and input numbers of each lane (`effects._lanes`)
+- ``rows(lanes, p) -> {row: array}``     the effect's own numbers for its functions of the state, in ``ROWS`` order
+- ``water(...)``                         north-east-down velocity of the water, its change along the path and at a fixed point (9)
+- ``wrench(...)``                        body force and moment, N and N m (6)
+- ``speed(...)``, ``acting(...)``        thruster speed rev/s, before and after the lag
+- ``static(...)``, ``thrust(...)``       thrust N, at rest in the water and under way
+- ``observe(motion, p)``, ``unobserve(nu, eta, p)``   the log as a sensor writes it, and the truth back out of it
+
+Functions of the state are written once, free of branches, with the helpers of `effects._scalar`; their arguments are named
+after what they need (`plant.compose.NAMES`, the effect's ROWS) and they run compiled in the batch kernel and as NumPy in the
+oracle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+from types import MappingProxyType, ModuleType
+from typing import Literal
+
+from rovval.errors import UsageProblem
+
+FOLDER = Path(__file__).parent
+Place = Literal["vehicle", "input", "water", "wrench", "sensor"]
+Kind = Literal["", "weight", "drag", "speed"]
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One number of an effect. ``typical`` is the 1-sigma prior size of its departure from ``null``; ``low`` and ``high`` are
+    refused beyond, never clipped. ``sized`` says that low, high and typical are for a BlueROV2 and grow with the vehicle's
+    weight, surge drag or thruster speed (`plant.slots`)."""
+
+    name: str
+    unit: str
+    low: float
+    high: float
+    null: float
+    typical: float
+    source: str
+    sized: Kind = ""
+
+    def __post_init__(self) -> None:
+        if not self.low <= self.null <= self.high or not self.low < self.high or not self.typical > 0:
+            raise ValueError(f"parameter {self.name}: needs low <= null <= high, low < high and typical > 0")
+
+
+@dataclass(frozen=True, slots=True)
+class Effect:
+    """One effect as an engineer reads it: where it enters, its equation with source, its parameters, what one sees, what it is
+    confused with and what separates it. ``needs``: channels without which it cannot be tested. ``grid``: start points for
+    parameters that linearisation at the null value cannot see (``onset`` as a fraction of the run)."""
+
+    name: str
+    title: str
+    place: Place
+    equation: str
+    parameters: tuple[Parameter, ...]
+    signature: str
+    confused_with: tuple[str, ...]
+    separates: str
+    per: Literal["", "axis", "thruster"] = ""
+    axes: tuple[str, ...] = ()
+    needs: tuple[str, ...] = ()
+    grid: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "grid", MappingProxyType(dict(self.grid)))
+
+
+@cache
+def names() -> tuple[str, ...]:
+    """Names of every effect in the library, sorted."""
+    return tuple(sorted(p.stem for p in FOLDER.glob("*.py") if not p.stem.startswith("_")))
+
+
+def module(name: str) -> ModuleType:
+    """The file of an effect, imported; refuses a name that is not in the library."""
+    if name not in names():
+        raise UsageProblem(f"no effect named {name!r}", f"use one of: {', '.join(names())}")
+    return import_module(f"rovval.effects.{name}")
+
+
+def load(name: str) -> Effect:
+    """The effect of that name; refuses a name that is not in the library."""
+    effect = module(name).EFFECT
+    if not isinstance(effect, Effect) or effect.name != name:
+        raise UsageProblem(f"effects/{name}.py does not declare EFFECT with the name {name!r}")
+    return effect

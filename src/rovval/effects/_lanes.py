@@ -1,0 +1,125 @@
+"""Lanes: the numbers of one vehicle, once per lane of a batch, as the effects that alter them see them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rovval.frames import skew
+from rovval.vehicle.model import Vehicle, allocation, inertia, square
+
+Array = NDArray[np.float64]
+SECONDS_PER_MINUTE = 60.0  # thrust gains in a vehicle file are N / rpm^2, here N / (rev/s)^2
+
+
+@dataclass(frozen=True, slots=True)
+class Lanes:
+    """``B`` lanes of one vehicle, ``k`` thrusters. SI, body forward-starboard-down, origin where the vehicle file says.
+
+    ``inertia`` (B, 3, 3) about the origin; ``added_mass``, ``linear_drag``, ``quadratic_drag`` (B, 6, 6), positive; ``direction``
+    (B, k, 3); ``torque_arm`` (B,) m of propeller torque per newton of thrust; ``k_pos``, ``k_neg`` (B, k) N s2; ``lag`` (B,) s;
+    ``shift`` (B,) s and ``drift`` (B,) s/s by which thrusters are stamped early; ``wake`` (B,) share of thrust lost in another
+    thruster's jet; ``side`` (B,) side force per newton of thrust; payload: mass kg, place m, onset s since the run's start.
+    """
+
+    vehicle: Vehicle
+    model: str
+    mass: Array
+    centre_of_gravity: Array
+    inertia: Array
+    added_mass: Array
+    linear_drag: Array
+    quadratic_drag: Array
+    weight: Array
+    buoyancy: Array
+    centre_of_buoyancy: Array
+    direction: Array
+    torque_arm: Array
+    k_pos: Array
+    k_neg: Array
+    lag: Array
+    shift: Array
+    drift: Array
+    wake: Array
+    side: Array
+    payload_mass: Array
+    payload_position: Array
+    payload_onset: Array
+
+    def __len__(self) -> int:
+        return len(self.mass)
+
+
+def nominal(vehicle: Vehicle, model: str, size: int) -> Lanes:
+    """``size`` equal lanes of the vehicle as its file has it. ``freefloating`` has no added mass and no linear drag (thesis 2.1
+    and 2.3: M_a and G_a are zero, damping is quadratic)."""
+
+    def each(value: object) -> Array:
+        a = np.asarray(value, dtype=float)
+        return np.broadcast_to(a, (size, *a.shape))
+
+    body = vehicle.body
+    fossen = 1.0 if model == "fossen" else 0.0
+    zero = each(0.0)
+    return Lanes(
+        vehicle=vehicle,
+        model=model,
+        mass=each(body.mass),
+        centre_of_gravity=each(body.centre_of_gravity),
+        inertia=each(inertia(body)),
+        added_mass=each(fossen * square(body.added_mass)),
+        linear_drag=each(fossen * square(body.linear_drag)),
+        quadratic_drag=each(square(body.quadratic_drag)),
+        weight=each(vehicle.weight),
+        buoyancy=each(vehicle.buoyancy),
+        centre_of_buoyancy=each(body.centre_of_buoyancy),
+        direction=each(allocation(vehicle)[:3].T),
+        torque_arm=zero,
+        k_pos=each([t.k_pos * SECONDS_PER_MINUTE**2 for t in vehicle.thruster]),
+        k_neg=each([t.k_neg * SECONDS_PER_MINUTE**2 for t in vehicle.thruster]),
+        lag=zero,
+        shift=zero,
+        drift=zero,
+        wake=zero,
+        side=zero,
+        payload_mass=zero,
+        payload_position=each(np.zeros(3)),
+        payload_onset=zero,
+    )
+
+
+def with_centre_of_gravity(lanes: Lanes, centre: Array) -> tuple[Array, Array]:
+    """Centre of gravity (B, 3) moved with the body about it unchanged: (centre, inertia about the origin), Huygens-Steiner."""
+    before, after = skew(lanes.centre_of_gravity), skew(centre)
+    shift = before @ before - after @ after
+    return centre, lanes.inertia + lanes.mass[:, None, None] * shift
+
+
+def reference_drag(vehicle: Vehicle) -> tuple[Array, Array]:
+    """Coefficients (6,) that a relative departure of linear and quadratic drag refers to: the vehicle's own diagonal. Where that
+    is zero, linear drag refers to the quadratic force at 0.1 m/s (rad/s), quadratic to the linear force at 1 m/s (chosen)."""
+    linear, quadratic = np.diag(square(vehicle.body.linear_drag)), np.diag(square(vehicle.body.quadratic_drag))
+    return np.where(linear > 0, linear, 0.1 * quadratic), np.where(quadratic > 0, quadratic, linear)
+
+
+def reference_added_mass(vehicle: Vehicle) -> Array:
+    """What a relative departure of added mass (6,) refers to: the vehicle's own diagonal, or half of the rigid body's where that
+    is zero (chosen; the thesis's Merlin has 0.5 m and 0.1 I)."""
+    own = np.diag(square(vehicle.body.added_mass))
+    body = vehicle.body
+    rigid = np.array([body.mass, body.mass, body.mass, body.Ixx, body.Iyy, body.Izz])
+    return np.where(own > 0, own, 0.5 * rigid)
+
+
+def reference_speed(vehicle: Vehicle) -> float:
+    """Thruster speed n, rev/s, at which all thrusters together hold the vehicle at 1 m/s ahead, each turning the way that helps,
+    at its mean gain: the reference of inflow and dead-band effects."""
+    surge = np.abs(allocation(vehicle)[0])
+    gain = np.array([0.5 * (t.k_pos + t.k_neg) for t in vehicle.thruster]) * SECONDS_PER_MINUTE**2
+    body = vehicle.body
+    drag = square(body.linear_drag)[0, 0] + square(body.quadratic_drag)[0, 0]
+    forward = float(surge @ gain)
+    strongest = float(gain.sum())
+    return float(np.sqrt(drag / (forward if forward > 1e-6 * strongest else strongest)))

@@ -1,0 +1,37 @@
+"""The velocity log reads too much or too little: speed of sound."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rovval.effects import Effect, Parameter
+from rovval.effects._lanes import Array
+
+if TYPE_CHECKING:
+    from rovval.plant.sensors import Log
+
+EFFECT = Effect(
+    name="dvl_scale",
+    title="Scale of the velocity log",
+    place="sensor",
+    equation="u v w logged = (1 + scale) u v w, scale = error of the speed of sound (diagnosis.md S4).",
+    parameters=(Parameter("scale", "1", -0.2, 0.2, 0.0, 0.02, "+-1 to 5 % (diagnosis.md S4)"),),
+    signature="depth rate against w, distance run against position",
+    confused_with=("rpm_scale", "quadratic_drag"),
+    separates="integral of w against depth: no dynamics needed",
+)
+
+
+def observe(log: Log, p: Mapping[str, Array]) -> Log:
+    """Scale the velocities."""
+    factor = (1.0 + p["scale"])[:, None, None]
+    return replace(log, nu=np.concatenate([log.nu[..., :3] * factor, log.nu[..., 3:]], axis=-1))
+
+
+def unobserve(nu: Array, eta: Array, p: Mapping[str, Array]) -> tuple[Array, Array]:
+    """True first state."""
+    return np.concatenate([nu[:, :3] / (1.0 + p["scale"])[:, None], nu[:, 3:]], axis=-1), eta

@@ -1,0 +1,129 @@
+"""What the generated kernel and nothing else needs of numba: options, inlining, and arithmetic that stays a vector instruction.
+
+Calls into libm and gathers keep a whole loop over lanes scalar (measured), so exponential, sine and arc tangent are polynomials.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numba.extending import overload
+
+from rovval.effects import _scalar
+
+# Contraction to fused multiply-add, no sign of zero, reciprocals; not "fast": NaN and order of sums keep their meaning.
+FLAGS = {"contract", "nsz", "arcp"}
+OPTIONS: dict[str, Any] = {"nogil": True, "cache": True, "fastmath": FLAGS, "error_model": "numpy"}
+INLINE: dict[str, Any] = {"forceinline": True, "fastmath": FLAGS, "error_model": "numpy"}
+
+LOG2 = math.log(2.0)
+TWO_PI_HIGH = 6.28125  # exact in few bits, so that k * TWO_PI_HIGH is exact (Cody and Waite)
+TWO_PI_LOW = 2.0 * math.pi - 6.28125
+SIN = tuple((-1.0) ** i / math.factorial(2 * i + 1) for i in range(11))
+COS = tuple((-1.0) ** i / math.factorial(2 * i) for i in range(11))
+EXP = tuple(1.0 / math.factorial(i) for i in range(13))
+ATAN = tuple((-1.0) ** i / (2 * i + 1) for i in range(15))
+TAN_15 = math.tan(math.pi / 16)
+
+
+def inlined(function: Callable[..., Any]) -> Any:
+    """An effect's function compiled into the loop that calls it (LLVM's inlining; numba's own takes five times as long)."""
+    return njit(**INLINE)(function)
+
+
+def _polynomial(name: str, coefficients: tuple[float, ...]) -> Any:
+    """Compiled Horner scheme of the coefficients, lowest first."""
+    body = repr(coefficients[-1])
+    for c in reversed(coefficients[:-1]):
+        body = f"({c!r} + x * {body})"
+    scope: dict[str, Any] = {}
+    exec(f"def {name}(x):\n    return {body}\n", scope)
+    return njit(**INLINE)(scope[name])
+
+
+_sin_series, _cos_series = _polynomial("_sin_series", SIN), _polynomial("_cos_series", COS)
+_exp_series, _atan_series = _polynomial("_exp_series", EXP), _polynomial("_atan_series", ATAN)
+
+
+@njit(**INLINE)
+def _half_turns(x: float) -> tuple[float, float]:
+    """Sine and cosine of half of x brought into [-pi/2, pi/2]."""
+    k = np.floor(x / (2.0 * math.pi) + 0.5)
+    y = 0.5 * ((x - k * TWO_PI_HIGH) - k * TWO_PI_LOW)
+    square = y * y
+    return y * _sin_series(square), _cos_series(square)
+
+
+@njit(**INLINE)
+def _sin(x: float) -> float:
+    s, c = _half_turns(x)
+    return 2.0 * s * c
+
+
+@njit(**INLINE)
+def _cos(x: float) -> float:
+    s, c = _half_turns(x)
+    return c * c - s * s
+
+
+@njit(**INLINE)
+def _exp(x: float) -> float:
+    """(exp(x / 256)) ** 256 over [-69, 69]: no exponent bits to touch, relative error below 1e-13."""
+    y = _exp_series(min(max(x, -69.0), 69.0) * (1.0 / 256.0))
+    y = y * y
+    y = y * y
+    y = y * y
+    y = y * y
+    y = y * y
+    y = y * y
+    y = y * y
+    return y * y
+
+
+@njit(**INLINE)
+def atan2(y: float, x: float) -> float:
+    """Angle of (x, y) in (-pi, pi]; the ratio is halved to within tan(pi/8), then tan(pi/16), where 15 terms reach 1e-16."""
+    ax, ay = abs(x), abs(y)
+    low, high = min(ax, ay), max(ax, ay)
+    a = low / (high + 1e-300)
+    a = a / (1.0 + math.sqrt(1.0 + a * a))
+    a = a / (1.0 + math.sqrt(1.0 + a * a))
+    angle = 4.0 * a * _atan_series(a * a)
+    angle = 0.5 * math.pi - angle if ay > ax else angle
+    angle = math.pi - angle if x < 0.0 else angle
+    return -angle if y < 0.0 else angle
+
+
+@njit(**INLINE)
+def _positive(x: float) -> float:
+    return 0.5 * (x + abs(x))
+
+
+@njit(**INLINE)
+def _clip(x: float, low: float, high: float) -> float:
+    return min(max(x, low), high)
+
+
+@njit(**INLINE)
+def _sqrt(x: float) -> float:
+    return math.sqrt(x)
+
+
+def _teach(helper: Callable[..., Any], compiled: Any) -> None:
+    """Tell numba that ``helper`` of `effects._scalar`, in compiled code, is ``compiled``."""
+
+    def one(x: Any) -> Any:
+        return lambda x: compiled(x)
+
+    def three(x: Any, low: Any, high: Any) -> Any:
+        return lambda x, low, high: compiled(x, low, high)
+
+    overload(helper, jit_options=dict(INLINE), strict=False)(three if helper is _scalar.clip else one)
+
+
+for _name, _compiled in (("positive", _positive), ("clip", _clip), ("sqrt", _sqrt), ("exp", _exp), ("sin", _sin), ("cos", _cos)):
+    _teach(getattr(_scalar, _name), _compiled)

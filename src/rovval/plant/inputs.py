@@ -1,0 +1,103 @@
+"""Inputs: what the log gives the plant, once per run, and its preparation for the kernel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rovval.errors import BadInput
+from rovval.vehicle.model import Vehicle
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+FAR = 1e6  # m; a bottom or wall that the log does not see is taken to be this far, where no effect reaches
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """One run on its grid of ``S`` samples, ``dt`` s apart; lanes begin at samples of it.
+
+    ``speed`` (S, k) rev/s. ``hold`` True: a command, held until the next sample; False: a measured speed, linear between
+    samples, taken at the Runge-Kutta stage times. ``altitude``, ``wall_distance``, ``tether_length`` (S,) m and ``voltage`` (S,) V or None;
+    NaN where the log has none. ``t`` (S,) s since the run's start. ``extra`` (E, S, 6) body wrenches, N and N m, linear between samples.
+    """
+
+    dt: float
+    speed: Array
+    hold: bool
+    altitude: Array | None = None
+    wall_distance: Array | None = None
+    voltage: Array | None = None
+    tether_length: Array | None = None
+    t: Array | None = None
+    extra: Array | None = None
+
+    def __post_init__(self) -> None:
+        speed = np.asarray(self.speed, dtype=float)
+        object.__setattr__(self, "speed", speed)
+        if speed.ndim != 2 or not len(speed) or not self.dt > 0:
+            raise BadInput(f"thruster speeds are {speed.shape} at {self.dt} s, not (samples, thrusters)")
+        for name in ("altitude", "wall_distance", "voltage", "tether_length", "t"):
+            value = getattr(self, name)
+            if value is not None and np.shape(value) != (len(speed),):
+                raise BadInput(f"{name} is {np.shape(value)} for {len(speed)} samples")
+        if self.extra is not None and (np.ndim(self.extra) != 3 or np.shape(self.extra)[1:] != (len(speed), 6)):
+            raise BadInput(f"extra is {np.shape(self.extra)}, not (E, {len(speed)}, 6)")
+
+
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """Arrays as the kernel reads them: no NaN; ``log`` (S, 4) altitude, wall distance, voltage over reference, tether length;
+    ``next_gap`` (S,) the first sample from each one on whose thruster speed is missing (S where there is none)."""
+
+    speed: Array
+    log: Array
+    t: Array
+    extra: Array
+    next_gap: Indices
+
+    def steps_before_gap(self, start: Indices, hold: bool) -> Indices:
+        """Steps a lane can take from ``start`` with every speed it needs known."""
+        free = self.next_gap[np.minimum(start, len(self.next_gap) - 1)] - start
+        unlimited = self.next_gap[np.minimum(start, len(self.next_gap) - 1)] >= len(self.next_gap)
+        return np.where(unlimited, np.iinfo(np.int64).max // 2, np.maximum(free - (0 if hold else 1), 0))
+
+
+def prepare(inputs: Inputs, vehicle: Vehicle) -> Prepared:
+    """Fill what is missing so that no NaN reaches the kernel. A missing speed keeps its last value for the memory of lags, and
+    stops the lane that runs into it; a bottom, wall or tether that is not seen has no effect; voltage keeps its last value."""
+    samples = len(inputs.speed)
+    missing = ~np.isfinite(inputs.speed).all(axis=1)
+    places = np.where(missing, np.arange(samples), samples)
+    next_gap = np.minimum.accumulate(places[::-1])[::-1].astype(np.int64)
+    voltage = _held(inputs.voltage, samples, 1.0)
+    reference = vehicle.pulse_table.voltage if vehicle.pulse_table and inputs.voltage is not None else float(voltage[0])
+    log = np.stack(
+        [
+            _or(inputs.altitude, samples, FAR), _or(inputs.wall_distance, samples, FAR), voltage / reference,
+            _or(inputs.tether_length, samples, 0.0),
+        ],
+        axis=1,
+    )  # fmt: skip
+    speed = np.stack([_held(column, samples, 0.0) for column in inputs.speed.T], axis=1)
+    t = np.arange(samples) * inputs.dt if inputs.t is None else np.ascontiguousarray(inputs.t, dtype=float)
+    extra = np.zeros((1, 1, 6)) if inputs.extra is None else np.ascontiguousarray(inputs.extra, dtype=float)
+    return Prepared(np.ascontiguousarray(speed), np.ascontiguousarray(log), t, extra, next_gap)
+
+
+def _or(values: Array | None, samples: int, fill: float) -> Array:
+    if values is None:
+        return np.full(samples, fill)
+    return np.where(np.isfinite(values), values, fill)
+
+
+def _held(values: Array | None, samples: int, fill: float) -> Array:
+    """Missing samples keep the last value before them (the first known one at the start; ``fill`` if none is known)."""
+    if values is None or not np.isfinite(values).any():
+        return np.full(samples, fill)
+    known = np.isfinite(values)
+    last = np.maximum.accumulate(np.where(known, np.arange(samples), -1))
+    first = int(np.argmax(known))
+    return np.asarray(values, dtype=float)[np.where(last < 0, first, last)]

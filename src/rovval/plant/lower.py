@@ -1,0 +1,126 @@
+"""From a lane's effect parameters to the numbers that the kernel reads: effects lower the vehicle, then the vehicle is packed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rovval import effects
+from rovval.effects._lanes import Lanes, nominal
+from rovval.frames import skew
+from rovval.plant import compose, slots
+from rovval.vehicle.model import Vehicle
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Lowered:
+    """Lanes after every active effect, and each effect's own rows: (B,) or (B, k) under ``effect.row``."""
+
+    lanes: Lanes
+    rows: Mapping[str, Array]
+    active: frozenset[str]
+
+
+def active_effects(found: tuple[slots.Slot, ...], null: Array, beta: Array) -> frozenset[str]:
+    """Effects of which some lane has a parameter away from its null value."""
+    return frozenset(found[c].effect for c in np.flatnonzero((beta != null).any(axis=0)))
+
+
+def lower(vehicle: Vehicle, model: str, found: tuple[slots.Slot, ...], index: Mapping[str, int], null: Array, beta: Array) -> Lowered:
+    """Lower ``beta`` (B, K). An effect that no lane has is not even called."""
+    active = active_effects(found, null, beta)
+    lanes = nominal(vehicle, model, len(beta))
+    rows: dict[str, Array] = {}
+    for name in effects.names():
+        if name not in active:
+            continue
+        module, p = effects.module(name), slots.gather(vehicle, index, name, beta)
+        if hasattr(module, "lower"):
+            lanes = module.lower(lanes, p)
+    for name in effects.names():
+        own, _ = compose.effect_rows(name)
+        if not own:
+            continue
+        p = slots.gather(vehicle, index, name, beta if name in active else null[None])
+        values = effects.module(name).rows(lanes if name in active else nominal(vehicle, model, 1), p)
+        for row in own:
+            rows[f"{name}.{row}"] = values[row]
+    return Lowered(lanes, rows, active)
+
+
+def rigid_body(mass: Array, first_moment: Array, inertia: Array) -> Array:
+    """M_RB (B, 6, 6) of mass, mass times centre of gravity and inertia about the origin (thesis 3.11)."""
+    matrix = np.zeros((len(mass), 6, 6))
+    cross = skew(first_moment)
+    matrix[:, :3, :3] = mass[:, None, None] * np.eye(3)
+    matrix[:, :3, 3:] = -cross
+    matrix[:, 3:, :3] = cross
+    matrix[:, 3:, 3:] = inertia
+    return matrix
+
+
+def with_payload(lanes: Lanes) -> Lanes:
+    """The lanes after their payload's onset: its mass at its place is part of the body."""
+    m, r = lanes.payload_mass, lanes.payload_position
+    total = lanes.mass + m
+    centre = (lanes.mass[:, None] * lanes.centre_of_gravity + m[:, None] * r) / total[:, None]
+    square = skew(r) @ skew(r)
+    return replace(lanes, mass=total, centre_of_gravity=centre, inertia=lanes.inertia - m[:, None, None] * square)
+
+
+def mass_numbers(lanes: Lanes) -> Array:
+    """(B, 31): m, m r_G, inertia (6), M^-1 (21)."""
+    moment = lanes.mass[:, None] * lanes.centre_of_gravity
+    i = lanes.inertia
+    inverse = np.linalg.inv(rigid_body(lanes.mass, moment, i) + lanes.added_mass)
+    upper = np.stack([0.5 * (inverse[:, a, b] + inverse[:, b, a]) for a, b in compose.SYMMETRIC], axis=1)
+    tensor = np.stack([i[:, a, b] for a in range(3) for b in range(a, 3)], axis=1)
+    return np.concatenate([lanes.mass[:, None], moment, tensor, upper], axis=1)
+
+
+def pack(lowered: Lowered, spec: compose.Spec, dt: float, substeps: int) -> Array:
+    """(B, rows) in the order of `compose.layout`."""
+    lanes, where = lowered.lanes, compose.layout(spec)
+    size, k = len(lanes), len(lanes.vehicle.thruster)
+    out = np.zeros((size, where.rows(k)))
+
+    def put(first: int, values: Array) -> None:
+        out[:, first : first + values.shape[1]] = values
+
+    put(where.first["mass"], mass_numbers(lanes))
+    lever = lanes.weight[:, None] * lanes.centre_of_gravity - lanes.buoyancy[:, None] * lanes.centre_of_buoyancy
+    put(where.first["restoring"], np.concatenate([(lanes.weight - lanes.buoyancy)[:, None], lever], axis=1))
+    displaced = (lanes.buoyancy / lanes.vehicle.water.gravity)[:, None]
+    put(where.first["displaced"], np.concatenate([displaced, displaced * lanes.centre_of_buoyancy], axis=1))
+    for name, matrix in (("added", lanes.added_mass), ("linear", lanes.linear_drag), ("quadratic", lanes.quadratic_drag)):
+        put(where.first[name], matrix.reshape(size, 36) if spec.dense else np.diagonal(matrix, axis1=1, axis2=2))
+    put(where.first["lag"], _lag(lanes.lag, dt / substeps))
+    put(where.first["shift"], np.stack([lanes.shift / dt, lanes.drift / dt], axis=1))
+    put(where.first["jet"], np.stack([lanes.wake, lanes.side], axis=1))
+    position = np.array([t.position for t in lanes.vehicle.thruster])
+    hand = np.array([t.handedness for t in lanes.vehicle.thruster], dtype=float)
+    moment = np.cross(position, lanes.direction) + (lanes.torque_arm[:, None] * hand)[..., None] * lanes.direction
+    thruster = np.zeros((size, k, where.thruster_stride))
+    thruster[..., 0], thruster[..., 1] = lanes.k_pos, lanes.k_neg
+    thruster[..., 2:5], thruster[..., 5:8] = lanes.direction, moment
+    if spec.full:
+        for name, values in lowered.rows.items():
+            if name in where.thruster_first:
+                thruster[..., where.thruster_first[name]] = values
+            elif name in where.first:
+                out[:, where.first[name]] = values
+    out[:, where.body_rows :] = thruster.reshape(size, -1)
+    return out
+
+
+def _lag(tau: Array, h: float) -> Array:
+    """(B, 4): time constant, and what is left of the past at the start, middle and end of a step; nothing where tau is 0."""
+    on = tau > 0
+    safe = np.where(on, tau, 1.0)
+    left = [np.where(on, np.exp(-f * h / safe), 0.0) for f in (0.0, 0.5, 1.0)]
+    return np.stack([tau, *left], axis=1)

@@ -1,0 +1,184 @@
+"""Plant: checks what it is given, lowers the effects, runs the compiled kernel, and hands back the log it would have left."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rovval import effects
+from rovval.errors import BadInput, UsageProblem, all_at_once
+from rovval.frames import quaternion_from_euler
+from rovval.plant import compose, geometry, kernel, sensors, slots
+from rovval.plant.inputs import Inputs, Prepared, prepare
+from rovval.plant.lower import lower, mass_numbers, pack, with_payload
+from rovval.plant.template import RATE_LIMIT, SPEED_LIMIT
+from rovval.vehicle.model import Vehicle, square
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+MODELS = ("fossen", "freefloating")
+REASONS = ("", f"speed above {SPEED_LIMIT:g} m/s", f"rate above {RATE_LIMIT:g} rad/s", "state not finite", "thruster speed missing in the log")
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """``nu`` (B, T + 1, 6) m/s and rad/s, ``eta`` (B, T + 1, 6) m and rad, as the log's sensors would write them. A lane that left
+    sane limits keeps its last valid state from sample ``stopped`` (B,) on (-1: it did not), and ``why`` names lane, time and reason."""
+
+    nu: Array
+    eta: Array
+    stopped: Indices
+    why: tuple[str, ...]
+
+
+class Plant:
+    """A vehicle as one of the two platforms has it, and the library's parameters for it (see the package's example)."""
+
+    def __init__(self, vehicle: Vehicle, model: str = "fossen", substeps: int = 1) -> None:
+        """``substeps``: Runge-Kutta steps per sample of the log."""
+        if model not in MODELS or substeps < 1:
+            raise UsageProblem(f"model {model!r} with {substeps} substeps", f"model is one of {', '.join(MODELS)}, substeps at least 1")
+        self.vehicle, self.model, self.substeps = vehicle, model, substeps
+        self.slots: tuple[slots.Slot, ...] = slots.slots(vehicle, model)
+        self.null: Array = np.array([s.parameter.null for s in self.slots])
+        self.null.setflags(write=False)
+        self.index: Mapping[str, int] = MappingProxyType({s.key: i for i, s in enumerate(self.slots)})
+        groups: dict[str, tuple[int, ...]] = {}
+        for i, slot in enumerate(self.slots):
+            groups[slot.hypothesis] = (*groups.get(slot.hypothesis, ()), i)
+        self.hypotheses: Mapping[str, tuple[int, ...]] = MappingProxyType(groups)
+        self._dense = any(_coupled(m) for m in (vehicle.body.added_mass, vehicle.body.linear_drag, vehicle.body.quadratic_drag))
+        self._advance = any(t.diameter > 0 and any((*t.advance_pos, *t.advance_neg)) for t in vehicle.thruster)
+        self._geometry = _geometry(vehicle)
+
+    def thrust(self, speed: Array) -> Array:
+        """Nominal thrust (S, k) N of thruster speeds (S, k) rev/s, at rest in the water."""
+        n = 60.0 * np.asarray(speed, dtype=float)
+        ahead = np.array([t.k_pos for t in self.vehicle.thruster])
+        astern = np.array([t.k_neg for t in self.vehicle.thruster])
+        return np.asarray(np.where(n > 0, ahead, astern) * n * np.abs(n))
+
+    def simulate(
+        self, inputs: Inputs, start: Indices, steps: int, nu0: Array, eta0: Array, beta: Array,
+        extra: Indices | None = None, extra_gain: Array | None = None,
+    ) -> Motion:
+        """Run ``B`` lanes of ``steps`` samples from the measured first states ``nu0`` and ``eta0`` (B, 6) at samples ``start`` (B,).
+
+        ``beta`` (B, K) are the effects' parameters in the order of ``slots`` (``null``: nothing), ``extra`` (B,) an index into
+        ``inputs.extra`` or -1, ``extra_gain`` (B,) its factor. Raises UsageProblem for parameters out of bounds or an effect
+        whose channel the inputs do not hold, BadInput for shapes that do not fit.
+        """
+        start, nu0, eta0, beta, which, gain = self._checked(inputs, start, steps, nu0, eta0, beta, extra, extra_gain)
+        prepared = prepare(inputs, self.vehicle)
+        lowered = lower(self.vehicle, self.model, self.slots, self.index, self.null, beta)
+        true_nu, true_eta = sensors.unobserve(self.vehicle, self.index, self.null, beta, nu0, eta0)
+        full = bool(lowered.active) or bool((which >= 0).any())
+        spec = compose.Spec(self._dense, self._advance, full)
+        size, blocks = len(start), -(-len(start) // compose.W)
+        numbers = _blocked(pack(lowered, spec, inputs.dt, self.substeps))
+        late, onset = self._payload(lowered.lanes, blocks)
+        states = _blocked(np.concatenate([true_eta[:, :3], quaternion_from_euler(true_eta[:, 3:]), true_nu], axis=1))
+        out = np.empty((steps + 1, 12, blocks * compose.W))
+        stopped, reason = np.full((blocks, compose.W), -1), np.zeros((blocks, compose.W), dtype=np.int64)
+        limit = prepared.steps_before_gap(start, inputs.hold)
+        kernel.run(
+            spec, blocks,
+            (
+                numbers, late, onset, states, _flat(start), _flat(limit), _flat(which, -1), _flat(gain), prepared.speed, prepared.log,
+                prepared.t, prepared.extra, *self._geometry, inputs.dt, inputs.hold, steps, self.substeps, out, stopped, reason,
+            ),
+        )  # fmt: skip
+        seen = sensors.observe(
+            self.vehicle, self.index, self.null, beta,
+            sensors.Log(out[:, :6, :size].transpose(2, 0, 1), out[:, 6:, :size].transpose(2, 0, 1), inputs.dt, nu0),
+        )  # fmt: skip
+        ends, codes = stopped.reshape(-1)[:size], reason.reshape(-1)[:size]
+        why = tuple(f"lane {b} stopped at {ends[b] * inputs.dt:.1f} s: {REASONS[codes[b]]}" for b in np.flatnonzero(ends >= 0))
+        return Motion(seen.nu, seen.eta, ends, why)
+
+    def _checked(
+        self, inputs: Inputs, start: Indices, steps: int, nu0: Array, eta0: Array, beta: Array,
+        extra: Indices | None, extra_gain: Array | None,
+    ) -> tuple[Indices, Array, Array, Array, Indices, Array]:
+        start = np.asarray(start, dtype=np.int64)
+        nu0, eta0, beta = (np.asarray(a, dtype=float) for a in (nu0, eta0, beta))
+        size = len(start)
+        which = np.full(size, -1, dtype=np.int64) if extra is None else np.asarray(extra, dtype=np.int64)
+        gain = np.ones(size) if extra_gain is None else np.asarray(extra_gain, dtype=float)
+        wanted = {"nu0": (nu0, (size, 6)), "eta0": (eta0, (size, 6)), "beta": (beta, (size, len(self.slots))), "extra": (which, (size,)), "extra_gain": (gain, (size,))}
+        problems = [f"{name} is {a.shape}, not {shape}" for name, (a, shape) in wanted.items() if a.shape != shape]
+        samples, k = inputs.speed.shape
+        if k != len(self.vehicle.thruster):
+            problems.append(f"{k} thruster speeds for {len(self.vehicle.thruster)} thrusters")
+        if size and (start.min() < 0 or start.max() + steps > samples or steps < 0):
+            problems.append(f"samples {start.min()} to {start.max() + steps} of a log of {samples}")
+        if size and which.max() >= (0 if inputs.extra is None else len(inputs.extra)):
+            problems.append(f"extra wrench {which.max()} is not in the bank")
+        if not problems and not (np.isfinite(nu0).all() and np.isfinite(eta0).all()):
+            problems.append("a first state is not finite")
+        if problems:
+            raise BadInput(all_at_once(problems, "simulate"))
+        slots.check_bounds(self.slots, beta)
+        used = {self.slots[c].effect for c in np.flatnonzero((beta != self.null).any(axis=0))}
+        missing = [f"{n} needs {c}" for n in sorted(used) for c in effects.load(n).needs if c in ABSENT and getattr(inputs, c) is None]
+        if missing:
+            raise UsageProblem(all_at_once(missing, "channels that the log does not hold"))
+        return start, nu0, eta0, beta, which, gain
+
+    def _payload(self, lanes: slots.Lanes, blocks: int) -> tuple[Array, Array]:
+        """Mass numbers after a payload's onset, and the onsets (s; infinite where there is none)."""
+        onset = np.full(blocks * compose.W, np.inf)
+        if not lanes.payload_mass.any():
+            return np.zeros((blocks, 1)), onset.reshape(blocks, compose.W)
+        onset[: len(lanes)] = np.where(lanes.payload_mass != 0, lanes.payload_onset, np.inf)
+        return _blocked(mass_numbers(with_payload(lanes))), onset.reshape(blocks, compose.W)
+
+
+ABSENT = ("altitude", "wall_distance", "voltage", "tether_length")
+
+
+def parse_settings(plant: Plant, settings: Sequence[str]) -> Array:
+    """(K,) parameters of settings like ``inflow_loss:loss=0.3`` and ``thruster_degraded[HFP]:loss=0.4,...``.
+
+    Raises UsageProblem: names every unknown effect, parameter and value out of bounds at once.
+    """
+    return slots.parse(plant.slots, plant.index, plant.null, settings)
+
+
+def _coupled(values: tuple[float, ...] | tuple[tuple[float, ...], ...]) -> bool:
+    matrix = square(values)
+    return bool((matrix != np.diag(np.diag(matrix))).any())
+
+
+def _geometry(vehicle: Vehicle) -> tuple[Array, Array, Array, Array, Indices, Array]:
+    """What the kernel needs of the thrusters once per vehicle: place (k, 3), advance-ratio rows (k, 6), side wrench (k, 6), diameter,
+    pairs and weights of the jets."""
+    jets = geometry.jets(vehicle)
+    usable = [t.diameter > 0 for t in vehicle.thruster]
+    return (
+        np.array([t.position for t in vehicle.thruster]),
+        np.array([(*t.advance_pos, *t.advance_neg) if ok else (0.0,) * 6 for t, ok in zip(vehicle.thruster, usable, strict=True)]),
+        geometry.hull_side(vehicle),
+        np.array([t.diameter if ok else 1.0 for t, ok in zip(vehicle.thruster, usable, strict=True)]),
+        jets.pairs,
+        jets.weights,
+    )
+
+
+def _blocked(values: Array) -> Array:
+    """(B, R) -> (blocks, R * W): W lanes side by side, the last block filled with copies of the last lane."""
+    size, rows = values.shape
+    blocks = -(-size // compose.W)
+    padded = values if size == blocks * compose.W else np.concatenate([values, np.repeat(values[-1:], blocks * compose.W - size, axis=0)])
+    return np.ascontiguousarray(padded.reshape(blocks, compose.W, rows).transpose(0, 2, 1)).reshape(blocks, rows * compose.W)
+
+
+def _flat(values: NDArray[np.generic], fill: float | None = None) -> NDArray[np.generic]:
+    """(B,) -> (blocks, W), filled with the last lane's value or ``fill``."""
+    blocks = -(-len(values) // compose.W)
+    rest = np.full(blocks * compose.W - len(values), values[-1] if fill is None else fill, dtype=values.dtype)
+    return np.concatenate([values, rest]).reshape(blocks, compose.W)

@@ -1,0 +1,143 @@
+"""Slots: every parameter of every effect for one vehicle, axes and thrusters spelt out, in a fixed order."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rovval import effects
+from rovval.channels import AXES
+from rovval.effects import Parameter
+from rovval.effects._lanes import reference_speed
+from rovval.errors import UsageProblem, all_at_once
+from rovval.vehicle.model import Vehicle, square
+
+Array = NDArray[np.float64]
+
+# The vehicle for which effects with sized parameters give their numbers: BlueROV2 Heavy, 13.5 kg, 141 N s2/m2, 64.4 rev/s at 1 m/s.
+REFERENCE_WEIGHT = 132.57
+REFERENCE_DRAG = 141.0
+REFERENCE_SPEED = 64.43
+
+
+@dataclass(frozen=True, slots=True)
+class Slot:
+    """One number of a lane's parameter vector: ``quadratic_drag[surge].scale``."""
+
+    key: str
+    hypothesis: str
+    effect: str
+    target: str
+    parameter: Parameter
+
+
+def sizes(vehicle: Vehicle) -> Mapping[str, float]:
+    """Factors from the reference vehicle to this one, by what a parameter grows with."""
+    return MappingProxyType(
+        {
+            "": 1.0,
+            "weight": vehicle.weight / REFERENCE_WEIGHT,
+            "drag": float(square(vehicle.body.quadratic_drag)[0, 0]) / REFERENCE_DRAG,
+            "speed": reference_speed(vehicle) / REFERENCE_SPEED,
+        }
+    )
+
+
+def targets(effect: effects.Effect, vehicle: Vehicle) -> tuple[str, ...]:
+    """Axes or thrusters that the effect's parameters belong to; one empty name for an effect that has neither."""
+    return {"": ("",), "axis": effect.axes, "thruster": vehicle.thrusters}[effect.per]
+
+
+def slots(vehicle: Vehicle, model: str) -> tuple[Slot, ...]:
+    """Every slot of the library for a vehicle."""
+    found, factor = [], sizes(vehicle)
+    for name in effects.names():
+        effect = effects.load(name)
+        for target in targets(effect, vehicle):
+            hypothesis = f"{name}[{target}]" if target else name
+            for parameter in effect.parameters:
+                f = factor[parameter.sized]
+                sized = replace(parameter, low=parameter.low * f, high=parameter.high * f, null=parameter.null * f, typical=parameter.typical * f)
+                if model == "freefloating" and name in ("added_mass", "linear_drag"):
+                    sized = replace(sized, low=0.0)  # the model has none: there is nothing to take away
+                found.append(Slot(f"{hypothesis}.{parameter.name}", hypothesis, name, target, sized))
+    return tuple(found)
+
+
+@cache
+def _columns(name: str, hypotheses: tuple[str, ...]) -> tuple[int, ...]:
+    return tuple(i for i, h in enumerate(hypotheses) if h == name)
+
+
+def gather(vehicle: Vehicle, index: Mapping[str, int], name: str, beta: Array) -> dict[str, Array]:
+    """One effect's parameters out of ``beta`` (B, K): (B,), (B, 6) per axis with the null value on axes without, (B, k)."""
+    effect = effects.load(name)
+    values: dict[str, Array] = {}
+    for parameter in effect.parameters:
+        if effect.per == "":
+            values[parameter.name] = beta[:, index[f"{name}.{parameter.name}"]]
+        elif effect.per == "thruster":
+            values[parameter.name] = beta[:, [index[f"{name}[{t}].{parameter.name}"] for t in vehicle.thrusters]]
+        else:
+            full = np.full((len(beta), 6), parameter.null)
+            for axis in effect.axes:
+                full[:, AXES.index(axis)] = beta[:, index[f"{name}[{axis}].{parameter.name}"]]
+            values[parameter.name] = full
+    return values
+
+
+def check_bounds(found: Sequence[Slot], beta: Array) -> None:
+    """Refuse parameters beyond their bounds or not finite, every one by name."""
+    low, high = np.array([s.parameter.low for s in found]), np.array([s.parameter.high for s in found])
+    with np.errstate(invalid="ignore"):
+        wrong = ~((beta >= low) & (beta <= high))
+    columns = np.flatnonzero(wrong.any(axis=0))
+    if len(columns):
+        problems = []
+        for c in columns:
+            p, values = found[c].parameter, beta[wrong[:, c], c]
+            problems.append(f"{found[c].key} = {values[0]:.6g} {p.unit}, allowed {p.low:.6g} to {p.high:.6g}")
+        raise UsageProblem(all_at_once(problems, "effect parameters out of bounds"), "see `rovval show effect NAME`")
+
+
+def parse(found: Sequence[Slot], index: Mapping[str, int], null: Array, settings: Sequence[str]) -> Array:
+    """(K,) vector of settings like ``inflow_loss:loss=0.3`` or ``thruster_degraded[HFP]:loss=0.4,...``; every problem at once."""
+    beta, problems = null.copy(), []
+    hypotheses = {s.hypothesis for s in found}
+    for setting in settings:
+        hypothesis, _, pairs = setting.partition(":")
+        hypothesis = hypothesis.strip()
+        if hypothesis not in hypotheses:
+            problems.append(_unknown(hypothesis, hypotheses, setting))
+            continue
+        known = [s.parameter.name for s in found if s.hypothesis == hypothesis]
+        for pair in pairs.split(","):
+            name, equals, value = (part.strip() for part in pair.partition("="))
+            if name not in known or not equals:
+                problems.append(f"{setting!r}: {hypothesis} has {', '.join(known)}; write {hypothesis}:{known[0]}=VALUE")
+                continue
+            try:
+                number = float(value)
+            except ValueError:
+                problems.append(f"{setting!r}: {value!r} is not a number")
+                continue
+            column = index[f"{hypothesis}.{name}"]
+            p = found[column].parameter
+            if not p.low <= number <= p.high:
+                problems.append(f"{hypothesis}.{name} = {number:.6g} {p.unit}, allowed {p.low:.6g} to {p.high:.6g}")
+            beta[column] = number
+    if problems:
+        raise UsageProblem(all_at_once(problems, "--effect"), "see `rovval list effect` and `rovval show effect NAME`")
+    return beta
+
+
+def _unknown(hypothesis: str, known: set[str], setting: str) -> str:
+    name = hypothesis.partition("[")[0]
+    if name in effects.names():
+        return f"{setting!r}: {name} belongs to one of: {', '.join(sorted(h for h in known if h.partition('[')[0] == name))}"
+    return f"{setting!r}: no effect named {name!r}; the library has {', '.join(effects.names())}"
