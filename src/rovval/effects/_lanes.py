@@ -123,3 +123,14 @@ def reference_speed(vehicle: Vehicle) -> float:
     forward = float(surge @ gain)
     strongest = float(gain.sum())
     return float(np.sqrt(drag / (forward if forward > 1e-6 * strongest else strongest)))
+
+
+def jet_on_hull(vehicle: Vehicle) -> Array:
+    """(k, 2): how squarely the jet of each thruster, turning ahead and astern, meets the hull's middle (cosine, 0 if away)."""
+    rows = []
+    for thruster, way in zip(vehicle.thruster, allocation(vehicle)[:3].T, strict=True):
+        place = np.array(thruster.position)
+        length = float(np.linalg.norm(place))
+        cosine = float(place @ way) / length if length > 1e-9 else 0.0
+        rows.append([max(cosine, 0.0), max(-cosine, 0.0)])
+    return np.array(rows)

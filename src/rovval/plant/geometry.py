@@ -68,14 +68,3 @@ def hull_side(vehicle: Vehicle) -> Array:
         force = inward / length if length > 1e-9 else np.zeros(3)
         rows.append(np.concatenate([force, np.cross(place, force)]))
     return np.array(rows)
-
-
-def jet_on_hull(vehicle: Vehicle) -> Array:
-    """(k, 2): how squarely the jet of each thruster, turning ahead and astern, meets the hull's middle (cosine, 0 if away)."""
-    rows = []
-    for thruster, way in zip(vehicle.thruster, allocation(vehicle)[:3].T, strict=True):
-        place = np.array(thruster.position)
-        length = float(np.linalg.norm(place))
-        cosine = float(place @ way) / length if length > 1e-9 else 0.0
-        rows.append([max(cosine, 0.0), max(-cosine, 0.0)])
-    return np.array(rows)

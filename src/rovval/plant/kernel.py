@@ -41,13 +41,13 @@ def _own_folder() -> Path:
 
 
 @cache
-def _fingerprint() -> str:
-    """Hash of every file that the kernel's machine code depends on, and of numba's and Python's version."""
+def _fingerprint(spec: compose.Spec) -> str:
+    """Hash of all that the kernel's machine code depends on: its text, the files of the effects in it, helpers, versions."""
     import numba
 
-    digest = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
-    files = [*sorted(effects.FOLDER.glob("*.py")), *(ROOT / f for f in ("template.py", "compose.py", "compiled.py"))]
-    for file in files:
+    digest = hashlib.sha256(f"{numba.__version__} {sys.version}\n{compose.text(spec)}".encode())
+    inside = sorted({hook.effect for hook in compose.hooks(spec)})
+    for file in (ROOT / "compiled.py", effects.FOLDER / "_scalar.py", *(effects.FOLDER / f"{name}.py" for name in inside)):
         digest.update(file.read_bytes())
     return digest.hexdigest()[:16]
 
@@ -55,12 +55,11 @@ def _fingerprint() -> str:
 @cache
 def module(spec: compose.Spec) -> ModuleType:
     """The generated module of that spec, compiled or from the cache; says so when compilation takes longer than a second."""
-    name = f"kernel_{spec.name}_{_fingerprint()}"
+    name = f"kernel_{spec.name}_{_fingerprint(spec)}"
     path = cache_folder() / f"{name}.py"
     if not path.exists():
         _write(path, compose.text(spec))
-    loaded = _imported(name, path)
-    return loaded
+    return _imported(name, path)
 
 
 def _imported(name: str, path: Path) -> ModuleType:
@@ -109,7 +108,7 @@ def run(spec: compose.Spec, blocks: int, arguments: tuple[Any, ...]) -> None:
 def _warm(function: Any, spec: compose.Spec, arguments: tuple[Any, ...]) -> None:
     """Compile (or load) by a call over no block at all, with a word on stderr if it is going to take a while."""
     start = time.monotonic()
-    cached = any(cache_folder().glob(f"__pycache__/kernel_{spec.name}_{_fingerprint()}.run-*.nbc"))
+    cached = any(cache_folder().glob(f"__pycache__/kernel_{spec.name}_{_fingerprint(spec)}.run-*.nbc"))
     if not cached:
         print(f"rovval: compiling the {spec.name} plant, once for this machine (some seconds) ...", file=sys.stderr, flush=True)  # noqa: T201
     function(0, 0, *arguments)

@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval import effects
+from rovval.effects._lanes import Lanes
 from rovval.errors import BadInput, UsageProblem, all_at_once
 from rovval.frames import quaternion_from_euler
 from rovval.plant import compose, geometry, kernel, sensors, slots
 from rovval.plant.inputs import Inputs, Prepared, prepare
-from rovval.plant.lower import lower, mass_numbers, pack, with_payload
+from rovval.plant.lower import Lowered, lower, mass_numbers, pack, with_payload
 from rovval.plant.template import RATE_LIMIT, SPEED_LIMIT
 from rovval.vehicle.model import Vehicle, square
 
@@ -33,6 +34,17 @@ class Motion:
     eta: Array
     stopped: Indices
     why: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Lanes:
+    """Where each lane begins, its true first state, and its extra wrench."""
+
+    start: Indices
+    nu: Array
+    eta: Array
+    which: Indices
+    gain: Array
 
 
 class Plant:
@@ -76,29 +88,37 @@ class Plant:
         prepared = prepare(inputs, self.vehicle)
         lowered = lower(self.vehicle, self.model, self.slots, self.index, self.null, beta)
         true_nu, true_eta = sensors.unobserve(self.vehicle, self.index, self.null, beta, nu0, eta0)
-        full = bool(lowered.active) or bool((which >= 0).any())
-        spec = compose.Spec(self._dense, self._advance, full)
-        size, blocks = len(start), -(-len(start) // compose.W)
+        lanes = _Lanes(start, true_nu, true_eta, which, gain)
+        if sensors.settling(lowered.active):
+            first, _, _ = self._run(inputs, prepared, lowered, lanes, min(1, steps))
+            true_nu = sensors.settle(self.vehicle, self.index, self.null, beta, true_nu, (first[-1, :6] - first[0, :6]).T / inputs.dt)
+            lanes = _Lanes(start, true_nu, true_eta, which, gain)
+        out, stopped, codes = self._run(inputs, prepared, lowered, lanes, steps)
+        seen = sensors.observe(
+            self.vehicle, self.index, self.null, beta,
+            sensors.Log(out[:, :6].transpose(2, 0, 1), out[:, 6:].transpose(2, 0, 1), inputs.dt, nu0),
+        )  # fmt: skip
+        why = tuple(f"lane {b} stopped at {stopped[b] * inputs.dt:.1f} s: {REASONS[codes[b]]}" for b in np.flatnonzero(stopped >= 0))
+        return Motion(seen.nu, seen.eta, stopped, why)
+
+    def _run(self, inputs: Inputs, prepared: Prepared, lowered: Lowered, lanes: _Lanes, steps: int) -> tuple[Array, Indices, Indices]:
+        """True motion (steps + 1, 12, B): u v w p q r, x y z phi theta psi; first invalid sample and its reason per lane."""
+        spec = compose.Spec(self._dense, self._advance, bool(lowered.active) or bool((lanes.which >= 0).any()))
+        size, blocks = len(lanes.start), -(-len(lanes.start) // compose.W)
         numbers = _blocked(pack(lowered, spec, inputs.dt, self.substeps))
         late, onset = self._payload(lowered.lanes, blocks)
-        states = _blocked(np.concatenate([true_eta[:, :3], quaternion_from_euler(true_eta[:, 3:]), true_nu], axis=1))
+        states = _blocked(np.concatenate([lanes.eta[:, :3], quaternion_from_euler(lanes.eta[:, 3:]), lanes.nu], axis=1))
         out = np.empty((steps + 1, 12, blocks * compose.W))
         stopped, reason = np.full((blocks, compose.W), -1), np.zeros((blocks, compose.W), dtype=np.int64)
-        limit = prepared.steps_before_gap(start, inputs.hold)
+        limit = prepared.steps_before_gap(lanes.start, inputs.hold)
         kernel.run(
             spec, blocks,
             (
-                numbers, late, onset, states, _flat(start), _flat(limit), _flat(which, -1), _flat(gain), prepared.speed, prepared.log,
-                prepared.t, prepared.extra, *self._geometry, inputs.dt, inputs.hold, steps, self.substeps, out, stopped, reason,
+                numbers, late, onset, states, _flat(lanes.start), _flat(limit), _flat(lanes.which, -1), _flat(lanes.gain), prepared.speed,
+                prepared.log, prepared.t, prepared.extra, *self._geometry, inputs.dt, inputs.hold, steps, self.substeps, out, stopped, reason,
             ),
         )  # fmt: skip
-        seen = sensors.observe(
-            self.vehicle, self.index, self.null, beta,
-            sensors.Log(out[:, :6, :size].transpose(2, 0, 1), out[:, 6:, :size].transpose(2, 0, 1), inputs.dt, nu0),
-        )  # fmt: skip
-        ends, codes = stopped.reshape(-1)[:size], reason.reshape(-1)[:size]
-        why = tuple(f"lane {b} stopped at {ends[b] * inputs.dt:.1f} s: {REASONS[codes[b]]}" for b in np.flatnonzero(ends >= 0))
-        return Motion(seen.nu, seen.eta, ends, why)
+        return out[:, :, :size], stopped.reshape(-1)[:size], reason.reshape(-1)[:size]
 
     def _checked(
         self, inputs: Inputs, start: Indices, steps: int, nu0: Array, eta0: Array, beta: Array,
@@ -114,12 +134,15 @@ class Plant:
         samples, k = inputs.speed.shape
         if k != len(self.vehicle.thruster):
             problems.append(f"{k} thruster speeds for {len(self.vehicle.thruster)} thrusters")
-        if size and (start.min() < 0 or start.max() + steps > samples or steps < 0):
-            problems.append(f"samples {start.min()} to {start.max() + steps} of a log of {samples}")
-        if size and which.max() >= (0 if inputs.extra is None else len(inputs.extra)):
+        last = start.max(initial=0) + steps - (1 if inputs.hold else 0)
+        if start.min(initial=0) < 0 or last >= samples or steps < 0:
+            problems.append(f"samples {start.min(initial=0)} to {last} of a log of {samples}")
+        if which.max(initial=-1) >= (0 if inputs.extra is None else len(inputs.extra)):
             problems.append(f"extra wrench {which.max()} is not in the bank")
         if not problems and not (np.isfinite(nu0).all() and np.isfinite(eta0).all()):
             problems.append("a first state is not finite")
+        if not size:
+            problems.append("no lane at all")
         if problems:
             raise BadInput(all_at_once(problems, "simulate"))
         slots.check_bounds(self.slots, beta)
@@ -129,7 +152,7 @@ class Plant:
             raise UsageProblem(all_at_once(missing, "channels that the log does not hold"))
         return start, nu0, eta0, beta, which, gain
 
-    def _payload(self, lanes: slots.Lanes, blocks: int) -> tuple[Array, Array]:
+    def _payload(self, lanes: Lanes, blocks: int) -> tuple[Array, Array]:
         """Mass numbers after a payload's onset, and the onsets (s; infinite where there is none)."""
         onset = np.full(blocks * compose.W, np.inf)
         if not lanes.payload_mass.any():

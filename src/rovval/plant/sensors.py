@@ -57,6 +57,22 @@ def unobserve(vehicle: Vehicle, index: Mapping[str, int], null: Array, beta: Arr
     return nu, eta
 
 
+def settling(active: frozenset[str]) -> bool:
+    """Whether a sensor with a memory is at work: its first true velocity depends on the acceleration there."""
+    return any(hasattr(effects.module(name), "SETTLES") for name in active)
+
+
+def settle(vehicle: Vehicle, index: Mapping[str, int], null: Array, beta: Array, nu0: Array, acceleration: Array) -> Array:
+    """First true velocities behind a filter that has run for long: u v w plus its time constant times the acceleration (B, 6)."""
+    nu = nu0
+    for name, lanes in _acting(order(), index, null, beta):
+        if tau := getattr(effects.module(name), "SETTLES", ""):
+            p = slots.gather(vehicle, index, name, beta[lanes])
+            nu = nu.copy()
+            nu[lanes, :3] += p[tau][:, None] * acceleration[lanes, :3]
+    return nu
+
+
 def _acting(wanted: tuple[str, ...], index: Mapping[str, int], null: Array, beta: Array) -> list[tuple[str, NDArray[np.int64]]]:
     """Effects and the lanes in which they are not null."""
     found = []

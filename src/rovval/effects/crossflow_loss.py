@@ -1,0 +1,36 @@
+"""Thrust falls as the vehicle moves across its thrusters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from rovval.effects import Effect, Parameter
+from rovval.effects._lanes import Array, Lanes
+from rovval.effects._scalar import Number
+
+REFERENCE = 1.0  # m/s
+
+EFFECT = Effect(
+    name="crossflow_loss",
+    title="Cross-flow loss of thrust",
+    place="input",
+    equation="T <- T (1 - loss v_across / (v_across + 1 m/s) 2): loss is the share lost at 1 m/s across the thruster's axis, twice that "
+    "is never exceeded (linear at low speed as Kim and Chung 2006 measured; diagnosis.md A7).",
+    parameters=(Parameter("loss", "1", -0.1, 0.5, 0.0, 0.1, "0 to 30 % (diagnosis.md A7)"),),
+    signature="weak thrust while moving sideways",
+    confused_with=("inflow_loss", "cross_drag", "quadratic_drag"),
+    separates="surge steps with and without sway speed",
+)
+ROWS = ("loss",)
+
+
+def rows(lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
+    """Loss, the same for each thruster."""
+    return {"loss": np.repeat(p["loss"][:, None], len(lanes.vehicle.thruster), axis=1)}
+
+
+def thrust(loss: Number, T: Number, cross: Number) -> Number:
+    """Thrust under way."""
+    return T * (1.0 - 2.0 * loss * cross / (cross + REFERENCE))
