@@ -53,6 +53,7 @@ def command(
     from rovval.compare import compare
     from rovval.pipeline import tolerances
     from rovval.pipeline.steps import other_velocities, simulated, vehicle_of
+    from rovval.report.json import document as comparison_json
     from rovval.report.table import text
 
     show = output.progress(quiet)
@@ -64,7 +65,7 @@ def command(
     show("simulate", 0.3)
     sim = simulated(run, nominal, model.value, tuple(effect or ()), window)
     comparison = compare(run, sim, other, with_.name if with_ else "")
-    document = report.comparison_json(comparison)
+    document = comparison_json(comparison)
     show("report", 0.7)
     files = {} if json_ and out is None else report.write(comparison, out or Path("reports") / run.id, nominal)
     show("report", 1.0)

@@ -47,10 +47,10 @@ def progress(quiet: bool) -> Progress:
 def places(files: Mapping[str, Path]) -> str:
     """Where the report lies and how to open it, one line a file."""
     how = {
-        "html": "open it in a browser",
-        "rrd": f"`rerun {files.get('rrd', '')}`, or `rovval view`",
-        "md": "text",
-        "json": "for programs",
+        ".html": "open it in a browser",
+        ".rrd": "open it with `rerun FILE` (comes with rovval)",
+        ".md": "text",
+        ".json": "for programs",
     }
-    width = max((len(str(p)) for p in files.values()), default=0)
-    return "\n".join(f"  {p!s:<{width}}  {how.get(kind, kind)}" for kind, p in files.items())
+    width = max((len(str(path)) for path in files.values()), default=0)
+    return "\n".join(f"  {path!s:<{width}}  {how.get(path.suffix, '')}".rstrip() for path in files.values())

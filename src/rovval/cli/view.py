@@ -41,7 +41,7 @@ def command(
     nominal = vehicle_of(run, vehicle)
     comparison = compare(run, simulated(run, nominal, model.value, tuple(effect or ()), 10.0))
     files = report.write(comparison, out or Path("reports") / run.id, nominal)
-    output.result(str(files["rrd"]))
+    output.result(str(files["run.rrd"]))
     if open_:
         output.say("opening the viewer; close it to return", quiet)
-        raise typer.Exit(subprocess.run([sys.executable, "-m", "rerun", str(files["rrd"])], check=False).returncode and 70)
+        raise typer.Exit(subprocess.run([sys.executable, "-m", "rerun", str(files["run.rrd"])], check=False).returncode and 70)

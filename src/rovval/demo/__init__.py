@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 SAMPLE = Path(__file__).parent / "SYNTHETIC_merlin_dive.csv.gz"
 EFFECT = "inflow_loss:loss=0.3"
-SYNTHETIC = f"SYNTHETIC log: a Merlin dive made by rovval's own plant with sensor noise and the effect {EFFECT} left in"
+SYNTHETIC = f"a Merlin dive made by rovval's own plant with sensor noise and the effect {EFFECT} left in"
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +44,7 @@ def run(folder: Path, with_diagnosis: bool, progress: Callable[[str, float], Non
     """Ingest, align, simulate, compare and diagnose the sample; reports and the log itself go to ``folder``."""
     from rovval import report
     from rovval.compare import compare
+    from rovval.report.json import document as comparison_json
     from rovval.report.table import text
     from rovval.simulate import simulate
     from rovval.vehicle import load
@@ -59,7 +60,7 @@ def run(folder: Path, with_diagnosis: bool, progress: Callable[[str, float], Non
     document: dict[str, Any] = {
         "schema": "rovval.demo/1",
         "synthetic": SYNTHETIC,
-        "comparison": report.comparison_json(comparison),
+        "comparison": comparison_json(comparison),
     }
     parts = [text(comparison)]
     if with_diagnosis:

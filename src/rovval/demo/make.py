@@ -30,8 +30,8 @@ LAG_S = 0.25  # chosen: how the shaft follows its set-point
 # one sigma; DVL, depth sensor and gyro of the class that a work-class vehicle carries (chosen from data sheets' orders of magnitude)
 NOISE = {
     "velocity": 0.004,
-    "rate": np.radians(0.05),
-    "angle": np.radians(0.08),
+    "rate": np.radians(0.02),
+    "angle": np.radians(0.02),
     "depth": 0.01,
     "position": 0.03,
     "acceleration": 0.01,
@@ -115,10 +115,13 @@ def as_csv(columns: dict[str, Array]) -> str:
     for i in range(len(next(iter(columns.values())))):
         seconds, tenth = divmod(i, 10)
         stamp = [10, seconds // 60, seconds % 60, 100 * tenth]
-        writer.writerow(
-            [*stamp, *(f"{v[i]:.{DIGITS.get(c, 1 if c.endswith(('_SP', '_PV')) else 4)}f}" for c, v in columns.items())]
-        )
+        writer.writerow([*stamp, *(_cell(name, float(values[i])) for name, values in columns.items())])
     return out.getvalue()
+
+
+def _cell(column: str, value: float) -> str:
+    digits = DIGITS.get(column, 1 if column.endswith(("_SP", "_PV")) else 4)
+    return f"{round(value, digits) + 0.0:.{digits}f}"  # + 0.0: no minus before a zero
 
 
 if __name__ == "__main__":

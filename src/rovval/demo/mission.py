@@ -46,4 +46,4 @@ def speeds(vehicle: Vehicle) -> Array:
 
 
 def _wrench(leg: dict[str, float]) -> Array:
-    return np.array([leg.get(axis, 0.0) * (1.0 if axis != "yaw" else 0.7) for axis in AXES])
+    return np.array([leg.get(axis, 0.0) * (1.0 if axis != "yaw" else 0.4) for axis in AXES])

@@ -123,10 +123,11 @@ class _Bench:
     def compare(self) -> tuple[dict[str, Any], list[Path]]:
         from rovval import report
         from rovval.compare import compare
+        from rovval.report.json import document
 
         comparison = compare(self.run, self.sim)
         files = report.write(comparison, self.task.folder / "comparison", self.vehicle)
-        return {"comparison": report.comparison_json(comparison)}, list(files.values())
+        return {"comparison": document(comparison)}, list(files.values())
 
     def diagnose(self) -> tuple[dict[str, Any], list[Path]]:
         from rovval import report

@@ -14,7 +14,8 @@ from rovval.scenarios import Check, Outcome
 from rovval.scenarios.still_water import swim
 from rovval.vehicle.model import Vehicle, allocation
 
-TOP_RPM = 70.0
+MERLIN_RPM = 70.0  # thesis 4.3
+TABLE_SHARE = 0.25  # chosen: a quarter of the fastest speed in the vehicle's pulse table, where it has one
 MOVE_S, REST_S = 30.0, 30.0
 MOVEMENTS = tuple((axis, sign) for axis in ("surge", "sway", "heave", "yaw") for sign in (1, -1))
 # Thesis 6.4, T0..T6 = VFP VFS VAC HFP HFS HAP HAS: sign of each thrust. Its "upward" is heave -1 here, where z is down, and its
@@ -75,11 +76,12 @@ def movements(vehicle: Vehicle, model: str) -> Outcome:
 
 
 def _pattern(vehicle: Vehicle, axis: str, sign: int) -> Array:
-    """Speeds (k,) rpm that push along one axis, the largest at 70 rpm; a thruster that hardly helps stays still."""
+    """Speeds (k,) rpm that push along one axis, the fastest at 70 rpm (or a quarter of its table); a thruster that hardly helps stays still."""
     wrench = np.zeros(6)
     wrench[AXES.index(axis)] = float(sign)
     share = np.linalg.pinv(allocation(vehicle)) @ wrench
     share = np.where(np.abs(share) > 0.05 * np.abs(share).max(), share, 0.0)
     gain = np.array([t.k_pos if s > 0 else t.k_neg for t, s in zip(vehicle.thruster, share, strict=True)])
     rpm = np.sign(share) * np.sqrt(np.abs(share) / gain)
-    return np.asarray(TOP_RPM * rpm / np.abs(rpm).max())
+    top = TABLE_SHARE * max(vehicle.pulse_table.rpm) if vehicle.pulse_table else MERLIN_RPM
+    return np.asarray(top * rpm / np.abs(rpm).max())
