@@ -16,7 +16,7 @@ EFFECT = Effect(
     parameters=(
         Parameter("north", "1/s", -0.2, 0.2, 0.0, 0.02, "0 to 0.1 1/s (diagnosis.md E2)"),
         Parameter("east", "1/s", -0.2, 0.2, 0.0, 0.02, "0 to 0.1 1/s (diagnosis.md E2)"),
-        Parameter("depth", "m", -10.0, 6000.0, 0.0, 1000.0, "where the shear's part is zero: set it to the log's mean depth"),
+        Parameter("depth", "m", -10.0, 6000.0, 0.0, 10.0, "where the shear's part is zero: set it to the log's mean depth"),
     ),
     signature="a body force that grows with depth and turns with the heading",
     confused_with=("current_constant", "density_gradient", "tether_drag"),
