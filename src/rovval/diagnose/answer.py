@@ -151,10 +151,9 @@ def _not_testable(problem: Problem, library: list[Hypothesis], untestable: dict[
     place = {c: i for i, c in enumerate(problem.data.columns)}
     information = np.einsum("wii->i", problem.data.A) / problem.inflation
     for h in library:
-        if h.label != h.name:
+        if h.directions:
             continue
-        typical = [problem.plant.slots[s].parameter.typical for s in h.linear if s in place]
-        seen = sum(information[place[s]] * t**2 for s, t in zip((s for s in h.linear if s in place), typical, strict=True))
+        seen = sum(information[place[s]] * problem.plant.slots[s].parameter.typical ** 2 for s in h.columns)
         if seen < 9.0:  # detectability below 3 standard errors (research E.6)
             rows.append({"effect": h.name, "why": f"not excited: a typical size would show with {np.sqrt(seen):.1f} standard errors in this log, 3 are needed"})
     return rows

@@ -8,12 +8,12 @@ import numpy as np
 from scipy import stats
 
 from rovval.data import Array
+from rovval.diagnose.library import PRIOR_WIDTH
 from rovval.diagnose.problem import Problem, at
 from rovval.diagnose.products import Products
 
 ROUNDS = 6
 CONVERGED = 0.01  # of a parameter's standard error
-PRIOR_WIDTH = 4.0  # wide prior, in typical sizes: keeps a parameter that the log does not see from running away
 INTERVAL = 0.90
 
 

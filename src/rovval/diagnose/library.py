@@ -13,66 +13,77 @@ from itertools import product
 import numpy as np
 
 from rovval import effects
-from rovval.data import Array
+from rovval.diagnose.linearise import Direction
 from rovval.diagnose.stretches import Stretches
 from rovval.plant import Plant
 
 ONSETS = 9  # starting points for an onset, evenly inside the log
 MOST_STARTS = 12  # of a hypothesis with several such parameters
+PRIOR_WIDTH = 4.0  # wide prior, in typical sizes: keeps a parameter that the log does not see from running away
 
 
 @dataclass(frozen=True, slots=True)
 class Hypothesis:
-    """``name`` as in the contract (``thruster_degraded[HFP]``); ``slots`` all of its parameters; ``linear`` those that are fitted about
-    ``start`` (k,), a parameter point; ``label`` tells starting points apart."""
+    """``name`` as in the contract (``thruster_degraded[HFP]``); ``slots`` all of its parameters; ``columns`` of the linearisation that it
+    sets free, with their prior ``sd``; ``at`` where a starting point moves slots to; ``label`` tells starting points apart."""
 
     name: str
     label: str
     slots: tuple[int, ...]
-    linear: tuple[int, ...]
-    start: Array
-    onset_s: float | None = None
+    columns: tuple[int, ...]
+    sd: tuple[float, ...]
+    at: tuple[tuple[int, float], ...] = ()
+    directions: tuple[Direction, ...] = ()
 
 
-def hypotheses(parts: Sequence[Stretches], only: Sequence[str] | None = None, without: Sequence[str] = ()) -> tuple[list[Hypothesis], dict[str, str]]:
+def hypotheses(parts: Sequence[Stretches], without: Sequence[str] = ()) -> tuple[list[Hypothesis], dict[str, str]]:
     """The competing hypotheses, and those that this log cannot test with the reason.
 
-    ``only`` and ``without`` name effects (``inflow_loss``) or hypotheses (``thruster_degraded[HFP]``) to keep or leave out.
+    ``without`` names effects (``inflow_loss``) or hypotheses (``thruster_degraded[HFP]``) to leave out.
     """
     plant, found, untestable = parts[0].plant, list[Hypothesis](), dict[str, str]()
     for name, slots in plant.hypotheses.items():
         effect = effects.load(name.partition("[")[0])
-        listed = {name, effect.name}
-        if (only is not None and not listed & set(only)) or listed & set(without):
+        if {name, effect.name} & set(without):
             continue
         missing = [c for c in effect.needs if not all(part.run.measured(c) for part in parts)]
         if missing:
             untestable[name] = f"needs {', '.join(missing)}, which this log does not hold"
             continue
-        found.extend(_starts(plant, name, effect, slots, parts))
+        next_id = len(plant.slots) + sum(len(h.directions) for h in found)
+        found.extend(_starts(plant, name, effect, slots, parts, next_id))
     return found, untestable
 
 
-def _starts(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], parts: Sequence[Stretches]) -> list[Hypothesis]:
-    start, grids = plant.null.copy(), dict[int, tuple[float, ...]]()
-    for slot in slots:
-        parameter = plant.slots[slot].parameter
-        if parameter.name == "onset":
-            first, last = float(parts[0].start[0]), float(parts[0].start[-1])
-            dt = parts[0].run.dt
-            share = np.arange(1, ONSETS + 1) / (ONSETS + 1)
-            grids[slot] = tuple(float((first + (last - first) * s) * dt) for s in share)
-        elif parameter.name in effect.grid:
-            grids[slot] = tuple(effect.grid[parameter.name])
-    linear = tuple(s for s in slots if s not in grids)
+def _starts(
+    plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], parts: Sequence[Stretches], next_id: int
+) -> list[Hypothesis]:
+    """One hypothesis, or one for each starting point of the parameters that linearisation at the null value cannot see."""
+    grids = _grids(plant, effect, slots, parts)
     if not grids:
-        return [Hypothesis(name, name, slots, linear, start)]
+        return [Hypothesis(name, name, slots, slots, tuple(PRIOR_WIDTH * plant.slots[s].parameter.typical for s in slots))]
+    linear = tuple(s for s in slots if s not in grids)
     points = list(product(*grids.values()))
     chosen = points if len(points) <= MOST_STARTS else [points[i] for i in np.linspace(0, len(points) - 1, MOST_STARTS).astype(int)]
     found = []
     for number, point in enumerate(chosen):
-        at = start.copy()
-        at[list(grids)] = point
-        onset = next((v for s, v in zip(grids, point, strict=True) if plant.slots[s].parameter.name == "onset"), None)
-        found.append(Hypothesis(name, f"{name}@{number}", slots, linear, at, onset))
+        at = tuple(zip(grids, point, strict=True))
+        own = linear or (-1,)
+        directions = tuple(Direction(next_id + number * len(own) + i, at, slot) for i, slot in enumerate(own))
+        sd = tuple(PRIOR_WIDTH * (plant.slots[s].parameter.typical if s >= 0 else 0.5) for s in own)
+        found.append(Hypothesis(name, f"{name}@{number}", slots, tuple(d.id for d in directions), sd, at, directions))
     return found
+
+
+def _grids(plant: Plant, effect: effects.Effect, slots: tuple[int, ...], parts: Sequence[Stretches]) -> dict[int, tuple[float, ...]]:
+    """Starting values by slot: onsets spread over the log, other grids as the effect states them, held within the bounds."""
+    found = {}
+    for slot in slots:
+        parameter = plant.slots[slot].parameter
+        if parameter.name == "onset":
+            first, last = float(parts[0].start[0]), float(parts[0].start[-1])
+            share = np.arange(1, ONSETS + 1) / (ONSETS + 1)
+            found[slot] = tuple(float((first + (last - first) * s) * parts[0].run.dt) for s in share)
+        elif parameter.name in effect.grid:
+            found[slot] = tuple(v for v in effect.grid[parameter.name] if parameter.low <= v <= parameter.high)
+    return {slot: values for slot, values in found.items() if values}

@@ -6,6 +6,7 @@ need is kept as inner products per window (`Products`), after the initial state 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,9 +14,20 @@ import numpy as np
 from rovval.data import Array
 from rovval.diagnose.stretches import ANGLES, VELOCITY_CHANNELS, Stretches, difference, predicted
 
+POSE_INDEX = {6: 3, 7: 4, 8: 2, 9: 5}  # start states after the six velocities: roll, pitch, depth, heading
 LANES = 20_000  # lanes a call, to bound memory (about 200 MB)
 STEP = 0.25  # finite-difference step as a share of a parameter's typical size
 STATE_STEP = (0.02, 0.02, 0.02, 0.01, 0.01, 0.01, 0.01, 0.01, 0.02)  # m/s, rad/s, rad, m: about twice the noise of good sensors
+
+
+@dataclass(frozen=True, slots=True)
+class Direction:
+    """A column that does not start at the point reached but where the slots ``at`` are moved to (an onset, a period): the sensitivity
+    there to ``slot``, or, where ``slot`` is -1, the change from the point reached to there. ``id`` is past the plant's slots."""
+
+    id: int
+    at: tuple[tuple[int, float], ...]
+    slot: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,42 +56,85 @@ def simulate_windows(stretches: Stretches, beta: Array, nu0: Array, eta0: Array,
     return out, fine
 
 
-def linearise(stretches: Stretches, beta: Array, columns: tuple[int, ...]) -> Linear:
+def linearise(stretches: Stretches, beta: Array, columns: tuple[int, ...], directions: Sequence[Direction] = ()) -> Linear:
     """Residual and sensitivities about ``beta`` (k,) for every window."""
-    windows, slots = stretches.count, stretches.plant.slots
     states = _state_steps(stretches)
-    lanes = [(0, 0.0, -1)]  # kind, step, index: nominal first
-    lanes += [(1, step, i) for i, step in states]
-    for column in columns:
-        parameter = slots[column].parameter
-        step = STEP * parameter.typical
-        up = step if beta[column] + step <= parameter.high else -step
-        lanes.append((2, up, column))
-        if parameter.low <= beta[column] - up <= parameter.high:
-            lanes.append((2, -up, column))
-    b, nu, eta = _perturbed(stretches, beta, lanes)
-    which = np.tile(np.arange(windows), len(lanes))
-    out, fine = simulate_windows(stretches, b, nu, eta, which)
-    shape = (len(lanes), windows, stretches.steps + 1, len(stretches.channels))
-    out, fine = out.reshape(shape), fine.reshape(len(lanes), windows)
+    lanes = _lanes(stretches, beta, states, columns, directions)
+    windows = stretches.count
+    b = np.repeat(np.stack([lane.beta for lane in lanes]), windows, axis=0)
+    nu = np.concatenate([stretches.nu0 + lane.nu for lane in lanes])
+    eta = np.concatenate([stretches.eta0 + lane.eta for lane in lanes])
+    out, fine = simulate_windows(stretches, b, nu, eta, np.tile(np.arange(windows), len(lanes)))
+    out = out.reshape(len(lanes), windows, stretches.steps + 1, len(stretches.channels))
     nominal = out[0]
-    J = np.zeros((*nominal.shape, len(states)))
-    S = np.zeros((*nominal.shape, len(columns)))
-    place = {column: i for i, column in enumerate(columns)}
-    pairs: dict[int, list[tuple[float, int]]] = {}
-    for lane, (kind, step, index) in enumerate(lanes):
-        if kind == 1:
-            J[..., lane - 1] = difference(stretches, out[lane], nominal) / step
-        elif kind == 2:
-            pairs.setdefault(index, []).append((step, lane))
-    for column, steps in pairs.items():
-        if len(steps) == 2:
-            (up, a), (down, c) = steps
-            S[..., place[column]] = difference(stretches, out[a], out[c]) / (up - down)
-        else:
-            S[..., place[column]] = difference(stretches, out[steps[0][1]], nominal) / steps[0][0]
+    ids = (*columns, *(d.id for d in directions))
+    J, S = np.zeros((*nominal.shape, len(states))), np.zeros((*nominal.shape, len(ids)))
+    place = {column: i for i, column in enumerate(ids)}
+    for i, lane in enumerate(lanes):
+        if lane.state >= 0:
+            J[..., lane.state] = difference(stretches, out[i], nominal) / lane.step
+        elif lane.column >= 0 and lane.step:
+            S[..., place[lane.column]] = difference(stretches, out[i], out[lane.against]) / lane.step
     r = np.where(stretches.ok, difference(stretches, stretches.y, nominal), 0.0)
-    return Linear(r, S, J, columns, fine.all(axis=0))
+    return Linear(r, S, J, ids, fine.reshape(len(lanes), windows).all(axis=0))
+
+
+@dataclass(frozen=True, slots=True)
+class Lane:
+    """One simulation of every window: parameters, offset of the start states, and which derivative it serves: (its output less that
+    of lane ``against``) / ``step`` for a state or a column; a step of 0 serves none."""
+
+    beta: Array
+    nu: Array
+    eta: Array
+    state: int = -1
+    column: int = -1
+    step: float = 0.0
+    against: int = 0
+
+
+def _lanes(
+    stretches: Stretches, beta: Array, states: list[tuple[int, float]], columns: tuple[int, ...], directions: Sequence[Direction]
+) -> list[Lane]:
+    """Nominal first, then start states, then parameters (central differences inside the bounds), then directions."""
+    still = np.zeros(6)
+    lanes = [Lane(beta, still, still)]
+    for i, (index, step) in enumerate(states):
+        unit = np.zeros(6)
+        unit[index if index < 6 else POSE_INDEX[index]] = step
+        lanes.append(Lane(beta, unit if index < 6 else still, still if index < 6 else unit, state=i, step=step))
+    for column in columns:
+        up, down = _both_ways(stretches, beta, column)
+        lanes.append(Lane(_moved(beta, [(column, beta[column] + down)]), still, still) if down else lanes[0])
+        lanes.append(Lane(_moved(beta, [(column, beta[column] + up)]), still, still, column=column, step=up - down, against=len(lanes) - 1))
+    bases: dict[tuple[tuple[int, float], ...], int] = {}
+    for d in directions:
+        there = _moved(beta, list(d.at))
+        if d.slot < 0:
+            lanes.append(Lane(there, still, still, column=d.id, step=1.0))
+            continue
+        if d.at not in bases:
+            bases[d.at] = len(lanes)
+            lanes.append(Lane(there, still, still))
+        up, _ = _both_ways(stretches, there, d.slot)
+        lanes.append(Lane(_moved(there, [(d.slot, there[d.slot] + up)]), still, still, column=d.id, step=up, against=bases[d.at]))
+    return lanes
+
+
+def _both_ways(stretches: Stretches, beta: Array, column: int) -> tuple[float, float]:
+    """Steps up and down of a parameter that stay within its bounds; 0 for the way that is barred."""
+    parameter = stretches.plant.slots[column].parameter
+    step = STEP * parameter.typical
+    up = step if beta[column] + step <= parameter.high else 0.0
+    down = -step if beta[column] - step >= parameter.low else 0.0
+    return (up, down) if up or down else (parameter.high - beta[column], 0.0)
+
+
+def _moved(beta: Array, to: Sequence[tuple[int, float]]) -> Array:
+    there = beta.copy()
+    for slot, value in to:
+        there[slot] = value
+    return there
 
 
 def residual(stretches: Stretches, beta: Array) -> tuple[Array, np.ndarray]:
@@ -97,22 +152,6 @@ def _state_steps(stretches: Stretches) -> list[tuple[int, float]]:
     if "psi" in stretches.channels:
         chosen.append((9, STATE_STEP[7]))
     return chosen
-
-
-def _perturbed(stretches: Stretches, beta: Array, lanes: list[tuple[int, float, int]]) -> tuple[Array, Array, Array]:
-    """Parameters and start states of every lane of every window, lanes outermost."""
-    m, count = stretches.count, len(lanes)
-    b = np.tile(beta, (count, m, 1))
-    nu, eta = np.tile(stretches.nu0, (count, 1, 1)), np.tile(stretches.eta0, (count, 1, 1))
-    column_of_state = {6: 3, 7: 4, 8: 2, 9: 5}
-    for lane, (kind, step, index) in enumerate(lanes):
-        if kind == 2:
-            b[lane, :, index] += step
-        elif kind == 1 and index < 6:
-            nu[lane, :, index] += step
-        elif kind == 1:
-            eta[lane, :, column_of_state[index]] += step
-    return b.reshape(count * m, -1), nu.reshape(count * m, 6), eta.reshape(count * m, 6)
 
 
 def state_spread(stretches: Stretches) -> Array:

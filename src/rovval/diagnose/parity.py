@@ -18,6 +18,7 @@ from rovval.diagnose.products import Products
 from rovval.diagnose.stretches import Stretches
 from rovval.effects import load
 from rovval.frames import euler_rates, rotation_from_euler, wrap
+from rovval.plant.sensors import Log, observe
 
 ROW_EVERY = 10  # samples between rows of a window: poses 1 s apart, whose errors are nearly independent
 RELATIONS = ("x", "y", "z", "phi", "theta", "psi")
@@ -67,8 +68,8 @@ def parity(stretches: Stretches, columns: tuple[int, ...]) -> Parity:
         step = STEP * parameter.typical
         beta = stretches.plant.null.copy()
         beta[column] += step
-        seen_nu, seen_eta = stretches.plant.observe(nu, eta, np.tile(beta, (len(nu), 1)), stretches.driven.inputs.dt)
-        traces[..., columns.index(column)] = wrap_angles(_drift(seen_nu, seen_eta, stretches.run.dt) - nominal) / step
+        seen = _seen(stretches, nu, eta, beta)
+        traces[..., columns.index(column)] = wrap_angles(_drift(seen.nu, seen.eta, stretches.run.dt) - nominal) / step
     keep = [i for i, name in enumerate(RELATIONS) if whole[i]]
     usable = _complete(stretches)
     nominal[~usable], traces[~usable] = 0.0, 0.0
@@ -117,6 +118,13 @@ def wrap_angles(rows: Array) -> Array:
     out = np.array(rows)
     out[..., 3:] = wrap(out[..., 3:])
     return out
+
+
+def _seen(stretches: Stretches, nu: Array, eta: Array, beta: Array) -> Log:
+    """The measured motion as sensors with the fault ``beta`` (k,) would have logged it."""
+    plant = stretches.plant
+    log = Log(nu, eta, stretches.run.dt, nu[:, 0])
+    return observe(plant.vehicle, plant.index, plant.null, np.tile(beta, (len(nu), 1)), log)
 
 
 def _measured(stretches: Stretches) -> tuple[Array, Array, Flags]:

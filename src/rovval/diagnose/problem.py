@@ -14,7 +14,7 @@ import numpy as np
 from rovval.data import Array
 from rovval.diagnose.contest import Fold, Prior, fit, folds_of, inflation_of
 from rovval.diagnose.library import Hypothesis
-from rovval.diagnose.linearise import Linear, linearise, state_spread
+from rovval.diagnose.linearise import Direction, Linear, linearise, state_spread
 from rovval.diagnose.parity import Parity, parity
 from rovval.diagnose.products import Products, joined, products, start_corrected
 from rovval.diagnose.stretches import Stretches
@@ -57,29 +57,35 @@ def pose(parts: tuple[Stretches, ...], library: Sequence[Hypothesis], slop: floa
     plant = parts[0].plant
     origin = parse_settings(plant, carried_effects(plant.vehicle))
     prior = slop_prior(plant, slop)
-    plain = {s for h in library if h.label == h.name for s in h.linear}
-    with_slop = tuple(sorted({*plain, *prior.sd}))
-    linear = tuple(linearise(part, origin, with_slop) for part in parts)
+    columns, directions = columns_of(library, prior)
+    linear = tuple(linearise(part, origin, columns, directions) for part in parts)
     first = _variance(parts, linear, prior)
     run_of_window = np.concatenate([np.full(part.count, i) for i, part in enumerate(parts)])
     folds = folds_of(run_of_window)
-    checks = tuple(parity(part, with_slop) for part in parts)
+    checks = tuple(parity(part, columns) for part in parts)
     early = _joined(parts, linear, first)
-    everything = Prior({c: plant.slots[c].parameter.typical for c in with_slop})
+    everything = Prior({c: plant.slots[c].parameter.typical for c in columns})
     inflation = inflation_of(early, fit(early, folds, everything, 10.0).step)
     best = fit(early, folds, everything, inflation).step
     variance = first + _unexplained(parts, linear, first, best)
     dynamic = _joined(parts, linear, variance)
     inflation = inflation_of(dynamic, fit(dynamic, folds, everything, inflation).step)
-    data = dynamic + joined([check.products(inflation) for check in checks])
+    data = dynamic + joined([check.moved(origin, dynamic.columns).products(inflation) for check in checks])
     return Problem(parts, origin, variance, prior, linear, dynamic, data, checks, folds, inflation, run_of_window)
 
 
-def at(problem: Problem, beta: Array, columns: tuple[int, ...]) -> tuple[Products, Products]:
+def columns_of(library: Sequence[Hypothesis], slop: Prior) -> tuple[tuple[int, ...], tuple[Direction, ...]]:
+    """Plant slots that the library and slop need as columns, and the directions of starting points."""
+    directions = tuple(d for h in library for d in h.directions)
+    plain = {c for h in library if not h.directions for c in h.columns}
+    return tuple(sorted({*plain, *slop.sd})), directions
+
+
+def at(problem: Problem, beta: Array, columns: tuple[int, ...], directions: Sequence[Direction] = ()) -> tuple[Products, Products]:
     """Products of every window about ``beta`` for the given columns: (dynamics alone, dynamics and parity)."""
-    linear = tuple(linearise(part, beta, columns) for part in problem.parts)
+    linear = tuple(linearise(part, beta, columns, directions) for part in problem.parts)
     dynamic = _joined(problem.parts, linear, problem.variance)
-    moved = joined([check.moved(beta, columns).products(problem.inflation) for check in problem.parity])
+    moved = joined([check.moved(beta, dynamic.columns).products(problem.inflation) for check in problem.parity])
     return dynamic, dynamic + moved
 
 

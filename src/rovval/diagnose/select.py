@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.data import Array
-from rovval.diagnose.confirm import PRIOR_WIDTH, Confirmed, confirm
-from rovval.diagnose.contest import Fit, Prior, fit
+from rovval.diagnose.confirm import Confirmed, confirm
+from rovval.diagnose.contest import Fit, Prior, contest, fit
 from rovval.diagnose.detect import null_gains
-from rovval.diagnose.library import Hypothesis
-from rovval.diagnose.problem import Problem, at
+from rovval.diagnose.library import PRIOR_WIDTH, Hypothesis
+from rovval.diagnose.problem import Problem, at, columns_of
 from rovval.diagnose.products import Products
 from rovval.diagnose.separate import group
 
@@ -60,18 +60,18 @@ def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Cal
     p, gain = 1.0, 0.0
     for round_number in range(MOST):
         progress(f"screening {len(library)} hypotheses, round {round_number + 1}", 0.3 + 0.2 * round_number)
-        bank = _bank(problem, library, beta)
+        data = _bank(problem, library, beta, chosen)
         open_now = [h for h in library if h.name not in {n.hypothesis.name for n in named}]
-        over_slop, p = _detect(problem, bank, open_now, chosen, seed + round_number)
+        over_slop, p = _detect(problem, data, open_now, chosen, seed + round_number)
         best_share = max(over_slop.values(), default=0.0)
-        contest = _name(problem, bank, open_now, chosen)
+        names = _name(problem, data, open_now, chosen)
         if not ranking:
-            ranking = _ranking(contest)
+            ranking = _ranking(names)
         gain = best_share
         if p > FALSE_ALARM or best_share < LEAST_GAIN:
             break
         progress("re-simulating the finalists", 0.4 + 0.2 * round_number)
-        fitted = _finalists(problem, bank, open_now, contest, over_slop, beta, chosen)
+        fitted = _finalists(problem, data, names, over_slop, beta, chosen)
         if not fitted:
             break
         losses = {h.name: c.loss for h, c in fitted}
@@ -83,66 +83,39 @@ def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Cal
     return Selection(tuple(named), final, ranking, p, gain)
 
 
-@dataclass(frozen=True, slots=True)
-class Bank:
-    """Products about the current point, and those of each starting point whose signatures differ from it, by label."""
-
-    main: Products
-    special: dict[str, Products]
-
-    def of(self, h: Hypothesis) -> Products:
-        return self.special.get(h.label, self.main)
-
-
-def _bank(problem: Problem, library: list[Hypothesis], beta: Array) -> Bank:
-    """Linearise about the point reached; hypotheses with a starting point of their own get their columns from there."""
-    slots = tuple(sorted({*problem.slop.sd, *(s for h in library for s in h.linear if h.label == h.name)}))
-    at_null = bool((beta == problem.origin).all())
-    main = problem.data if at_null and set(slots) <= set(problem.data.columns) else at(problem, beta, slots)[1]
-    special: dict[str, Products] = {}
-    for h in library:
-        if h.label == h.name:
-            continue
-        moved = beta.copy()
-        outside = [s for s in h.slots if s not in h.linear]
-        moved[outside] = h.start[outside]
-        special[h.label] = at(problem, moved, tuple(sorted({*problem.slop.sd, *h.linear})))[1]
-    return Bank(main, special)
+def _bank(problem: Problem, library: list[Hypothesis], beta: Array, chosen: tuple[int, ...]) -> Products:
+    """Linearise everything about the point reached."""
+    if (beta == problem.origin).all():
+        return problem.data
+    columns, directions = columns_of(library, problem.slop)
+    return at(problem, beta, tuple(sorted({*columns, *chosen})), directions)[1]
 
 
 def _free(problem: Problem, slots: tuple[int, ...]) -> Prior:
     return Prior({s: PRIOR_WIDTH * problem.plant.slots[s].parameter.typical for s in slots})
 
 
-def _detect(problem: Problem, bank: Bank, library: list[Hypothesis], chosen: tuple[int, ...], seed: int) -> tuple[dict[str, float], float]:
+def _prior(h: Hypothesis) -> Prior:
+    return Prior(dict(zip(h.columns, h.sd, strict=True)))
+
+
+def _detect(problem: Problem, data: Products, library: list[Hypothesis], chosen: tuple[int, ...], seed: int) -> tuple[dict[str, float], float]:
     """Held-out gain of each hypothesis on top of slop, as a share of the loss that slop leaves; p-value of the best."""
-    base = problem.slop.widened(_free(problem, tuple(s for s in chosen if s in bank.main.columns)))
-    base_fit = fit(bank.main, problem.folds, base, problem.inflation)
-    total = float(base_fit.loss.sum())
-    share = {}
-    for h in library:
-        data = bank.of(h)
-        here = problem.slop.widened(_free(problem, tuple(s for s in (*chosen, *h.linear) if s in data.columns)))
-        start = total if data is bank.main else float(
-            fit(data, problem.folds, problem.slop.widened(_free(problem, tuple(s for s in chosen if s in data.columns))), problem.inflation).loss.sum()
-        )
-        share[h.label] = float((start - fit(data, problem.folds, here, problem.inflation).loss.sum()) / start)
-    everything = fit(bank.main, problem.folds, Prior({c: problem.plant.slots[c].parameter.typical for c in bank.main.columns}), problem.inflation).step
-    plain = {h.label: _free(problem, h.linear) for h in library if h.label == h.name}
-    null = null_gains(bank.main, problem.folds, base, problem.slop, plain, problem.inflation, everything, seed)
+    base = problem.slop.widened(_free(problem, chosen))
+    total, fits = contest(data, problem.folds, base, {h.label: _prior(h) for h in library}, problem.inflation)
+    left = float(total.loss.sum())
+    share = {label: float((left - one.loss.sum()) / left) for label, one in fits.items()}
+    slots = [c for c in data.columns if c < len(problem.plant.slots)]
+    everything = fit(data, problem.folds, Prior({c: problem.plant.slots[c].parameter.typical for c in slots}), problem.inflation).step
+    null = null_gains(data, problem.folds, base, problem.slop, {h.label: _prior(h) for h in library}, problem.inflation, everything, seed)
     return share, null.p_value(max(share.values(), default=0.0))
 
 
-def _name(problem: Problem, bank: Bank, library: list[Hypothesis], chosen: tuple[int, ...]) -> dict[str, tuple[Hypothesis, Fit, float]]:
+def _name(problem: Problem, data: Products, library: list[Hypothesis], chosen: tuple[int, ...]) -> dict[str, tuple[Hypothesis, Fit, float]]:
     """Held-out contest of names with only a trace of slop: label -> hypothesis, fit, share of the loss that it takes away."""
-    tight = Prior({s: NAMING_SLOP * sd for s, sd in problem.slop.sd.items()})
-    out = {}
-    for h in library:
-        data = bank.of(h)
-        base = tight.widened(_free(problem, tuple(s for s in chosen if s in data.columns)))
-        one = fit(data, problem.folds, base.widened(_free(problem, h.linear)), problem.inflation)
-        out[h.label] = (h, one, float(1.0 - one.loss.sum() / data.c.sum()))
-    return out
+    tight = Prior({s: NAMING_SLOP * sd for s, sd in problem.slop.sd.items()}).widened(_free(problem, chosen))
+    _, fits = contest(data, problem.folds, tight, {h.label: _prior(h) for h in library}, problem.inflation)
+    return {h.label: (h, fits[h.label], float(1.0 - fits[h.label].loss.sum() / data.c.sum())) for h in library}
 
 
 def _ranking(contest: dict[str, tuple[Hypothesis, Fit, float]]) -> tuple[tuple[str, float], ...]:
@@ -153,30 +126,30 @@ def _ranking(contest: dict[str, tuple[Hypothesis, Fit, float]]) -> tuple[tuple[s
 
 
 def _finalists(
-    problem: Problem, bank: Bank, library: list[Hypothesis], contest: dict[str, tuple[Hypothesis, Fit, float]],
-    over_slop: dict[str, float], beta: Array, chosen: tuple[int, ...],
+    problem: Problem, data: Products, names: dict[str, tuple[Hypothesis, Fit, float]], over_slop: dict[str, float], beta: Array, chosen: tuple[int, ...]
 ) -> list[tuple[Hypothesis, Confirmed]]:
     """The best starting point of each of the best hypotheses, refitted by re-simulation jointly with what was chosen before."""
     threshold = 0.5 * max(over_slop.values())
-    ordered = sorted((v for label, v in contest.items() if over_slop[label] > threshold), key=lambda item: -item[2])
+    ordered = sorted((v for label, v in names.items() if over_slop[label] > threshold), key=lambda item: -item[2])
     seen: set[str] = set()
     fitted = []
     for h, one, _ in ordered:
         if h.name in seen or len(seen) >= FINALISTS:
             continue
         seen.add(h.name)
-        start = _start(problem, bank, h, one, beta)
+        start = _start(problem, data, h, one, beta)
         fitted.append((h, confirm(problem, start, tuple(dict.fromkeys((*chosen, *h.slots))))))
     return fitted
 
 
-def _start(problem: Problem, bank: Bank, h: Hypothesis, one: Fit, beta: Array) -> Array:
+def _start(problem: Problem, data: Products, h: Hypothesis, one: Fit, beta: Array) -> Array:
     """The linear answer as the starting point of the re-simulation, inside the parameters' bounds."""
     start = beta.copy()
-    outside = [s for s in h.slots if s not in h.linear]
-    start[outside] = h.start[outside]
-    place = bank.of(h).place(h.linear)
-    for slot, step in zip(h.linear, one.step[place], strict=True):
-        parameter = problem.plant.slots[slot].parameter
-        start[slot] = float(np.clip(start[slot] + step, parameter.low, parameter.high))
+    for slot, value in h.at:
+        start[slot] = value
+    free = [d.slot for d in h.directions] or list(h.columns)
+    for slot, step in zip(free, one.step[data.place(h.columns)], strict=True):
+        if slot >= 0:
+            parameter = problem.plant.slots[slot].parameter
+            start[slot] = float(np.clip(start[slot] + step, parameter.low, parameter.high))
     return start
