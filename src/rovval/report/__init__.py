@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rovval.data import Comparison, SimResult
@@ -28,3 +28,30 @@ def write(comparison: Comparison, folder: Path, vehicle: Vehicle, corrected: Sim
             "run.rrd": lambda path: recording.write(comparison, path, vehicle, corrected),
         },
     )
+
+
+def write_diagnosis(
+    document: Mapping[str, Any],
+    folder: Path,
+    comparison: Comparison | None = None,
+    vehicle: Vehicle | None = None,
+    corrected: SimResult | None = None,
+) -> Mapping[str, Path]:
+    """Write diagnosis.json, diagnosis.md and diagnosis.html into ``folder``, whole or not at all; name -> path.
+
+    With a comparison and its vehicle it also writes run.rrd, with the corrected simulation as its third trace.
+    """
+    from rovval.report import diagnosis_html, diagnosis_markdown, json, recording
+    from rovval.report.files import Writer, write_all
+
+    if comparison is not None and "synthetic" not in document and "synthetic" in comparison.run.properties:
+        document = {**document, "synthetic": comparison.run.properties["synthetic"]}
+    recorded = comparison is not None and vehicle is not None
+    files: dict[str, str | Writer] = {
+        "diagnosis.json": json.text(document),
+        "diagnosis.md": diagnosis_markdown.text(document),
+        "diagnosis.html": diagnosis_html.text(document, recorded),
+    }
+    if comparison is not None and vehicle is not None:
+        files["run.rrd"] = lambda path: recording.write(comparison, path, vehicle, corrected)
+    return write_all(Path(folder), files)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from textwrap import wrap
+from typing import Any
 
 from rovval import metrics
 from rovval.data import ChannelError, Comparison
@@ -67,6 +68,13 @@ def _other(c: Comparison) -> list[list[str]]:
             numbers = [number(None if v is None else v * k) for v in pairs]
             rows.append([axis if main else "", unit, *numbers, skill(row.skill) if main else "", str(row.n) if main else ""])
     return rows
+
+
+def diagnosis_text(document: Mapping[str, Any]) -> str:
+    """A diagnosis (schema rovval.diagnosis/1) for a terminal, the sentence first."""
+    from rovval.report import diagnosis_table
+
+    return diagnosis_table.text(document)
 
 
 def skill(value: float | None) -> str:

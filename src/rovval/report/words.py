@@ -31,7 +31,7 @@ def per_cent(share: float | None) -> str:
     if share is None or not isfinite(share):
         return "-"
     value = 100.0 * share
-    return f"{value:.0f} %" if abs(value) >= 1.0 or value == 0.0 else f"{value:.1f} %"
+    return f"{value:.1f} %" if 0.05 <= abs(value) < 0.95 else f"{value:.0f} %".replace("-0 %", "0 %")
 
 
 def listed(words: Iterable[str]) -> str:

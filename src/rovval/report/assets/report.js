@@ -29,7 +29,7 @@
         spanGaps: false,
       }));
       return new uPlot({
-        width: host.clientWidth, height: host.clientHeight, legend: { show: false }, padding: [8, 6, 0, 0],
+        width: host.clientWidth, height: host.clientHeight, legend: { show: false }, padding: [8, 6, p.bare ? 8 : 0, 0],
         cursor: { sync: { key: p.x, setSeries: false }, drag: { x: true, y: false }, points: { size: 5 }, y: false },
         scales: { x: { time: false } },
         axes: [{ ...axis, show: !p.bare, size: 26, values: (u, v) => v.map((t, i) => (i === v.length - 1 ? t + " s" : t)) },

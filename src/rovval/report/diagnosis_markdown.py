@@ -1,0 +1,76 @@
+"""A diagnosis as Markdown."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rovval.report import diagnosis_words as dw
+from rovval.report.markdown import bullets, grid
+from rovval.report.words import in_degrees, number, per_cent
+
+
+def text(document: dw.Document) -> str:
+    """The whole report."""
+    d = document
+    said = dw.sentences(d)
+    parts = [f"# {dw.run(d)}: diagnosis", f"> **SYNTHETIC DATA: {d['synthetic']}**" if d.get("synthetic") else ""]
+    parts += [f"**{said[0]}**", *said[1:], bullets(f"{k}: {v}" for k, v in dw.facts(d).items() if v)]
+    parts += _under("## Where the gap lies", _axes(d), bullets(dw.where(d, 99)), _changes(d))
+    for cause in d.get("causes") or ():
+        parts += _under(f"## Cause: {' or '.join(f'`{e}`' for e in dw.group(cause))}", *_cause(cause))
+    ranking = [[f"`{r['effect']}`", number(r.get("score"))] for r in d.get("ranking") or ()]
+    parts += _under("## Ranking", grid(["effect", "score"], ranking) if ranking else "")
+    parts += _under("## Sensors, by kinematics alone", _parity(d))
+    harm = [f"{h.get('axis')}: error changes by {per_cent(h.get('change'))}" for h in d.get("harm") or ()]
+    parts += _under("## What gets worse", bullets(harm))
+    flight = d.get("manoeuvre") or {}
+    parts += _under("## What to fly next", dw.next_flight(d), flight.get("text", ""), _schedule(flight))
+    why = [f"`{n['effect']}`: {n.get('why', '')}" for n in d.get("not_testable") or ()]
+    parts += _under("## Not testable in this log", bullets(why))
+    return "\n\n".join(p for p in [*parts, f"*{dw.SCOPE}*"] if p) + "\n"
+
+
+def _under(title: str, *parts: str) -> list[str]:
+    return [title, *parts] if any(parts) else []
+
+
+def _axes(d: dw.Document) -> str:
+    rows = []
+    for axis, row in ((d.get("gap") or {}).get("axes") or {}).items():
+        factor, unit = in_degrees(1.0, row.get("unit", "1"))
+        values = [f"{number(row[k] * factor)} {unit}" if row.get(k) is not None else "-" for k in ("rms", "floor_rms")]
+        rows.append([axis, *values, number(row.get("iae")), per_cent(row.get("share"))])
+    return grid(["axis", "rms", "floor", "IAE, SI", "share"], rows) if rows else ""
+
+
+def _changes(d: dw.Document) -> str:
+    points = (d.get("gap") or {}).get("change_points_s") or ()
+    return f"The gap changes at {', '.join(f'{number(t, 4)} s' for t in points)}." if points else ""
+
+
+def _cause(cause: dw.Document) -> list[str]:
+    s = cause.get("shrinkage") or {}
+    lines = [dw.parameter(name, entry) for name, entry in (cause.get("parameters") or {}).items()]
+    lines += [f"begins at {number(cause['onset_s'])} s"] if cause.get("onset_s") is not None else []
+    lines += [f"probability {number(cause['probability'], 2)}"] if cause.get("probability") is not None else []
+    lines += [f"the gap shrinks by {dw.interval(s)}"] if s.get("total") is not None else []
+    axes = [[a, per_cent(v)] for a, v in (s.get("axes") or {}).items() if v is not None]
+    return [bullets(lines), grid(["axis", "shrinks by"], axes) if axes else ""]
+
+
+def _parity(d: dw.Document) -> str:
+    rows = []
+    for c in d.get("parity") or ():
+        value = dw.parameter("v", c)[4:] if c.get("value") is not None else "-"
+        real = "yes" if c.get("significant") else "no"
+        rows.append([str(c.get("check", "")), str(c.get("fault") or "-"), value, real, str(c.get("note") or "")])
+    return grid(["check", "fault", "value", "real", "note"], rows, 2) if rows else ""
+
+
+def _schedule(flight: Any) -> str:
+    steps = flight.get("schedule") or ()
+    rows = [
+        [f"{s['t_s']:g}", f"{s['duration_s']:g}", ", ".join(f"{k} {v:g}" for k, v in (s.get("thrusters") or {}).items()) or "all 0"]
+        for s in steps
+    ]
+    return grid(["t, s", "for, s", "thrusters, rpm"], rows, 3) if rows else ""

@@ -1,0 +1,101 @@
+"""The reports of a diagnosis, whole and with parts missing."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from report_cases import make_diagnosis, make_run, make_sim
+from rovval import report, vehicle
+from rovval.compare import compare
+from rovval.report import diagnosis_html, diagnosis_markdown, diagnosis_words, table
+from test_report_comparison import check_html
+
+REQUIRED = ("schema", "run", "vehicle", "model", "window_s", "calibration_slop", "verdict", "gap", "causes", "ranking")
+
+
+def formats(d: dict[str, Any]) -> tuple[str, str, str]:
+    page = diagnosis_html.text(d)
+    check_html(page)
+    return page, diagnosis_markdown.text(d), table.diagnosis_text(d)
+
+
+def test_a_full_diagnosis_is_written(tmp_path: Path) -> None:
+    d = make_diagnosis()
+    run = make_run(200)
+    comparison = compare(run, make_sim(run))
+    files = report.write_diagnosis(d, tmp_path, comparison, vehicle.load("merlin"), make_sim(run, gap=(0.0,) * 6))
+    assert set(files) == {"diagnosis.json", "diagnosis.md", "diagnosis.html", "run.rrd"}
+    assert json.loads(files["diagnosis.json"].read_text()) == d
+    assert set(report.write_diagnosis(d, tmp_path / "b")) == {"diagnosis.json", "diagnosis.md", "diagnosis.html"}
+
+
+def test_every_format_gives_the_answer() -> None:
+    for text in formats(make_diagnosis()):
+        for fact in ("inflow_loss", "quadratic_drag[surge]", "66 % (58 % to 72 %)", "surge staircase", "ground_effect", "0.310", "gyro_bias"):
+            assert fact in text
+        assert diagnosis_words.SCOPE in text
+
+
+def test_the_sentence_of_the_engine_comes_first() -> None:
+    d = make_diagnosis() | {"sentence": "Surge is 0.07 m/s too fast because of inflow loss."}
+    assert diagnosis_words.sentences(d)[0] == d["sentence"]
+    page, text, _ = formats(d)
+    assert f'<p class="verdict">{d["sentence"]}</p>' in page and f"**{d['sentence']}**" in text
+
+
+def test_no_gap_blames_nothing() -> None:
+    d = {k: v for k, v in make_diagnosis().items() if k in REQUIRED} | {"verdict": "no_gap", "causes": []}
+    for text in formats(d):
+        assert "No gap beyond noise and a calibration slop of 5 %" in text and "Cause" not in text
+
+
+def test_unknown_names_no_culprit() -> None:
+    d = make_diagnosis() | {"verdict": "unknown", "causes": []}
+    for text in formats(d):
+        assert "the cause is unknown" in text and "What is left: 0.9 deg/s" in text and "shrinks by" not in text
+    assert "The least bad one is not a cause" in formats(d)[0]
+
+
+@pytest.mark.parametrize("missing", [k for k in make_diagnosis() if k not in ("schema", "run")])
+def test_any_part_may_be_missing(missing: str) -> None:
+    for text in formats({k: v for k, v in make_diagnosis().items() if k != missing}):
+        assert "dive-0007" in text
+
+
+def test_the_least_document_is_enough() -> None:
+    for text in formats({"schema": "rovval.diagnosis/1", "run": "r", "verdict": "unknown"}):
+        assert "unknown" in text
+
+
+def test_several_runs_several_causes_an_onset_and_holes_in_a_trace() -> None:
+    d = make_diagnosis()
+    d["run"] = ["dive-1", "dive-2"]
+    d["causes"] = [*d["causes"], {"effect": "thruster_fault_onset[HFP]", "group": [], "onset_s": 412.3, "parameters": {}}]
+    d["traces"][0]["measured"][5] = None
+    page, text, plain = formats(d)
+    assert "dive-1, dive-2" in page and "thruster_fault_onset[HFP] from 412 s on" in plain and "begins at 412 s" in text
+
+
+def test_brackets_join_only_the_members_of_a_group() -> None:
+    d = make_diagnosis()
+    d["causes"][0]["group"] = ["inflow_loss", "tether_drag"]
+    page = diagnosis_html.text(d)
+    assert page.count('class="brace in on') == 2 and page.count('class="brace in "') == 2
+    d["causes"][0]["group"] = ["inflow_loss"]
+    assert 'class="brace' not in diagnosis_html.text(d)
+
+
+def test_synthetic_comes_with_the_comparison(tmp_path: Path) -> None:
+    run = make_run(200, synthetic="a test")
+    files = report.write_diagnosis(make_diagnosis(), tmp_path, compare(run, make_sim(run)), vehicle.load("merlin"))
+    assert all("SYNTHETIC DATA: a test" in files[f"diagnosis.{k}"].read_text() for k in ("html", "md"))
+    assert json.loads(files["diagnosis.json"].read_text())["synthetic"] == "a test"
+
+
+def test_names_are_escaped() -> None:
+    d = make_diagnosis()
+    d["ranking"][0]["effect"] = d["causes"][0]["effect"] = "<script>x"
+    page, _, _ = formats(d)
+    assert "<script>x" not in page
