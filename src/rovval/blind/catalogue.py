@@ -29,7 +29,7 @@ class Entry:
     form: str
     targets: tuple[str, ...]
     event: bool
-    signed: bool
+    least: float
     about: str
     severity_one: str
     build: type[Effect]
@@ -47,7 +47,7 @@ def catalogue() -> dict[str, Entry]:
                 place = item.place if item.known else "foreign"
                 form = item.form if item.known else "foreign"
                 rows[item.name] = Entry(
-                    item.name, place, item.place, form, item.targets, item.event, item.signed, about, item.unit, item
+                    item.name, place, item.place, form, item.targets, item.event, item.least, about, item.unit, item
                 )
     return rows
 
@@ -63,7 +63,7 @@ def build(item: Planted, hull: Hull, scale: Scales, setting: Setting) -> Effect:
         entry = catalogue()[item.name]
     except KeyError:
         raise ValueError(f"unknown effect {item.name!r}; one of: {', '.join(catalogue())}") from None
-    if not np.isfinite(item.severity) or (item.severity < 0.0 and not entry.signed):
+    if not np.isfinite(item.severity) or item.severity < entry.least:
         raise ValueError(f"{item.name}: severity {item.severity} means nothing here")
     rng = stream(setting.seed, "effect", item.name, item.target or "")
     return entry.build(Planting(item, hull, scale, setting, rng))

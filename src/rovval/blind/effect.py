@@ -76,7 +76,7 @@ class Effect:
     known: ClassVar[bool] = True  # False: foreign, the library has nothing of the kind
     form: ClassVar[Literal["equal", "differs"]] = "differs"
     targets: ClassVar[tuple[str, ...]] = ()  # axes, channels, or ("thruster",)
-    signed: ClassVar[bool] = False  # whether a severity below zero means something
+    least: ClassVar[float] = 0.0  # severities below this mean nothing
     event: ClassVar[bool] = False  # has an onset even where none is asked for
     unit: ClassVar[str] = ""  # what severity 1 is
 

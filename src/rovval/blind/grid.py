@@ -38,8 +38,9 @@ def _targets(entry: Entry, thrusters: Sequence[str], rng: np.random.Generator) -
 
 def _planted(name: str, target: str | None, severity: float, rng: np.random.Generator) -> Planted:
     """One planting; the sign is drawn where it means something, the size varies by a fifth."""
-    sign = float(rng.choice([-1.0, 1.0])) if catalogue()[name].signed else 1.0
-    return Planted(name, target, round(sign * severity * float(rng.uniform(0.8, 1.2)), 3))
+    least = catalogue()[name].least
+    sign = float(rng.choice([-1.0, 1.0])) if least < 0.0 else 1.0
+    return Planted(name, target, round(max(least, sign * severity * float(rng.uniform(0.8, 1.2))), 3))
 
 
 def grid(vehicle: Path, seed: int, repeats: int = 1, nulls: int = 8) -> list[Case]:

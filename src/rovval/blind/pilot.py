@@ -12,10 +12,8 @@ import numpy as np
 
 from rovval.blind.hull import Hull
 from rovval.blind.rotation import wrap
-from rovval.blind.scales import Scales, rpm_for
+from rovval.blind.scales import LEVEL_RAD_S, Scales, rpm_for
 from rovval.blind.spec import STEP_S, Array
-
-LEVEL_RAD_S = 4.5  # chosen: how stiffly the autopilot of a small vehicle keeps it level
 
 
 @dataclass(slots=True)

@@ -9,7 +9,9 @@ import numpy as np
 from rovval.blind.hull import Hull, allocation
 from rovval.blind.spec import Array
 
-WORK_CLASS_KG = 1000.0  # chosen: heavier than this is a work-class vehicle
+HEAVY_KG = 200.0  # chosen: heavier vehicles right themselves, turn slowly and have large drives
+FAST_KG = 1000.0  # chosen: heavier than this flies at 0.8 m/s, lighter at 0.6 m/s
+LEVEL_RAD_S = 4.5  # chosen: how stiffly the autopilot of a small vehicle keeps it level
 HEADROOM = 1.2  # chosen: the rpm limit over the rpm of working speed
 
 
@@ -28,11 +30,8 @@ class Scales:
     capacity: Array  # (6,), largest wrench axis by axis at the working rpm, N and N m
     share: Array  # (N, 6), thrust of each unit per unit wrench (weighted pseudo-inverse)
     bar: float  # N m/rad, righting moment
-
-    @property
-    def work_class(self) -> bool:
-        """Whether the vehicle is one of the heavy ones."""
-        return self.length > 0.5
+    upright: float  # N m/rad, righting moment with the autopilot's share
+    work_class: bool  # whether the vehicle is one of the heavy ones
 
 
 def _share(hull: Hull, length: float) -> Array:
@@ -51,7 +50,7 @@ def rpm_for(thrust: Array, k_pos: Array, k_neg: Array) -> Array:
 
 def scales(hull: Hull) -> Scales:
     """Work out the yardsticks; speeds are chosen so that rpm lands where such vehicles are flown."""
-    speed = 0.8 if hull.mass > WORK_CLASS_KG else 0.6
+    speed = 0.8 if hull.mass > FAST_KG else 0.6
     force = float(hull.linear_drag[0] * speed + hull.quadratic_drag[0] * speed**2)
     length = max(0.1, float(np.max(np.linalg.norm(hull.positions, axis=1))))
     share = _share(hull, length)
@@ -61,6 +60,7 @@ def scales(hull: Hull) -> Scales:
     capacity = [float(np.min(weak / np.maximum(np.abs(share[:, i]), 1e-6))) for i in range(6)]
     arm = float(np.linalg.norm(hull.gravity_centre - hull.buoyancy_centre))
     bar = hull.mass * hull.gravity * arm
+    spin = float(hull.inertia[1, 1] + hull.added_mass[4, 4])
     turn = float(hull.linear_drag[5] * 0.5 + hull.quadratic_drag[5] * 0.25)  # drag at 0.5 rad/s, chosen
     wanted = [force, force, force, 0.08 * bar, 0.08 * bar, max(turn, 0.04 * force * length)]
     return Scales(
@@ -75,4 +75,6 @@ def scales(hull: Hull) -> Scales:
         capacity=np.array(capacity),
         share=share,
         bar=bar,
+        work_class=hull.mass > HEAVY_KG,
+        upright=bar + (0.0 if hull.mass > HEAVY_KG else spin * LEVEL_RAD_S**2),
     )

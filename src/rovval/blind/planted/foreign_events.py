@@ -110,7 +110,7 @@ class DepthScale(_Foreign):
     """The depth reads wrong with speed: the pressure port sees the flow (a static-port error), and its scale is off."""
 
     name = "depth_port_error"
-    signed = True
+    least = -9.0
     place = "sensor"
     unit = "0.25 m at working speed, scale 0.06 off the start depth"
 

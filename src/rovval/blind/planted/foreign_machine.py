@@ -149,7 +149,7 @@ class Manipulator(_Foreign):
 
     def setup(self, plan: Planting) -> None:
         """Reach of the centre of gravity (m), and the plan."""
-        arm = plan.scale.bar / (plan.hull.mass * plan.hull.gravity)
+        arm = plan.scale.upright / (plan.hull.mass * plan.hull.gravity)
         self.reach = math.tan(math.radians(6.0)) * self.s * arm
         self.times = np.cumsum(plan.rng.uniform(5.0, 11.0, 200))
         self.places = self.reach * plan.rng.uniform(-1.0, 1.0, (201, 2))

@@ -22,7 +22,7 @@ class QuadraticDrag(Effect):
     """Extra form drag on one axis, with a drag coefficient that falls with the Reynolds number as Re^-0.2."""
 
     name = "quadratic_drag"
-    signed = True
+    least = -1.0
     targets = AXES
     unit = "half of the axis's working drag more, at working speed"
 
@@ -43,7 +43,7 @@ class LinearDrag(Effect):
     """Extra drag in proportion to speed on one axis."""
 
     name = "linear_drag"
-    signed = True
+    least = -1.0
     form = "equal"
     targets = AXES
     unit = "0.4 of the axis's working drag more at working speed, in proportion to speed"
@@ -63,7 +63,6 @@ class AddedMass(Effect):
     """More (or, below zero, less) added mass on one axis; its Coriolis and Munk terms follow from the momentum."""
 
     name = "added_mass"
-    signed = True
     form = "equal"
     place = "vehicle"
     targets = AXES
@@ -85,7 +84,7 @@ class CrossDrag(Effect):
     """Bow-heavy lateral drag by strips: sideways motion turns the vehicle, turning pushes it sideways (and heave-pitch)."""
 
     name = "cross_drag"
-    signed = True
+    least = -9.0
     unit = "centre of lateral pressure 0.2 of the vehicle's half-length ahead"
 
     def setup(self, plan: Planting) -> None:

@@ -12,7 +12,7 @@ class BuoyancyError(Effect):
     """Net buoyancy differs: more volume of foam (severity above zero) or less."""
 
     name = "buoyancy_error"
-    signed = True
+    least = -9.0
     form = "equal"
     place = "vehicle"
     unit = "net lift of 0.15 of the working force"
@@ -32,14 +32,14 @@ class CgOffset(Effect):
     """The centre of gravity is off along surge (x) or sway (y), in the weight's moment and in the mass matrix alike."""
 
     name = "cg_offset"
-    signed = True
+    least = -9.0
     place = "vehicle"
     targets = ("surge", "sway")
-    unit = "a static tilt of 4 degrees"
+    unit = "a static tilt of 4 degrees (on a small vehicle: against its autopilot)"
 
     def setup(self, plan: Planting) -> None:
-        """Offset (m) for the tilt, by the vehicle's own righting arm."""
-        self.offset = float(np.tan(np.radians(4.0)) * self.s * plan.scale.bar / (plan.hull.mass * plan.hull.gravity))
+        """Offset (m) for the tilt, by the vehicle's own stiffness."""
+        self.offset = float(np.tan(np.radians(4.0)) * self.s * plan.scale.upright / (plan.hull.mass * plan.hull.gravity))
         self.values = {"offset": self.offset}
 
     def change(self, p: Params, a: float) -> None:
@@ -51,7 +51,7 @@ class PayloadChange(Effect):
     """A payload is picked up at the bow (severity above zero) or lost there, at the onset: mass, weight, trim, inertia."""
 
     name = "payload_change"
-    signed = True
+    least = -2.0
     place = "vehicle"
     event = True
     unit = "a wet weight of 0.15 of the working force (mass x g is four times that), a quarter of the half-length forward"
@@ -78,7 +78,7 @@ class InertiaError(Effect):
     """Mass (surge, sway, heave: the same) or one moment of inertia differs, weight and buoyancy kept in balance."""
 
     name = "inertia_error"
-    signed = True
+    least = -1.0
     place = "vehicle"
     targets = ("yaw", "roll", "pitch", "surge")
     unit = "0.4 more of the moment of inertia, or 0.25 more of the mass (flooded volume, weightless)"

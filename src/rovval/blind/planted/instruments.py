@@ -20,7 +20,7 @@ class DvlScale(_Sensor):
     """Sound speed set wrong: velocities too large, slightly more so deeper (warmer water above)."""
 
     name = "dvl_scale"
-    signed = True
+    least = -9.0
     unit = "0.07 too fast at the starting depth"
 
     def setup(self, plan: Planting) -> None:
@@ -39,7 +39,7 @@ class DvlMisalignment(_Sensor):
     """The DVL is mounted turned, about the body's yaw (default), pitch or roll axis."""
 
     name = "dvl_misalignment"
-    signed = True
+    least = -9.0
     form = "equal"
     targets = ("yaw", "pitch", "roll")
     unit = "7 degrees"
@@ -82,7 +82,7 @@ class GyroBias(_Sensor):
     """A bias on one rate, with a slow walk of a fifth of it."""
 
     name = "gyro_bias"
-    signed = True
+    least = -9.0
     targets = ("yaw", "pitch", "roll")
     unit = "1 degree a second"
 
@@ -122,7 +122,7 @@ class AttitudeBias(_Sensor):
     """The attitude unit is mounted with a tilt."""
 
     name = "attitude_bias"
-    signed = True
+    least = -9.0
     form = "equal"
     targets = ("pitch", "roll")
     unit = "3 degrees"

@@ -57,7 +57,7 @@ class WallSuction(Effect):
         sc = self.plan.scale
         speed2 = (k.rel[0] ** 2 + k.rel[1] ** 2) / sc.speed**2
         jets = float(abs(k.thrust).sum()) / (len(k.thrust) * sc.thrust)
-        pull = self.level(k.t) * self.force * (0.7 * speed2 + 0.5 * jets) / (gap * gap)
+        pull = self.level(k.t) * self.force * (0.7 * speed2 + 0.5 * jets) / gap
         fx, fy, fz = to_body(k.r, pull * self.north, pull * self.east, 0.0)
         f[0] += fx
         f[1] += fy

@@ -133,7 +133,7 @@ class ThrusterMisaligned(Effect):
     """One unit points elsewhere: turned about a random axis across its own."""
 
     name = "thruster_misaligned"
-    signed = True
+    least = -9.0
     form = "equal"
     place = "vehicle"
     targets = ("thruster",)

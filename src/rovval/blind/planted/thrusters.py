@@ -122,7 +122,7 @@ class RpmScale(Effect):
     """The feedback reads wrong: the shaft turns slower than the log says (wrong pole count, gear or calibration)."""
 
     name = "rpm_scale"
-    signed = True
+    least = -3.0
     form = "equal"
     place = "input"
     unit = "logged speed 0.12 too high on every unit"

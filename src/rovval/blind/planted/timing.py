@@ -32,7 +32,7 @@ class TimeOffset(_Sensor):
     """One group of channels is stamped late: DVL velocities (default), attitude, depth or the thrusters."""
 
     name = "time_offset"
-    signed = True
+    least = -9.0
     form = "equal"
     targets = ("velocity", "attitude", "depth", "thruster_feedback")
     unit = "0.4 s late"
@@ -53,7 +53,7 @@ class ClockDrift(_Sensor):
     """The thruster logger's clock runs away from the navigation's, faster as it warms up."""
 
     name = "clock_drift"
-    signed = True
+    least = -9.0
     unit = "1.5 s late by the end, a quarter of it by the middle"
 
     def setup(self, plan: Planting) -> None:

@@ -50,7 +50,7 @@ class CurrentConstant(_Moving):
     """A steady horizontal current, with turbulence of a twentieth of it."""
 
     name = "current_constant"
-    signed = True
+    least = -9.0
     unit = "0.3 of the working speed, from a direction drawn by the seed"
 
     def setup(self, plan: Planting) -> None:
@@ -155,7 +155,7 @@ class DensityGradient(Effect):
     """A pycnocline near the starting depth: buoyancy grows by a smooth step with depth."""
 
     name = "density_gradient"
-    signed = True
+    least = -9.0
     place = "water"
     unit = "net buoyancy changes by +-0.15 of the working force across a layer of 3 m"
 
