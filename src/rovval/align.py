@@ -21,7 +21,7 @@ from rovval.data import RATE_HZ, Array, ClockReport, Codes, RawLog, Reason, Resa
 from rovval.errors import BadInput, UsageProblem, all_at_once
 from rovval.ingest._series import bad_samples
 from rovval.lag import lag
-from rovval.resample import on_grid, resample
+from rovval.resample import ON_GRID, resample
 
 DRIVING = (*VELOCITIES, *POSE, "n", "n_cmd", "pwm", "stick")  # the channels that span the grid
 SHARED_PHASE = 0.6  # mean resultant length: uniform jitter of a quarter step has 0.64
@@ -98,7 +98,8 @@ def _report(series: Series, method: str, longest_gap_s: float, reasons: Codes) -
 
 def _clock(raw: RawLog, values: Mapping[str, Array], start: float, dt: float, resampled: Mapping[str, Resampled]) -> ClockReport:
     span = {name: s for name, s in raw.channels.items() if name.partition(":")[0] in DRIVING} or dict(raw.channels)
-    matched = sum(len(s.t) for s in span.values() if on_grid(s.t, start, dt) is not None)
+    off = [np.abs((s.t - start) / dt - np.rint((s.t - start) / dt)) for s in span.values()]
+    matched = int(sum((o <= ON_GRID + 1e-5).sum() for o in off))
     largest = max(resampled[name].largest_gap_s for name in span)
     offset, correlation, note = lag(values, dt)
     stamp = "+".join(sorted({s.stamp for s in span.values()}))

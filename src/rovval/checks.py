@@ -14,6 +14,8 @@ from rovval.ingest._series import bad_samples, still_runs
 
 STUCK_S = 3.0  # a living sensor does not repeat itself to the last digit for so long, unless the vehicle rests
 SENSORS = ("u", "v", "w", "p", "q", "r", "x", "y", "z", "phi", "theta", "psi", "udot", "vdot", "wdot", "altitude")
+EULER = ("phi", "theta", "psi")
+LEVEL = 1.0  # rad of roll and pitch beyond which Euler rates say little
 SURE = 0.5  # correlation of two signals that are one by kinematics, beyond which a sign or a scale may be named
 
 
@@ -25,7 +27,15 @@ def check(raw: RawLog) -> tuple[Finding, ...]:
         found += _stuck(raw, name, series)
         found += bad_samples(name, series, None)[1]
         found += _rate(name, series)
-    return (*found, *_kinematics(raw))
+    return (*_together(found), *_kinematics(raw))
+
+
+def _together(found: list[Finding]) -> list[Finding]:
+    """What is true of several channels in the same words is one finding."""
+    where: dict[tuple[str, str], list[str]] = {}
+    for finding in found:
+        where.setdefault((finding.code, finding.detail), []).append(finding.where)
+    return [Finding(code, ", ".join(names), detail) for (code, detail), names in where.items()]
 
 
 def _gaps(raw: RawLog, name: str, series: Series) -> list[Finding]:
@@ -75,41 +85,43 @@ def _rate(name: str, series: Series) -> list[Finding]:
 
 
 def _kinematics(raw: RawLog) -> list[Finding]:
-    """Pose rates against body velocities: the same quantity twice, so sign and scale can be told without any dynamics."""
-    c = raw.channels
-    if not all(n in c for n in ("phi", "theta", "psi")):
+    """Pose against the integral of the body velocities over a second: the same way twice, so that sign and scale can be told
+    without any dynamics."""
+    if not all(n in raw.channels for n in EULER) or len(raw.channels["phi"].t) < 50:
         return []
-    end = min(float(s.t[-1]) for s in c.values())
-    t = np.arange(max(float(s.t[0]) for s in c.values()), end, 0.5)
-    if len(t) < 40:
-        return []
-    euler = np.stack([np.interp(t, c[n].t, np.unwrap(c[n].values)) for n in ("phi", "theta", "psi")], axis=1)
-    pairs: list[tuple[str, str, Array, Array]] = []
+    t = raw.channels["phi"].t
+    c = {n: np.interp(t, s.t, np.unwrap(s.values) if n in EULER else s.values, np.nan, np.nan) for n, s in raw.channels.items() if n in SENSORS}
+    k = max(1, round(1.0 / float(np.median(np.diff(t)))))
+    euler = np.stack([c[n] for n in EULER], axis=1)
+    pairs: list[tuple[str, str, Array]] = []
     if all(n in c for n in "pqr"):
-        rates = euler_rates(euler, np.stack([_mean(c[n], t) for n in "pqr"], axis=1))
-        pairs += [(n, b, np.gradient(euler[:, i], t), rates[:, i]) for i, (n, b) in enumerate(zip(("phi", "theta", "psi"), "pqr", strict=True))]
+        rates = euler_rates(euler, np.stack([c[n] for n in "pqr"], axis=1))
+        pairs += [(n, b, rates[:, i]) for i, (n, b) in enumerate(zip(EULER, "pqr", strict=True))]
     if all(n in c for n in "uvw"):
-        world = np.einsum("nij,nj->ni", rotation_from_euler(euler), np.stack([_mean(c[n], t) for n in "uvw"], axis=1))
-        pairs += [(n, b, np.gradient(np.interp(t, c[n].t, c[n].values), t), world[:, i])
-                  for i, (n, b) in enumerate(zip("xyz", "uvw", strict=True)) if n in c]  # fmt: skip
-    return [f for pose, body, rate, said in pairs for f in _agree(pose, body, rate, said)]
+        world = np.einsum("nij,nj->ni", rotation_from_euler(euler), np.stack([c[n] for n in "uvw"], axis=1))
+        pairs += [(n, b, world[:, i]) for i, (n, b) in enumerate(zip("xyz", "uvw", strict=True)) if n in c]
+    tilted = np.concatenate(([0], np.cumsum((np.abs(euler[:, :2]) > LEVEL).any(axis=1))))
+    level = (tilted[k + 1 :] == tilted[: -k - 1]) & (t[k:] - t[:-k] < 2.0)
+    found = []
+    for pose, body, rate in pairs:
+        way = np.concatenate(([0.0], np.cumsum(np.nan_to_num(0.5 * (rate[1:] + rate[:-1]) * np.diff(t)))))
+        moved, said = c[pose][k:] - c[pose][:-k], way[k:] - way[:-k]
+        known = level & np.isfinite(moved) & np.isfinite(rate[k:]) & np.isfinite(rate[:-k])
+        if known.sum() >= 50:
+            found += _agree(pose, body, moved[known], said[known])
+    return found
 
 
-def _mean(series: Series, t: Array) -> Array:
-    total = np.concatenate(([0.0], np.cumsum(np.diff(series.t) * 0.5 * (series.values[1:] + series.values[:-1]))))
-    return np.asarray((np.interp(t + 0.5, series.t, total) - np.interp(t - 0.5, series.t, total)) / 1.0)
-
-
-def _agree(pose: str, body: str, rate: Array, said: Array) -> list[Finding]:
-    a, b = rate - rate.mean(), said - said.mean()
+def _agree(pose: str, body: str, moved: Array, said: Array) -> list[Finding]:
+    a, b = moved - moved.mean(), said - said.mean()
     size = float(np.sqrt((a @ a) * (b @ b)))
     if size < 1e-12 * len(a):
         return []
     correlation, scale = float(a @ b) / size, float(a @ b) / float(b @ b)
     if correlation < -SURE:
-        detail = f"rate of {pose} runs against the body velocities (correlation {correlation:.2f}): a sign of {pose} or {body} is wrong"
+        detail = f"{pose} runs against the body velocities (correlation {correlation:.2f}): a sign of {pose} or {body} is wrong"
         return [Finding("sign", f"{pose}, {body}", detail)]
     if correlation > 0.9 and not 0.8 < scale < 1.25:
-        detail = f"rate of {pose} is {scale:.2f} times what the body velocities give: a unit or scale of {pose} or {body} is wrong"
+        detail = f"{pose} moves {scale:.2f} times what the body velocities give: a unit or scale of {pose} or {body} is wrong"
         return [Finding("scale", f"{pose}, {body}", detail)]
     return []

@@ -12,6 +12,7 @@ from rovval.channels import Rule
 from rovval.data import Array, Flags, RawLog, Series
 from rovval.errors import BadInput, Finding
 from rovval.frames import ENU_TO_NED, FLU_TO_FSD, euler_from_quaternion, rotation_from_euler, wrap
+from rovval.ingest._heading import with_heading_zero
 from rovval.ingest.profile import ATTITUDE, GEODETIC, WORLD_VELOCITY, Profile, Source
 from rovval.units import to_si
 
@@ -57,6 +58,9 @@ def build(
     series = _geodetic(profile, series, facts)
     series = _turned(profile, series)
     series = _into_body(profile, series, found)
+    if profile.relative_heading and "psi" in series:
+        series, told = with_heading_zero(series)
+        found.append(told)
     if not series:
         raise BadInput(f"{path}: every channel of profile {profile.name!r} is empty", "see `rovval show profile`")
     ordered = {name: _wrapped(name, series[name]) for name in _in_order(profile, series)}

@@ -15,7 +15,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from rovval.channels import CHANNELS, POSE, VELOCITIES, Resampling
+from rovval.channels import CHANNELS, VELOCITIES, Resampling
 from rovval.errors import UsageProblem, all_at_once
 from rovval.units import SI
 
@@ -63,7 +63,9 @@ class Clock(BaseModel):
 
 class Profile(BaseModel):
     """One source of logs. ``format`` is the name of the reader (a file of `rovval.ingest`); ``absent`` names columns or topics
-    whose presence says that a log is *not* of this source."""
+    whose presence says that a log is *not* of this source. ``relative_heading``: the heading counts from the start while the
+    position is in fixed axes; the constant between them is found from the log and reported. ``messages``: definitions (name -> text of the .msg) of types that
+    old bags use without defining them."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -74,15 +76,16 @@ class Profile(BaseModel):
     vehicle: str = ""
     frame: BodyFrame
     world: WorldFrame
+    relative_heading: bool = False
     time: Clock
     channels: dict[str, Source] = Field(min_length=1)
     absent: tuple[str, ...] = ()
-    messages: tuple[str, ...] = ()
+    messages: dict[str, str] = {}
 
     @property
     def sha256(self) -> str:
-        """Digest of everything that the profile says, so that a run's id changes with it."""
-        return hashlib.sha256(self.model_dump_json().encode()).hexdigest()
+        """Digest of what the profile does (its words aside), so that a run's id changes with it."""
+        return hashlib.sha256(self.model_dump_json(exclude={"notes", "description"}).encode()).hexdigest()
 
 
 def profiles() -> tuple[str, ...]:
@@ -127,6 +130,8 @@ def _say(error: Any) -> str:
 
 def _problems(profile: Profile) -> list[str]:
     found = [p for name, source in profile.channels.items() for p in _channel_problems(name, source)]
+    if (profile.frame == "fsd") != (profile.world == "ned"):
+        found.append(f"frame {profile.frame!r} with world {profile.world!r}: the pairs are fsd with ned, flu with enu or nwu")
     if profile.time.unit not in SI:
         found.append(f"time: unknown unit {profile.time.unit!r}")
     wanted = {"time_of_day": (3, 4), "epoch": (0, 1), "elapsed": (1, 1), "datetime": (1, 2), "header": (0, 0), "record": (0, 0)}
@@ -157,11 +162,11 @@ def _channel_problems(name: str, source: Source) -> list[str]:
     if (source.unit == "quaternion") != (name == ATTITUDE) or (source.unit != "quaternion" and source.unit not in SI):
         found.append(f"channel {name!r}: unknown unit {source.unit!r}; use one of: {', '.join(sorted(SI))}")
     address = source.column or source.topic or ""
-    if ("*" in member) != ("*" in address + (source.field or "")) or member.count("*") > 1:
+    if ("*" in member) != ("*" in address) or member.count("*") > 1:
         found.append(f"channel {name!r}: a pattern needs one * in the channel and one in its column")
     if source.frame == "world" and name not in WORLD_VELOCITY:
         found.append(f"channel {name!r}: frame = 'world' is for u, v, w")
-    if source.frame is not None and family not in (*VELOCITIES, *POSE, "udot", "vdot", "wdot", ATTITUDE):
+    if source.frame is not None and family not in (*VELOCITIES, "udot", "vdot", "wdot"):
         found.append(f"channel {name!r}: has no frame")
     if source.span == 0.0:
         found.append(f"channel {name!r}: span must not be 0")
