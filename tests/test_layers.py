@@ -18,7 +18,7 @@ ROOMS = (
     ("store",),
     ("compare",),
     ("metrics",),
-    ("simulate",),
+    ("simulate", "simfile"),
     ("drive",),
     ("plant",),
     ("effects",),
@@ -38,7 +38,7 @@ ROOMS = (
 ALLOWED = {
     "typer": {"cli"},
     "pydantic": {"vehicle", "ingest", "pipeline"},
-    "polars": {"ingest", "store", "simulate", "report"},
+    "polars": {"ingest", "store", "simfile", "report"},
     "rosbags": {"ingest"},
     "mcap": {"ingest"},
     "pymavlink": {"ingest"},

@@ -224,7 +224,7 @@ def test_a_pattern_in_a_folder_that_is_not_there_is_a_mistake(tmp_path):
 def test_a_cluster_without_dask_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(UsageProblem) as refused:
-        list(cluster.execute((), batch_case.work, batch.died, "tcp://localhost:1"))
+        list(cluster.execute((), batch_case.paused, batch.died, "tcp://localhost:1"))
     assert "rovval[cluster]" in refused.value.hint
 
 

@@ -77,6 +77,8 @@ def command(
         place = out or Path("reports") / runs[0].id / "diagnosis"
         report.write_diagnosis(found.document, place)
         output.say(f"written: {place}", quiet)
-    if write_vehicle is not None:
+    if write_vehicle is not None and not found.vehicle_fixed:
+        output.say(f"{write_vehicle} not written: no cause was found that could be added to the vehicle")
+    elif write_vehicle is not None:
         write_text(write_vehicle, found.vehicle_fixed)
         output.say(f"written: {write_vehicle}", quiet)

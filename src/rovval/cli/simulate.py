@@ -34,14 +34,14 @@ def command(
       rovval simulate dive.csv --profile merlin
       rovval simulate dive.csv --effect inflow_loss:loss=0.3 --model fossen --out with_loss.parquet
     """
-    from rovval import simulate, store
+    from rovval import simfile, store
     from rovval.pipeline.atomic import beside
     from rovval.pipeline.steps import simulated, vehicle_of
 
     run = store.open_run(source, profile, archive)
     sim = simulated(run, vehicle_of(run, vehicle), model.value, tuple(effect or ()), window)
     path = out or Path("reports") / run.id / f"{model.value}.parquet"
-    simulate.save(sim, new := beside(path))
+    simfile.save(sim, new := beside(path))
     new.replace(path)
     for line in (*sim.assumptions, *sim.stops):
         output.say(f"  {line}", quiet)

@@ -44,8 +44,9 @@ def run(folder: Path, with_diagnosis: bool, progress: Callable[[str, float], Non
     """Ingest, align, simulate, compare and diagnose the sample; reports and the log itself go to ``folder``."""
     from rovval import report
     from rovval.compare import compare
+    from rovval.diagnose import diagnose
     from rovval.report.json import document as comparison_json
-    from rovval.report.table import text
+    from rovval.report.table import diagnosis_text, text
     from rovval.simulate import simulate
     from rovval.vehicle import load
 
@@ -55,18 +56,24 @@ def run(folder: Path, with_diagnosis: bool, progress: Callable[[str, float], Non
     vehicle = load(dive.vehicle)
     progress("simulate", 0.1)
     comparison = compare(dive, simulate(dive, vehicle))
-    progress("report", 0.2)
-    files = {"log": log, **report.write(comparison, folder, vehicle)}
     document: dict[str, Any] = {
         "schema": "rovval.demo/1",
         "synthetic": SYNTHETIC,
         "comparison": comparison_json(comparison),
     }
-    parts = [text(comparison)]
+    parts, corrected = [text(comparison)], None
     if with_diagnosis:
-        words, document["diagnosis"] = _diagnosis(dive, folder / "diagnosis", progress)
-        parts.append(words)
-        files["diagnosis"] = folder / "diagnosis"
+        found = diagnose([dive], vehicle, progress=lambda step, share: progress(step, 0.2 + 0.6 * share))
+        document["diagnosis"] = found.document
+        parts += [
+            diagnosis_text(found.document),
+            f"The effect that was left in this SYNTHETIC log, to judge the diagnosis by: {EFFECT}",
+        ]
+        corrected = simulate(dive, vehicle, effects=found.settings)
+    progress("report", 0.8)
+    files = {"log": log, **report.write(comparison, folder, vehicle, corrected)}
+    if with_diagnosis:
+        files |= report.write_diagnosis(document["diagnosis"], folder)
     progress("demo", 1.0)
     document["files"] = {kind: str(path) for kind, path in files.items()}
     return Shown("\n\n".join(parts), document, files)
@@ -77,15 +84,3 @@ def _read(log: Path) -> Run:
 
     dive = store.open_run(log, "merlin")
     return replace(dive, properties={**dive.properties, "synthetic": SYNTHETIC})
-
-
-def _diagnosis(dive: Run, folder: Path, progress: Callable[[str, float], None]) -> tuple[str, Mapping[str, Any]]:
-    from rovval import report
-    from rovval.diagnose import diagnose
-    from rovval.report.table import diagnosis_text
-    from rovval.vehicle import load
-
-    found = diagnose([dive], load(dive.vehicle), progress=lambda step, share: progress(step, 0.3 + 0.7 * share))
-    report.write_diagnosis(found.document, folder)
-    answer = f"The effect that was left in this synthetic log, for you to judge the diagnosis by: {EFFECT}"
-    return f"{diagnosis_text(found.document)}\n{answer}", found.document

@@ -32,13 +32,13 @@ def other_velocities(path: Path, run: Run, profile: str | None, archive: Path) -
     """
     import numpy as np
 
-    from rovval import simulate, store
+    from rovval import simfile, store
     from rovval.channels import VELOCITIES
 
     if not path.exists():
         raise UsageProblem(f"{path} does not exist", "give --with a .parquet of `rovval simulate` or a log of velocities")
     if path.suffix == ".parquet":
-        nu = simulate.load(path).free.nu
+        nu = simfile.load(path).free.nu
         if len(nu) != len(run):
             raise BadInput(f"{path}: {len(nu)} samples, run {run.id} has {len(run)}", "give the simulation of this run")
         return nu

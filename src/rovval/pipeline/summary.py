@@ -54,7 +54,7 @@ def text(summary: Mapping[str, Any]) -> str:
         + ", ".join(f"{n} {what.replace('_', ' ')}" for what, n in counts.items())
         + f" in {summary['seconds']:.1f} s"
     ]
-    lines += [f"  quarantined  {row['log']}: {row['reason']}" for row in summary["quarantined"]]
+    lines += [f"  quarantined  {row['log']}: {row['reason'].removeprefix(row['log'] + ': ')}" for row in summary["quarantined"]]
     lines += [f"  exceeded     {row['log']}: {row['limit']}" for row in summary["tolerances_exceeded"]]
     lines += [f"  waiting      {row['log']}: {row['why']}" for row in summary["waiting"]]
     return "\n".join(lines)

@@ -113,10 +113,10 @@ class _Bench:
         return {"findings": [str(f) for f in self.run.findings]}, [place]
 
     def simulate(self) -> tuple[dict[str, Any], list[Path]]:
-        from rovval import simulate
+        from rovval import simfile
 
         path = self.task.folder / "simulation.parquet"
-        simulate.save(self.sim, new := atomic.beside(path))
+        simfile.save(self.sim, new := atomic.beside(path))
         new.replace(path)
         return {"stops": list(self.sim.stops)}, [path]
 
@@ -137,7 +137,8 @@ class _Bench:
         found = diagnose(
             [self.run], self.vehicle, model=task.model, window_s=task.window_s, calibration_slop=task.calibration_slop
         )
-        report.write_diagnosis(found.document, place)
-        atomic.write_text(place / "vehicle_fixed.toml", found.vehicle_fixed)
+        files = report.write_diagnosis(found.document, place)
+        if found.vehicle_fixed:
+            atomic.write_text(place / "vehicle_fixed.toml", found.vehicle_fixed)
         document = json.loads(json.dumps(found.document))
-        return {"verdict": document["verdict"], "causes": document["causes"]}, [place]
+        return {"verdict": document["verdict"], "causes": document["causes"]}, list(files.values())

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from rovval.channels import POSE, VELOCITIES, channel, members
@@ -18,7 +20,7 @@ def hardware(run: Run) -> Outcome:
     checks.append(Check("measured speed of each thruster", ", ".join(thrusters) or "none logged", measured))
     commanded = members(tuple(run.values), "n_cmd")
     checks.append(Check("commanded speed of each thruster", ", ".join(commanded) or "not logged", bool(commanded) or None))
-    rows = [_range(run, name) for name in run.values]
+    rows: list[dict[str, Any]] = [_range(run, name) for name in run.values]
     text = "\n".join(
         f"  {r['channel']:<12} {r['unit']:<6} {r['low']:>12.5g} {r['high']:>12.5g}  {100 * r['coverage']:.1f}%"
         for r in rows
@@ -40,7 +42,7 @@ def _check(run: Run, name: str) -> Check:
     return Check(f"{name} ({channel(name).meaning}, {channel(name).unit})", seen, True if run.measured(name) else None)
 
 
-def _range(run: Run, name: str) -> dict[str, object]:
+def _range(run: Run, name: str) -> dict[str, Any]:
     ok = run.ok(name)
     values = run.get(name)[ok]
     low, high = (float(np.min(values)), float(np.max(values))) if len(values) else (None, None)
