@@ -9,8 +9,8 @@ from rovval.data import Comparison
 from rovval.report import words
 
 
-def blueprint(comparison: Comparison, corrected: bool) -> Any:
-    """The layout: world and notes on the left, velocities, errors, pose and thrusters in tabs on the right."""
+def blueprint(comparison: Comparison, body: str, corrected: bool) -> Any:
+    """World, vehicle with its thrusts (the ``body`` that they are drawn on) and notes left; the curves in tabs right."""
     import rerun.blueprint as rrb
 
     c = comparison
@@ -27,9 +27,11 @@ def blueprint(comparison: Comparison, corrected: bool) -> Any:
     if c.sim.thrusters:
         thrusters = [_curves("/thruster/speed", "speed, rpm"), _curves("/thruster/force", "force, N")]
         tabs.append(rrb.Vertical(*thrusters, name="Thrusters"))
-    third = ", corrected" if corrected else ""
-    world = rrb.Spatial3DView(origin="/world", name=f"Measured (solid) and simulated{third}, north-east-down")
-    left = rrb.Vertical(world, rrb.TextDocumentView(origin="/notes", name="Notes"), row_shares=[4, 1])
+    third = ", corrected (green)" if corrected else ""
+    tracks = "Measured (white), windows (orange), free run (blue)" if body == "measured" else "Free run (blue)"
+    world = rrb.Spatial3DView(origin="/world", name=f"{tracks}{third}: north-east-down")
+    near = rrb.Spatial3DView(origin=f"/world/{body.replace(' ', '_')}", name=f"Thrusts on the vehicle ({body})")
+    left = rrb.Vertical(world, near, rrb.TextDocumentView(origin="/notes", name="Notes"), row_shares=[5, 4, 2])
     return rrb.Blueprint(
         rrb.Horizontal(left, rrb.Tabs(*tabs, active_tab=0), column_shares=[2, 3]),
         rrb.TimePanel(timeline="run_time", state="collapsed"),

@@ -37,7 +37,7 @@ def write(comparison: Comparison, path: Path, vehicle: Vehicle, corrected: SimRe
 
     c, run = comparison, comparison.run
     stream = rr.RecordingStream("rovval", recording_id=run.id, send_properties=False)
-    stream.save(path, default_blueprint=blueprint(c, corrected is not None))
+    stream.save(path, default_blueprint=blueprint(c, "measured" if is_placed(c) else "free run", corrected is not None))
     banner = " SYNTHETIC" if words.synthetic(c) else ""
     stream.send_recording_name(f"{run.id} ({c.sim.model}){banner}")
     clock = [rr.TimeColumn("run_time", duration=run.t)]
@@ -100,14 +100,18 @@ def _thrusters(stream: Any, clock: list[Any], sim: SimResult) -> None:
         stream.send_columns(f"/thruster/{path}", clock, rr.Scalars.columns(scalars=values))
 
 
+def is_placed(c: Comparison) -> bool:
+    """Whether the measured vehicle has a place in the world."""
+    return all(c.run.measured(n) for n in ("x", "y", "z"))
+
+
 def _world(stream: Any, clock: list[Any], c: Comparison, vehicle: Vehicle, corrected: SimResult | None) -> list[str]:
     """Trajectories, the vehicle as measured and as simulated, and its thrusts; returns what had to be left out."""
     import rerun as rr
 
     run, notes = c.run, []
     stream.log("/world", rr.ViewCoordinates.RIGHT_HAND_Z_DOWN, static=True)
-    stream.log("/world/origin", rr.Arrows3D(vectors=np.eye(3), labels=["north", "east", "down"], radii=0.01), static=True)
-    placed = all(run.measured(n) for n in ("x", "y", "z"))
+    placed = is_placed(c)
     tracks = {"free run": c.sim.free.eta[:, :3]}
     bodies = {"free run": c.sim.free.eta}
     if placed:
@@ -124,14 +128,26 @@ def _world(stream: Any, clock: list[Any], c: Comparison, vehicle: Vehicle, corre
     else:
         missing = [n for n in ("x", "y", "z") if not run.measured(n)]
         notes.append(f"{words.listed(missing)} not measured: 3-D shows the simulated free run alone.")
+    _compass(stream, next(iter(tracks.values())))
     for name, points in tracks.items():
         stretch = c.sim.windowed.stretch if name in ("windows", "corrected") else np.zeros(len(run), np.int64)
         strips = _strips(points, stretch)
-        stream.log(f"/world/track/{_slug(name)}", rr.LineStrips3D(strips, colors=[COLOURS[name]], radii=0.015), static=True)
+        stream.log(f"/world/track/{_slug(name)}", rr.LineStrips3D(strips, colors=[COLOURS[name]], radii=-1.5), static=True)
     for name, eta in bodies.items():
         _body(stream, clock, f"/world/{_slug(name)}", eta, vehicle, COLOURS[name], solid=name == next(iter(bodies)))
     _thrusts(stream, clock, f"/world/{_slug(next(iter(bodies)))}/thrust", c.sim, vehicle)
     return notes
+
+
+def _compass(stream: Any, track: Array) -> None:
+    """North, east and down where the track begins, so that the view frames the dive and not the way to the surface."""
+    import rerun as rr
+
+    there = np.flatnonzero(np.isfinite(track).all(axis=1))
+    start = track[there[0]] if len(there) else np.zeros(3)
+    length = max(0.5, 0.12 * float(np.ptp(track[there], axis=0).max())) if len(there) else 0.5
+    axes = rr.Arrows3D(origins=[start] * 3, vectors=length * np.eye(3), labels=["north", "east", "down"], radii=-1.0)
+    stream.log("/world/compass", axes, static=True)
 
 
 def _slug(name: str) -> str:
@@ -152,8 +168,9 @@ def _body(
     """The vehicle's box along a pose; it shrinks to nothing where the pose is missing."""
     import rerun as rr
 
-    fill = rr.components.FillMode.Solid if solid else rr.components.FillMode.MajorWireframe
+    fill = rr.components.FillMode.TransparentFillMajorWireframe if solid else rr.components.FillMode.MajorWireframe
     half = np.array(vehicle.body.size) / 2.0
+    stream.log(path, rr.ViewCoordinates.RIGHT_HAND_Z_DOWN, static=True)
     stream.log(path, rr.Boxes3D(half_sizes=[half], colors=[colour], fill_mode=fill), static=True)
     there = np.asarray(np.isfinite(eta).all(axis=1))
     known = np.where(there[:, None], eta, 0.0)

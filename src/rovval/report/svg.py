@@ -61,7 +61,10 @@ def horizon(title: str, unit: str, seconds: Array, rms: Array, baseline: float, 
     parts.append(f'<polyline points="{points}" fill="none" stroke="var(--windowed)" stroke-width="2"/>')
     for k, (t, v) in enumerate(marks):
         x, y = at(t, v)
-        side, under = ("end" if t > 0.9 * end else "middle"), k % 2 == 1 and k < len(marks) - 1 and y < h - bottom - 20
         parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="var(--windowed)"/>')
-        parts.append(text(x, y + 17 if under or y < top + 12 else y - 8, number(v, 2), "", side))
+        crowded = 0 < k < len(marks) - 1 and x - at(marks[k - 1][0], 0.0)[0] < 40.0  # its neighbour's number is in the way
+        if crowded and y > h - bottom - 22.0:
+            continue
+        side = "end" if t > 0.9 * end else "middle"
+        parts.append(text(x, y + 17 if crowded or y < top + 12 else y - 8, number(v, 2), "", side))
     return svg(w, h, f"{title}: error against time since the window's start", *parts)

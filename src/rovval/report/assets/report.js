@@ -33,7 +33,7 @@
         cursor: { sync: { key: p.x, setSeries: false }, drag: { x: true, y: false }, points: { size: 5 }, y: false },
         scales: { x: { time: false } },
         axes: [{ ...axis, show: !p.bare, size: 26, values: (u, v) => v.map((t, i) => (i === v.length - 1 ? t + " s" : t)) },
-          { ...axis, size: 50, space: p.error ? 22 : 34 }],
+          { ...axis, size: 50, space: p.error ? 18 : 30 }],
         series: [{}, ...series],
         hooks: {
           setCursor: [(u) => {
