@@ -12,7 +12,7 @@ from report_cases import make_run, make_sim
 from rovval import vehicle
 from rovval.compare import compare
 from rovval.data import Array, Comparison
-from rovval.report import recording
+from rovval.report import recording, world
 
 MERLIN = vehicle.load("merlin")
 
@@ -89,5 +89,5 @@ def test_holes_stops_and_a_log_without_epoch(tmp_path: Path) -> None:
 def test_tracks_are_cut_where_they_are_missing(cut: int) -> None:
     points = np.arange(60.0).reshape(20, 3)
     points[cut] = np.nan
-    pieces = recording._strips(points, np.repeat([0, 1], 10))
+    pieces = world._strips(points, np.repeat([0, 1], 10))
     assert [len(p) for p in pieces] == ([9, 10] if cut == 0 else [10, 9])

@@ -44,7 +44,10 @@ def text(comparison: Comparison) -> str:
 
 
 _OTHER = "Free runs, over the rows that the log, our simulation and the other one have in common; the nearer one in bold."
-_HORIZON = "Root mean square over all windows. A curve that is high from the first second is a wrong force; one that climbs, a drift."
+_HORIZON = (
+    "Root mean square over all windows. Flat from the first step: noise of the sensors, or motion too quick for the simulator. "
+    "Climbing: a force that is wrong or missing."
+)
 _RECORDING = (
     "<p>Everything in time and in 3-D, both trajectories and the thrusts, is in <code>run.rrd</code> beside this file:</p>"
     "<pre>rerun run.rrd</pre><p class='note'>The viewer comes with <code>rerun-sdk</code>, which rovval has installed. "

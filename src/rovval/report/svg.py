@@ -52,11 +52,13 @@ def horizon(title: str, unit: str, seconds: Array, rms: Array, baseline: float, 
     for t in (0.0, *(m for m in (1.0, 2.0, 5.0, ceil(end)) if m <= ceil(end))):
         x = min(at(t, 0.0)[0], w - right)
         parts.append(text(x, h - 7, f"{t:g} s" if t == ceil(end) else f"{t:g}", "m", "middle"))
+    labels = []
     if shown:
         y = at(0.0, baseline)[1]
-        parts += [line(left, y, w - right, y, "base"), text(w - right, y - 4, "no motion", "m", "end")]
+        parts.append(line(left, y, w - right, y, "base"))
+        labels.append(text(w - right, y - 4, "no motion", "m", "end"))
     else:
-        parts.append(text(w - right, top - 1, f"no motion: {number(baseline, 2)}", "m", "end"))
+        labels.append(text(w - right, top - 1, f"no motion: {number(baseline, 2)}", "m", "end"))
     points = " ".join(f"{x:.1f},{y:.1f}" for x, y in (at(float(t), float(v)) for t, v in zip(seconds, rms, strict=True)))
     parts.append(f'<polyline points="{points}" fill="none" stroke="var(--windowed)" stroke-width="2"/>')
     for k, (t, v) in enumerate(marks):
@@ -67,4 +69,4 @@ def horizon(title: str, unit: str, seconds: Array, rms: Array, baseline: float, 
             continue
         side = "end" if t > 0.9 * end else "middle"
         parts.append(text(x, y + 17 if crowded or y < top + 12 else y - 8, number(v, 2), "", side))
-    return svg(w, h, f"{title}: error against time since the window's start", *parts)
+    return svg(w, h, f"{title}: error against time since the window's start", *parts, *labels)
