@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import sqlite3
+from typing import Any
 
 import numpy as np
 import pytest
@@ -34,7 +35,7 @@ def motion():
 
 def messages(store, ros1):
     T = store.types
-    t, yaw, position, velocity, rate = motion()
+    _t, yaw, position, velocity, rate = motion()
     zero = np.zeros(36)
     for i in range(N):
         ns = START_NS + i * 100_000_000
@@ -55,13 +56,10 @@ def messages(store, ros1):
             yield f"/thrusters/{name}/rpm", "std_msgs/msg/Float64", ns, T["std_msgs/msg/Float64"](data=speed)
 
 
-def write(kind, path):
+def write(kind: str, path: Any) -> Any:
     store = get_typestore(Stores.ROS1_NOETIC if kind == "bag" else Stores.ROS2_HUMBLE)
-    if kind == "bag":
-        writer = Bag1(path)
-    else:
-        writer = Bag2(path, version=9, storage_plugin=StoragePlugin.MCAP if kind == "mcap" else StoragePlugin.SQLITE3)
-    with writer as bag:
+    plugin = StoragePlugin.MCAP if kind == "mcap" else StoragePlugin.SQLITE3
+    with Bag1(path) if kind == "bag" else Bag2(path, version=9, storage_plugin=plugin) as bag:
         connections = {}
         for topic, kind_, ns, message in messages(store, kind == "bag"):
             if topic not in connections:
@@ -90,7 +88,7 @@ KINDS = ["bag", "db3", "mcap", "bare db3", "bare mcap", "folder without metadata
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_container_gives_the_same_run_in_ned(bags, kind):
     run = open_run(bags[kind])
-    t, yaw, position, velocity, rate = motion()
+    _t, yaw, position, velocity, rate = motion()
     assert run.profile == "ros_odometry" and len(run) == N and run.t0_ns == START_NS
     assert np.allclose(run.values["x"], position[:, 1]) and np.allclose(run.values["y"], position[:, 0])
     assert np.allclose(run.values["z"], -position[:, 2])

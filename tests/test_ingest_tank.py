@@ -62,7 +62,7 @@ def test_every_stick_drives_its_axis_with_its_sign(run, pairs):
         channel, axis = pair.split()
         ok = log.ok(channel)
         smooth = [np.convolve(x[ok], np.ones(11) / 11, "same") for x in (log.get(channel), log.get(f"stick:{axis}"))]
-        assert np.corrcoef(*smooth)[0, 1] > 0.6, pair
+        assert np.corrcoef(smooth[0], smooth[1])[0, 1] > 0.6, pair
 
 
 def test_the_heading_is_turned_into_the_positions_axes_and_said():

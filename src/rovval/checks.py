@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from rovval.channels import channel
-from rovval.data import Array, RawLog, Series
+from rovval.data import Array, Flags, RawLog, Series
 from rovval.errors import Finding
 from rovval.frames import euler_rates, rotation_from_euler
 from rovval.ingest._series import bad_samples, still_runs
@@ -60,8 +60,7 @@ def _stuck(raw: RawLog, name: str, series: Series) -> list[Finding]:
     if np.ptp(series.values) == 0.0:
         return [Finding("constant", name, f"holds {series.values[0]:.6g} {channel(name).unit} throughout")] if len(series.t) > 1 else []
     runs = still_runs(series, STUCK_S)
-    usual = [b - a for a, b in still_runs(series, 0.0)]
-    if not runs or np.median(np.diff(series.t)) > STUCK_S or len(usual) > 0.5 * len(series.t):
+    if not runs or _coarse(series, runs):
         return []
     first, last = max(runs, key=lambda run: series.t[run[1]] - series.t[run[0]])
     detail = (
@@ -69,6 +68,15 @@ def _stuck(raw: RawLog, name: str, series: Series) -> list[Finding]:
         f"from t = {series.t[first]:.1f} s; not masked (declare stuck_s in the profile to mask)"
     )
     return [Finding("stuck", name, detail)]
+
+
+def _coarse(series: Series, runs: list[tuple[int, int]]) -> bool:
+    """Whether the channel repeats itself outside its long runs as well, as a sensor of coarse steps does."""
+    outside = np.ones(len(series.t) - 1, dtype=bool)
+    for first, last in runs:
+        outside[max(first - 1, 0) : last + 1] = False
+    repeats = np.diff(series.values) == 0.0
+    return bool(outside.sum() < 10 or repeats[outside].mean() > 0.3)
 
 
 def _rate(name: str, series: Series) -> list[Finding]:
@@ -93,35 +101,52 @@ def _kinematics(raw: RawLog) -> list[Finding]:
     c = {n: np.interp(t, s.t, np.unwrap(s.values) if n in EULER else s.values, np.nan, np.nan) for n, s in raw.channels.items() if n in SENSORS}
     k = max(1, round(1.0 / float(np.median(np.diff(t)))))
     euler = np.stack([c[n] for n in EULER], axis=1)
-    pairs: list[tuple[str, str, Array]] = []
+    moved: list[tuple[str, Array, Array]] = []
     if all(n in c for n in "pqr"):
         rates = euler_rates(euler, np.stack([c[n] for n in "pqr"], axis=1))
-        pairs += [(n, b, rates[:, i]) for i, (n, b) in enumerate(zip(EULER, "pqr", strict=True))]
-    if all(n in c for n in "uvw"):
-        world = np.einsum("nij,nj->ni", rotation_from_euler(euler), np.stack([c[n] for n in "uvw"], axis=1))
-        pairs += [(n, b, world[:, i]) for i, (n, b) in enumerate(zip("xyz", "uvw", strict=True)) if n in c]
-    tilted = np.concatenate(([0], np.cumsum((np.abs(euler[:, :2]) > LEVEL).any(axis=1))))
-    level = (tilted[k + 1 :] == tilted[: -k - 1]) & (t[k:] - t[:-k] < 2.0)
-    found = []
-    for pose, body, rate in pairs:
-        way = np.concatenate(([0.0], np.cumsum(np.nan_to_num(0.5 * (rate[1:] + rate[:-1]) * np.diff(t)))))
-        moved, said = c[pose][k:] - c[pose][:-k], way[k:] - way[:-k]
-        known = level & np.isfinite(moved) & np.isfinite(rate[k:]) & np.isfinite(rate[:-k])
-        if known.sum() >= 50:
-            found += _agree(pose, body, moved[known], said[known])
+        moved += [(f"{n}, {b}", _step(c[n], k), _way(rates[:, i], t, k)) for i, (n, b) in enumerate(zip(EULER, "pqr", strict=True))]
+    if all(n in c for n in "uvwz"):
+        down = np.einsum("ni,ni->n", rotation_from_euler(euler)[:, 2], np.stack([c[n] for n in "uvw"], axis=1))
+        moved.append(("z, w", _step(c["z"], k), _way(down, t, k)))
+    if all(n in c for n in "uvwxyz"):
+        turn = rotation_from_euler(euler)[k // 2 : k // 2 + len(t) - k]
+        room = np.einsum("nji,nj->ni", turn, np.stack([_step(c[n], k) for n in "xyz"], axis=1))
+        moved += [(f"{n}, {b}", room[:, i], _way(c[b], t, k)) for i, (n, b) in enumerate(zip("xyz", "uvw", strict=True))]
+    level = _while(np.abs(euler[:, :2]).max(axis=1) < LEVEL, k) & (t[k:] - t[:-k] < 2.0)
+    found: list[Finding] = []
+    for names, way, said in moved:
+        known = level & np.isfinite(way) & np.isfinite(said)
+        if known.sum() >= 50 and not any(f.where == names for f in found):
+            found += _agree(names, way[known], said[known])
     return found
 
 
-def _agree(pose: str, body: str, moved: Array, said: Array) -> list[Finding]:
+def _step(x: Array, k: int) -> Array:
+    return np.asarray(x[k:] - x[:-k])
+
+
+def _way(rate: Array, t: Array, k: int) -> Array:
+    """Integral of ``rate`` over each ``k`` steps; NaN where it is not known all along."""
+    whole = np.concatenate(([0.0], np.cumsum(np.nan_to_num(0.5 * (rate[1:] + rate[:-1]) * np.diff(t)))))
+    return np.where(_while(np.isfinite(rate), k), whole[k:] - whole[:-k], np.nan)
+
+
+def _while(flag: Flags, k: int) -> Flags:
+    """Whether ``flag`` holds all along each ``k`` steps."""
+    broken = np.concatenate(([0], np.cumsum(~flag)))
+    return np.asarray(broken[k + 1 :] == broken[: -k - 1])
+
+
+def _agree(names: str, moved: Array, said: Array) -> list[Finding]:
     a, b = moved - moved.mean(), said - said.mean()
     size = float(np.sqrt((a @ a) * (b @ b)))
     if size < 1e-12 * len(a):
         return []
     correlation, scale = float(a @ b) / size, float(a @ b) / float(b @ b)
     if correlation < -SURE:
-        detail = f"{pose} runs against the body velocities (correlation {correlation:.2f}): a sign of {pose} or {body} is wrong"
-        return [Finding("sign", f"{pose}, {body}", detail)]
+        detail = f"the pose runs against the velocity that is its rate (correlation {correlation:.2f}): one of the signs is wrong"
+        return [Finding("sign", names, detail)]
     if correlation > 0.9 and not 0.8 < scale < 1.25:
-        detail = f"{pose} moves {scale:.2f} times what the body velocities give: a unit or scale of {pose} or {body} is wrong"
-        return [Finding("scale", f"{pose}, {body}", detail)]
+        detail = f"the pose moves {scale:.2f} times what the velocity that is its rate gives: one of the units or scales is wrong"
+        return [Finding("scale", names, detail)]
     return []

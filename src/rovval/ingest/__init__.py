@@ -59,7 +59,10 @@ def read(path: Path, profile: str | None = None) -> RawLog:
     path = Path(path)
     refuse_unusable(path)
     chosen = load_profile(profile) if profile is not None else _the_one_that_fits(path)
-    return reader(chosen.format).read(path, chosen)
+    chosen_reader = reader(chosen.format)
+    if path.is_dir() and "" not in chosen_reader.SUFFIXES:
+        raise BadInput(f"{path}: a folder; profile {chosen.name!r} reads single files ({chosen.format})", "give one of the files in it")
+    return chosen_reader.read(path, chosen)
 
 
 def _the_one_that_fits(path: Path) -> Profile:

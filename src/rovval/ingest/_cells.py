@@ -10,7 +10,7 @@ import polars as pl
 
 from rovval.data import Array
 from rovval.errors import BadInput, Finding, all_at_once
-from rovval.ingest._text import Table, some
+from rovval.ingest._text import Table, cells, some
 
 BLANK = ("", "nan", "-", "--", "null", "none", "n/a", "na", "#n/a", "-nan", "nan(ind)", "-nan(ind)")
 DECIMAL_COMMA = r"^[+-]?\d+,\d*([eE][+-]?\d+)?$"
@@ -19,14 +19,17 @@ DECIMAL_COMMA = r"^[+-]?\d+,\d*([eE][+-]?\d+)?$"
 def frame(table: Table, columns: Mapping[str, int]) -> pl.DataFrame:
     """The wanted columns (name -> position in the header) as text, stripped."""
     text = "\n".join(table.rows).encode()
-    wide = pl.read_csv(
-        io.BytesIO(text),
-        has_header=False,
-        infer_schema=False,
-        separator=table.separator,
-        quote_char='"' if b'"' in text else None,
-        new_columns=[f"c{i}" for i in range(len(table.header))],
-    )
+    names = [f"c{i}" for i in range(len(table.header))]
+    quote = '"' if b'"' in text else None
+    try:
+        wide = pl.read_csv(
+            io.BytesIO(text), has_header=False, infer_schema=False, separator=table.separator, quote_char=quote, new_columns=names
+        )
+    except pl.exceptions.PolarsError:
+        wide = pl.DataFrame()
+    if wide.shape != (len(table.rows), len(names)):  # a stray quote makes rows run together: take them one by one
+        apart = [cells(row, table.separator) for row in table.rows]
+        wide = pl.DataFrame({n: [row[i] if i < len(row) else None for row in apart] for i, n in enumerate(names)}, schema=dict.fromkeys(names, pl.String))
     return wide.select(pl.col(f"c{at}").str.strip_chars().alias(name) for name, at in columns.items())
 
 

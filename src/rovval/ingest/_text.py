@@ -64,7 +64,10 @@ def fits(pattern: str, name: str) -> bool:
 def cells(line: str, separator: str) -> list[str]:
     """The cells of one line."""
     if '"' in line:
-        return [c.strip() for c in next(csv.reader([line], delimiter=separator))]
+        try:
+            return [c.strip() for c in next(csv.reader([line], delimiter=separator))]
+        except csv.Error:
+            pass
     return [c.strip() for c in line.split(separator)]
 
 
