@@ -12,6 +12,9 @@ if TYPE_CHECKING:
     from rovval.data import Array, Run, SimResult
     from rovval.vehicle.model import Vehicle
 
+DAY_S = 86400.0
+TIME_OF_DAY = "time_of_day_s_at_start"  # what ingest notes of a clock without a date
+
 
 def vehicle_of(run: Run, wanted: str | None) -> Vehicle:
     """The vehicle that was asked for, else the one that the run names."""
@@ -58,10 +61,22 @@ def other_velocities(path: Path, run: Run, profile: str | None, archive: Path) -
 
 
 def _shift(run: Run, other: Run) -> int:
-    """Grid point of ``run`` at which ``other`` begins: by their clocks where both know it, else they begin together."""
-    if run.t0_ns is None or other.t0_ns is None:
+    """Grid point of ``run`` at which ``other`` begins, by the clock that both know; without one they must be equally long."""
+    if run.t0_ns is not None and other.t0_ns is not None:
+        return round((other.t0_ns - run.t0_ns) * 1e-9 / run.dt)
+    if TIME_OF_DAY in run.properties and TIME_OF_DAY in other.properties:
+        late = _seconds_of_day(other) - _seconds_of_day(run)
+        return round(((late + DAY_S / 2) % DAY_S - DAY_S / 2) / run.dt)
+    if len(run) == len(other):
         return 0
-    return round((other.t0_ns - run.t0_ns) * 1e-9 / run.dt)
+    raise BadInput(
+        f"{other.source}: {len(other)} samples against {len(run)} of run {run.id}, and no clock that both know",
+        "give both the same kind of stamps, or a file of the same rows",
+    )
+
+
+def _seconds_of_day(run: Run) -> float:
+    return float(run.properties[TIME_OF_DAY]) + float(run.properties["grid_start_s"])
 
 
 def simulated(run: Run, vehicle: Vehicle, model: str, effects: Sequence[str], window_s: float) -> SimResult:
