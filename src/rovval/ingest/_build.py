@@ -134,6 +134,8 @@ def _into_body(profile: Profile, series: dict[str, Series], found: list[Finding]
     if not any(n in profile.channels and profile.channels[n].frame == "world" for n in WORLD_VELOCITY):
         return series
     rest = {n: s for n, s in series.items() if n not in WORLD_VELOCITY}
+    if len(rest) == len(series):
+        return series
     if not all(n in series for n in (*WORLD_VELOCITY, *EULER)):
         found.append(Finding("no_velocity", "u, v, w", "velocity along world axes needs all three axes and the attitude"))
         return rest

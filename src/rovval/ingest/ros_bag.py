@@ -38,7 +38,10 @@ def sniff(path: Path) -> bool:
 def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     """Required topics of ``profile`` that the bag has not, and `absent` ones that it has."""
     with _opened(path, profile) as (reader, _):
-        topics = [c.topic for c in reader.connections]
+        return _missing([c.topic for c in reader.connections], profile)
+
+
+def _missing(topics: list[str], profile: Profile) -> tuple[str, ...]:
     wanted = dict.fromkeys(str(s.topic) for s in profile.channels.values() if not s.optional)
     gone = [w for w in wanted if not any(fnmatchcase(t, w) for t in topics)]
     return (*gone, *(f"not {a}" for a in profile.absent if a in topics))
@@ -50,9 +53,10 @@ def read(path: Path, profile: Profile) -> RawLog:
 
     if profile.time.kind not in ("header", "record"):
         raise BadInput(f"{path}: profile {profile.name!r} takes stamps from {profile.time.kind}, a bag has header or record", "give --profile")
-    if gone := [m for m in missing(path, profile) if not m.startswith("not ")]:
-        raise BadInput(all_at_once(gone, f"{path}: missing topics of profile {profile.name!r}"), "see `rovval show profile`, or give another")
     with _opened(path, profile) as (reader, findings):
+        if gone := [m for m in _missing([c.topic for c in reader.connections], profile) if not m.startswith("not ")]:
+            hint = "see `rovval show profile`, or give another"
+            raise BadInput(all_at_once(gone, f"{path}: missing topics of profile {profile.name!r}"), hint)
         topics = _collect(path, reader, profile)
     findings = list(findings)
     stamps = [ns for t in topics.values() for ns in (t.header if t.stamp == "header" else t.record)]
