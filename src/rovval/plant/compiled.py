@@ -11,9 +11,6 @@ from typing import Any
 
 import numpy as np
 from numba import njit
-from numba.extending import overload
-
-from rovval.effects import _scalar
 
 # Contraction to fused multiply-add, no sign of zero, reciprocals; not "fast": NaN and order of sums keep their meaning.
 FLAGS = {"contract", "nsz", "arcp"}
@@ -26,13 +23,8 @@ TWO_PI_LOW = 2.0 * math.pi - 6.28125
 SIN = tuple((-1.0) ** i / math.factorial(2 * i + 1) for i in range(11))
 COS = tuple((-1.0) ** i / math.factorial(2 * i) for i in range(11))
 EXP = tuple(1.0 / math.factorial(i) for i in range(13))
-ATAN = tuple((-1.0) ** i / (2 * i + 1) for i in range(15))
-TAN_15 = math.tan(math.pi / 16)
-
-
-def inlined(function: Callable[..., Any]) -> Any:
-    """An effect's function compiled into the loop that calls it (LLVM's inlining; numba's own takes five times as long)."""
-    return njit(**INLINE)(function)
+ATAN = tuple((-1.0) ** i / (2 * i + 1) for i in range(21))
+TAN_EIGHTH = math.tan(math.pi / 8)
 
 
 def _polynomial(name: str, coefficients: tuple[float, ...]) -> Any:
@@ -86,13 +78,15 @@ def _exp(x: float) -> float:
 
 @njit(**INLINE)
 def atan2(y: float, x: float) -> float:
-    """Angle of (x, y) in (-pi, pi]; the ratio is halved to within tan(pi/8), then tan(pi/16), where 15 terms reach 1e-16."""
+    """Angle of (x, y) in (-pi, pi]: one division brings the tangent within tan(pi/8), where 20 terms of the series reach 1e-17."""
     ax, ay = abs(x), abs(y)
     low, high = min(ax, ay), max(ax, ay)
-    a = low / (high + 1e-300)
-    a = a / (1.0 + math.sqrt(1.0 + a * a))
-    a = a / (1.0 + math.sqrt(1.0 + a * a))
-    angle = 4.0 * a * _atan_series(a * a)
+    steep = low > TAN_EIGHTH * high
+    above = low - high if steep else low
+    below = low + high if steep else high
+    a = above / (below + 1e-300)
+    angle = a * _atan_series(a * a)
+    angle = angle + 0.25 * math.pi if steep else angle
     angle = 0.5 * math.pi - angle if ay > ax else angle
     angle = math.pi - angle if x < 0.0 else angle
     return -angle if y < 0.0 else angle
@@ -113,17 +107,21 @@ def _sqrt(x: float) -> float:
     return math.sqrt(x)
 
 
-def _teach(helper: Callable[..., Any], compiled: Any) -> None:
-    """Tell numba that ``helper`` of `effects._scalar`, in compiled code, is ``compiled``."""
-
-    def one(x: Any) -> Any:
-        return lambda x: compiled(x)
-
-    def three(x: Any, low: Any, high: Any) -> Any:
-        return lambda x, low, high: compiled(x, low, high)
-
-    overload(helper, jit_options=dict(INLINE), strict=False)(three if helper is _scalar.clip else one)
-
-
-for _name, _compiled in (("positive", _positive), ("clip", _clip), ("sqrt", _sqrt), ("exp", _exp), ("sin", _sin), ("cos", _cos)):
-    _teach(getattr(_scalar, _name), _compiled)
+@njit(**{**OPTIONS, "cache": False})
+def load_log(
+    log: Any, t: Any, extra: Any, gain: Any, which: Any, start: Any, step: int, dt: float, la: Any, use_extra: bool, width: int, rows: int
+) -> None:
+    """Logged quantities and the extra wrench at a step's ends, each lane at its own place in the log; the fifth row is time."""
+    last = t.shape[0] - 1
+    for end in range(2):
+        for lane in range(width):
+            j = min(start[lane] + step + end, last)
+            for c in range(4):
+                la[(end * rows + c) * width + lane] = log[j, c]
+            la[(end * rows + 4) * width + lane] = t[start[lane]] + (step + end) * dt
+            if use_extra:
+                for c in range(6):
+                    value = 0.0
+                    if which[lane] >= 0:
+                        value = gain[lane] * extra[which[lane], j, c]
+                    la[(end * rows + 5 + c) * width + lane] = value

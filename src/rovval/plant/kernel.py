@@ -18,7 +18,6 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from rovval import effects
 from rovval.plant import compose
 
 ROOT = Path(__file__).parent
@@ -42,13 +41,11 @@ def _own_folder() -> Path:
 
 @cache
 def _fingerprint(spec: compose.Spec) -> str:
-    """Hash of all that the kernel's machine code depends on: its text, the files of the effects in it, helpers, versions."""
+    """Hash of all that the kernel's machine code depends on: its text with every effect in it, helpers, versions."""
     import numba
 
     digest = hashlib.sha256(f"{numba.__version__} {sys.version}\n{compose.text(spec)}".encode())
-    inside = sorted({hook.effect for hook in compose.hooks(spec)})
-    for file in (ROOT / "compiled.py", effects.FOLDER / "_scalar.py", *(effects.FOLDER / f"{name}.py" for name in inside)):
-        digest.update(file.read_bytes())
+    digest.update((ROOT / "compiled.py").read_bytes())
     return digest.hexdigest()[:16]
 
 

@@ -87,7 +87,7 @@ def pack(lowered: Lowered, spec: compose.Spec, dt: float, substeps: int) -> Arra
     """(B, rows) in the order of `compose.layout`."""
     lanes, where = lowered.lanes, compose.layout(spec)
     size, k = len(lanes), len(lanes.vehicle.thruster)
-    out = np.zeros((size, where.rows(k)))
+    out = np.zeros((size, where.rows))
 
     def put(first: int, values: Array) -> None:
         out[:, first : first + values.shape[1]] = values
@@ -105,7 +105,7 @@ def pack(lowered: Lowered, spec: compose.Spec, dt: float, substeps: int) -> Arra
     position = np.array([t.position for t in lanes.vehicle.thruster])
     hand = np.array([t.handedness for t in lanes.vehicle.thruster], dtype=float)
     moment = np.cross(position, lanes.direction) + (lanes.torque_arm[:, None] * hand)[..., None] * lanes.direction
-    thruster = np.zeros((size, k, where.thruster_stride))
+    thruster = np.zeros((size, k, where.stride))
     thruster[..., 0], thruster[..., 1] = lanes.k_pos, lanes.k_neg
     thruster[..., 2:5], thruster[..., 5:8] = lanes.direction, moment
     if spec.full:

@@ -103,7 +103,7 @@ class Plant:
 
     def _run(self, inputs: Inputs, prepared: Prepared, lowered: Lowered, lanes: _Lanes, steps: int) -> tuple[Array, Indices, Indices]:
         """True motion (steps + 1, 12, B): u v w p q r, x y z phi theta psi; first invalid sample and its reason per lane."""
-        spec = compose.Spec(self._dense, self._advance, bool(lowered.active) or bool((lanes.which >= 0).any()))
+        spec = compose.Spec(len(self.vehicle.thruster), self._dense, self._advance, bool(lowered.active) or bool((lanes.which >= 0).any()))
         size, blocks = len(lanes.start), -(-len(lanes.start) // compose.W)
         numbers = _blocked(pack(lowered, spec, inputs.dt, self.substeps))
         late, onset = self._payload(lowered.lanes, blocks)
@@ -177,19 +177,15 @@ def _coupled(values: tuple[float, ...] | tuple[tuple[float, ...], ...]) -> bool:
     return bool((matrix != np.diag(np.diag(matrix))).any())
 
 
-def _geometry(vehicle: Vehicle) -> tuple[Array, Array, Array, Array, Indices, Array]:
-    """What the kernel needs of the thrusters once per vehicle: place (k, 3), advance-ratio rows (k, 6), side wrench (k, 6), diameter,
-    pairs and weights of the jets."""
-    jets = geometry.jets(vehicle)
-    usable = [t.diameter > 0 for t in vehicle.thruster]
-    return (
-        np.array([t.position for t in vehicle.thruster]),
-        np.array([(*t.advance_pos, *t.advance_neg) if ok else (0.0,) * 6 for t, ok in zip(vehicle.thruster, usable, strict=True)]),
-        geometry.hull_side(vehicle),
-        np.array([t.diameter if ok else 1.0 for t, ok in zip(vehicle.thruster, usable, strict=True)]),
-        jets.pairs,
-        jets.weights,
-    )
+def _geometry(vehicle: Vehicle) -> tuple[Array, Indices, Array]:
+    """What the kernel needs of the thrusters once per vehicle: 16 numbers each (place, advance-ratio rows, wrench of 1 N of side
+    force, diameter), pairs and weights of the jets."""
+    jets, side = geometry.jets(vehicle), geometry.hull_side(vehicle)
+    rows = []
+    for i, t in enumerate(vehicle.thruster):
+        advance = (*t.advance_pos, *t.advance_neg) if t.diameter > 0 else (0.0,) * 6
+        rows.append([*t.position, *advance, *side[i], t.diameter or 1.0])
+    return np.array(rows).reshape(-1), jets.pairs, jets.weights
 
 
 def _blocked(values: Array) -> Array:

@@ -1,516 +1,413 @@
 """The plant's equations as the batch kernel has them, as text with places for the effects' functions.
 
-Thesis 3.10 to 3.15 in the velocity relative to the water (Fossen 2021, 8.4), Runge-Kutta 4 over ``x y z, q_wxyz, u v w p q r``, thruster speeds
-taken at the stage times, since a speed frozen over the step makes the whole scheme first order (measured).
+Thesis 3.10 to 3.15 in the velocity relative to the water (Fossen 2021, 8.4), Runge-Kutta 4 over ``x y z, q_wxyz, u v w p q r``. Thruster
+speeds are taken at the stage times: frozen over the step they make the whole scheme first order (measured). Lines that end in
+``#full`` and the like are kept only in such kernels; ``<<name>>`` is replaced by generated lines.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from rovval.plant.compose import Layout, Spec
-
 from rovval.plant import compose
+from rovval.plant.compose import Spec, calls, layout
 
 SPEED_LIMIT = 20.0  # m/s; no ROV comes near it (design: limits)
 RATE_LIMIT = 30.0  # rad/s
 ADVANCE_LIMIT = 1.0  # |J_a| beyond which the cubic K_T is held: open-water series end near there, and a cubic turns up again
+NU_R = ("ur", "vr", "wr", "r_p", "r_q", "r_r")
+FORCE = tuple("XYZKMN")
+WATER = ("cn", "ce", "cd", "dn", "de", "dd", "fn", "fe", "fd")
 
 
-def render(spec: Spec, where: Layout, fills: Mapping[str, str]) -> str:
-    """The kernel's source for ``spec``: conditional lines are kept or dropped, names of rows become numbers."""
-    body = _drop(TEXT, spec)
-    for name, code in fills.items():
-        body = body.replace(f"#<{name}>#", code.lstrip() if code.strip() else "pass" if name == "imports" else "")
-    for name, row in where.first.items():
-        body = body.replace(f"@{name}@", str(row))
+def render(spec: Spec) -> str:
+    """The kernel's source for ``spec``."""
+    where, k = layout(spec), spec.thrusters
     numbers = {
-        "W": compose.W, "BODY": where.body_rows, "STRIDE": where.thruster_stride, "ROWMASS": compose.MASS_ROWS,
-        "V2": SPEED_LIMIT**2, "W2": RATE_LIMIT**2, "JMAX": ADVANCE_LIMIT,
+        "W": compose.W, "THRUSTERS": k, "BODY": where.body_rows, "STRIDE": where.stride, "ROWS": where.rows, "LOGS": compose.LOG_ROWS,
+        "MASS": where.first["mass"], "RESTORING": where.first["restoring"], "DISPLACED": where.first["displaced"], "ADDED": where.first["added"],
+        "LINEAR": where.first["linear"], "QUADRATIC": where.first["quadratic"], "LAG": where.first["lag"], "SHIFT": where.first["shift"],
+        "JET": where.first["jet"], "PAYLOAD": compose.MASS_ROWS, "V2": SPEED_LIMIT**2, "W2": RATE_LIMIT**2, "JMAX": ADVANCE_LIMIT,
+        "X0": 0, "XS": 13, "ACC": 26, "SEEN": 39, "ENDS": 51, "MEMORY": 51 + 2 * k, "NEXT": 51 + 3 * k, "ALIVE": 51 + 4 * k, "SCRATCH": 52 + 4 * k,
+    }  # fmt: skip
+    kept = "\n".join(_kept(TEXT, spec))
+    generated = {
+        "numbers": [f"{name} = {value!r}" for name, value in numbers.items()],
+        "speed": calls(spec, "speed", ("n",), False, "(BODY + i * STRIDE)"),
+        "at_rest": _at_rest(spec),
+        "water": calls(spec, "water", WATER, True),
+        "thrusters": _thrusters(spec),
+        "wrench": calls(spec, "wrench", FORCE, True),
+        "added": _matvec("a", "ADDED", NU_R, spec.dense),
+        "drag": _drag(spec.dense),
+        "water_acceleration": _added_dot(spec.dense) if spec.full else [],
+        "acceleration": _acceleration(),
+        "advance_state": _advance_state(),
     }
-    for name, value in numbers.items():
-        body = body.replace(f"${name}$", repr(value))
-    body = body.replace("#<added>#", _matvec("a", "added", ("ur", "vr", "wr", "pp", "qq", "rr"), spec.dense).lstrip())
-    body = body.replace("#<drag>#", _drag(spec.dense).lstrip())
-    body = body.replace("#<water_acceleration>#", (_added_dot(spec.dense) if spec.full else "").lstrip())
-    return body.replace("#<solve>#", _solve().lstrip())
+    lines = []
+    for line in kept.splitlines():
+        bare = line.strip()
+        if bare.startswith("<<"):
+            indent = line[: len(line) - len(line.lstrip())]
+            lines += [indent + new for new in generated[bare[2:-2]]]
+        else:
+            lines.append(line)
+    return "\n".join(lines) + "\n"
 
 
-def _drop(text: str, spec: Spec) -> str:
-    """Keep lines marked ``#full`` ``#nominal`` ``#advance`` ``#state`` ``#static`` only where they hold."""
+def _kept(text: str, spec: Spec) -> list[str]:
+    """Lines without a mark, and those whose mark holds: ``#full`` ``#nominal`` ``#advance`` ``#state`` (thrust depends on motion) ``#rest``."""
     state = spec.full or spec.advance
-    marks = {"#full": spec.full, "#nominal": not spec.full, "#advance": spec.advance, "#state": state, "#static": not state}
+    marks = {"full": spec.full, "nominal": not spec.full, "advance": spec.advance, "state": state, "rest": not state}
     kept = []
     for line in text.splitlines():
-        mark = line.rsplit("  #", 1)[-1]
-        if f"#{mark}" in marks and "  #" in line:
-            if not marks[f"#{mark}"]:
-                continue
-            line = line.rsplit("  #", 1)[0]
-        kept.append(line)
-    return "\n".join(kept) + "\n"
+        code, _, mark = line.rpartition("  #")
+        if mark in marks:
+            if marks[mark]:
+                kept.append(code)
+        else:
+            kept.append(line)
+    return kept
+
+
+def _at_rest(spec: Spec) -> list[str]:
+    """Acting speed and thrust at rest in the water of every thruster at one stage time."""
+    lines: list[str] = []
+    state = spec.full or spec.advance
+    for i in range(spec.thrusters):
+        row = f"(BODY + {i} * STRIDE)"
+        lines += [f"a = m[(ENDS + {i}) * W + l]", f"d = m[(ENDS + THRUSTERS + {i}) * W + l] - a", "n = a + d * f"]
+        if spec.full:
+            lines += [
+                "slope = d * inv_dt * tau",
+                f"n = n - slope + (m[(MEMORY + {i}) * W + l] - (a + d * f0) + slope) * left",
+                f"m[(NEXT + {i}) * W + l] = n",
+            ]
+        lines += calls(spec, "acting", ("n",), False, row)
+        lines += ["ahead, astern = 0.5 * (abs(n) + n), 0.5 * (abs(n) - n)"]
+        lines += [f"T = p[{row} * W + l] * ahead * ahead - p[({row} + 1) * W + l] * astern * astern"]
+        lines += calls(spec, "static", ("T",), False, row)
+        if state:
+            lines += [f"th[ts + {3 * i} * W + l] = T", f"th[ts + {3 * i + 1} * W + l] = n"]
+            if spec.advance:
+                lines += [f"th[ts + {3 * i + 2} * W + l] = n / (geo[{16 * i + 15}] * (n * n + 1e-12))"]
+        else:
+            lines += [f"{name} {'+=' if i else '='} T * p[({row} + {2 + c}) * W + l]" for c, name in enumerate(FORCE)]
+    if not state:
+        lines += [f"th[ts + {c} * W + l] = {name}" for c, name in enumerate(FORCE)]
+    return lines
+
+
+def _thrusters(spec: Spec) -> list[str]:
+    """Wrench of all thrusters under way, or as it stands where thrust does not depend on the motion."""
+    if not (spec.full or spec.advance):
+        return [f"{name} = th[ts + {c} * W + l]" for c, name in enumerate(FORCE)]
+    lines = [f"{name} = 0.0" for name in FORCE]
+    for i in range(spec.thrusters):
+        row = f"(BODY + {i} * STRIDE)"
+        lines += [
+            f"T, n = th[ts + {3 * i} * W + l], th[ts + {3 * i + 1} * W + l]",
+            f"vx, vy, vz = ur + r_q * geo[{16 * i + 2}] - r_r * geo[{16 * i + 1}], vr + r_r * geo[{16 * i + 0}] - r_p * geo[{16 * i + 2}], "
+            f"wr + r_p * geo[{16 * i + 1}] - r_q * geo[{16 * i + 0}]",
+            f"ua = p[({row} + 2) * W + l] * vx + p[({row} + 3) * W + l] * vy + p[({row} + 4) * W + l] * vz",
+        ]
+        if spec.advance:
+            lines += [f"J = min(max(ua * th[ts + {3 * i + 2} * W + l], -JMAX), JMAX)"]
+            for name, first in (("ahead", 0), ("astern", 3)):
+                c1, c2, c3 = (f"geo[{16 * i + 3 + first + c}]" for c in range(3))
+                lines += [f"{name} = 1.0 + J * ({c1} + J * ({c2} + J * {c3}))"]
+            lines += ["T = T * (ahead if n > 0.0 else astern)"]
+        if spec.full:
+            lines += ["rest = vx * vx + vy * vy + vz * vz - ua * ua", "cross = math.sqrt(0.5 * (rest + abs(rest)))"]
+        lines += calls(spec, "thrust", ("T",), False, row)
+        lines += [f"{name} += T * p[({row} + {2 + c}) * W + l]" for c, name in enumerate(FORCE)]
+        if spec.full:
+            lines += ["S = abs(T) * p[(JET + 1) * W + l]", *(f"{name} += S * geo[{16 * i + 9 + c}]" for c, name in enumerate(FORCE))]
+    return lines
 
 
 def _entry(name: str, i: int, j: int) -> str:
-    return f"p[(@{name}@ + {6 * i + j}) * W + l]".replace(f"@{name}@ + {6 * i + j}", f"{name.upper()} + {6 * i + j}")
+    return f"p[({name} + {6 * i + j}) * W + l]"
 
 
-def _matvec(out: str, name: str, vector: tuple[str, ...], dense: bool) -> str:
-    lines = []
-    for i in range(6):
-        terms = [f"{_entry(name, i, j)} * {vector[j]}" for j in range(6)] if dense else [f"p[({name.upper()} + {i}) * W + l] * {vector[i]}"]
-        lines.append(f"{out}{i} = " + " + ".join(terms))
-    return "\n".join(" " * 8 + line for line in lines)
+def _matvec(out: str, name: str, vector: tuple[str, ...], dense: bool) -> list[str]:
+    if not dense:
+        return [f"{out}{i} = p[({name} + {i}) * W + l] * {vector[i]}" for i in range(6)]
+    return [f"{out}{i} = " + " + ".join(f"{_entry(name, i, j)} * {vector[j]}" for j in range(6)) for i in range(6)]
 
 
-def _drag(dense: bool) -> str:
-    nu = ("ur", "vr", "wr", "pp", "qq", "rr")
-    lines = []
-    if dense:
-        lines += [f"s{j} = abs({n}) * {n}" for j, n in enumerate(nu)]
-    for i in range(6):
-        if dense:
-            linear = " + ".join(f"{_entry('linear', i, j)} * {nu[j]}" for j in range(6))
-            quadratic = " + ".join(f"{_entry('quadratic', i, j)} * s{j}" for j in range(6))
-            lines.append(f"d{i} = {linear} + {quadratic}")
-        else:
-            lines.append(f"d{i} = (p[(LINEAR + {i}) * W + l] + p[(QUADRATIC + {i}) * W + l] * abs({nu[i]})) * {nu[i]}")
-    return "\n".join(" " * 8 + line for line in lines)
+def _drag(dense: bool) -> list[str]:
+    if not dense:
+        return [f"d{i} = (p[(LINEAR + {i}) * W + l] + p[(QUADRATIC + {i}) * W + l] * abs({n})) * {n}" for i, n in enumerate(NU_R)]
+    squares = tuple(f"s{j}" for j in range(6))
+    first = [f"s{j} = abs({n}) * {n}" for j, n in enumerate(NU_R)]
+    both = zip(_matvec("d", "LINEAR", NU_R, True), _matvec("d", "QUADRATIC", squares, True), strict=True)
+    return first + [f"{a} + {b.partition(' = ')[2]}" for a, b in both]
 
 
-def _added_dot(dense: bool) -> str:
+def _added_dot(dense: bool) -> list[str]:
     """M_A times the acceleration of the water in the body frame, on the right-hand side."""
-    lines = []
-    for i, name in enumerate("XYZKMN"):
-        if dense:
-            lines.append(f"{name} += " + " + ".join(f"{_entry('added', i, j)} * sc[{12 + j} * W + l]" for j in range(3)))
-        elif i < 3:
-            lines.append(f"{name} += p[(ADDED + {i}) * W + l] * sc[{12 + i} * W + l]")
-    return "\n".join(" " * 8 + line for line in lines)
+    if dense:
+        return [f"{name} += " + " + ".join(f"{_entry('ADDED', i, j)} * {w}" for j, w in enumerate(("wx", "wy", "wz"))) for i, name in enumerate(FORCE)]
+    return [f"{name} += p[(ADDED + {i}) * W + l] * {w}" for i, (name, w) in enumerate(zip(FORCE, ("wx", "wy", "wz"), strict=False))]
 
 
-def _solve() -> str:
-    """Acceleration = M^-1 (force), the inverse symmetric."""
+def _acceleration() -> list[str]:
+    """M^-1 times force, the inverse symmetric."""
     place = {pair: 10 + n for n, pair in enumerate(compose.SYMMETRIC)}
+    return [
+        f"k{7 + i} = " + " + ".join(f"p[(MASS + {place[min(i, j), max(i, j)]}) * W + l] * {FORCE[j]}" for j in range(6)) for i in range(6)
+    ]
+
+
+def _advance_state() -> list[str]:
+    """Runge-Kutta: the weighted sum, and the state at the next stage."""
     lines = []
-    for i in range(6):
-        terms = [f"p[(MASS + {place[min(i, j), max(i, j)]}) * W + l] * {'XYZKMN'[j]}" for j in range(6)]
-        lines.append(f"kd[{7 + i} * W + l] = " + " + ".join(terms))
-    return "\n".join(" " * 8 + line for line in lines)
+    for c in range(13):
+        lines += [f"m[(ACC + {c}) * W + l] += weight * k{c}", f"m[(XS + {c}) * W + l] = m[(X0 + {c}) * W + l] + reach * k{c}"]
+    return lines
 
 
-TEXT = '''"""Batch kernel, generated by rovval.plant.compose: do not edit."""
+TEXT = '''"""Batch kernel, generated by rovval.plant.template: do not edit."""
+
 import math
 
 import numpy as np
 from numba import njit
 
-from rovval.plant.compiled import OPTIONS, atan2, inlined
+from rovval.plant.compiled import OPTIONS, _clip, _cos, _exp, _positive, _sin, _sqrt, atan2, load_log
 
-#<imports>#
-W = $W$
-BODY = $BODY$
-STRIDE = $STRIDE$
-MASS = @mass@
-RESTORING = @restoring@
-DISPLACED = @displaced@
-ADDED = @added@
-LINEAR = @linear@
-QUADRATIC = @quadratic@
-LAG = @lag@
-SHIFT = @shift@
-JET = @jet@
+<<numbers>>
 
 
 @njit(**OPTIONS)
-def load(p, speed, t, start, step, hold, inv_dt, ends, index, part):
-    """Logged thruster speeds (rev/s) at the step's ends, each lane at its own place in the log."""
-    last, k = speed.shape[0] - 1, speed.shape[1]
-    for end in range(2):
-        if hold and end == 1:
-            for c in range(k * W):
-                ends[k * W + c] = ends[c]
-            continue
-        if end == 0 and step > 0 and not hold:
-            for c in range(k * W):
-                ends[c] = ends[k * W + c]
-            continue
-        for l in range(W):
-            j = min(start[l] + step + end, last)
-            index[l] = j  #nominal
-            x = j - (p[SHIFT * W + l] + p[(SHIFT + 1) * W + l] * t[j])  #full
-            x = min(max(x, 0.0), float(last))  #full
-            i0 = min(int(x), max(last - 1, 0))  #full
-            index[l] = i0  #full
-            part[l] = x - i0  #full
-        for i in range(k):
-            tb = (BODY + i * STRIDE) * W  #full
-            for l in range(W):
-                a = speed[index[l], i]
-                n = a  #nominal
-                b = speed[min(index[l] + 1, last), i]  #full
-                n = a + (b - a) * part[l]  #full
-                #<speed>#
-                ends[(end * k + i) * W + l] = n
-
-
-@njit(**OPTIONS)
-def load_log(log, t, extra, gain, which, start, step, dt, la, use_extra):
-    """Other logged quantities and the extra wrench at the step's ends; row 4 is time."""
-    last = t.shape[0] - 1
-    for end in range(2):
-        for l in range(W):
-            j = min(start[l] + step + end, last)
-            for c in range(4):
-                la[(end * 11 + c) * W + l] = log[j, c]
-            la[(end * 11 + 4) * W + l] = t[start[l]] + (step + end) * dt
-            if use_extra:
-                for c in range(6):
-                    value = 0.0
-                    if which[l] >= 0:
-                        value = gain[l] * extra[which[l], j, c]
-                    la[(end * 11 + 5 + c) * W + l] = value
-
-
-@njit(**OPTIONS)
-def between(la, lg, f0, f1):
-    """Logged quantities at the three stage times of a substep, linear between samples."""
-    for s in range(3):
-        f = f0 + (f1 - f0) * 0.5 * s
-        for c in range(11):
-            for l in range(W):
-                lg[(c * 3 + s) * W + l] = la[c * W + l] + (la[(11 + c) * W + l] - la[c * W + l]) * f
-
-
-@njit(**OPTIONS)
-def thrusters(p, ends, memory, lg, th, tw, diameter, pairs, weights, f0, f1, inv_dt, k):
-    """Acting speed and thrust at rest in the water of each thruster at the three stage times of a substep."""
-    for s in range(3):
-        f = f0 + (f1 - f0) * 0.5 * s
-        for i in range(k):
-            tb = (BODY + i * STRIDE) * W
-            row = ((s * k + i) * 3) * W
-            for l in range(W):
-                a = ends[i * W + l]
-                d = ends[(k + i) * W + l] - a
-                n = a + d * f
-                slope = d * inv_dt * p[LAG * W + l]  #full
-                n = n - slope + (memory[i * W + l] - (a + d * f0) + slope) * p[(LAG + 1 + s) * W + l]  #full
-                if s == 2:  #full
-                    memory[i * W + l] = n  #full
-                #<acting>#
-                ahead = 0.5 * (abs(n) + n)
-                astern = 0.5 * (abs(n) - n)
-                T = p[tb + l] * ahead * ahead - p[tb + W + l] * astern * astern
-                #<static>#
-                th[row + l] = T
-                th[row + W + l] = n
-                th[row + 2 * W + l] = n / (diameter[i] * (n * n + 1e-12))  #advance
-        for c in range(pairs.shape[0]):  #full
-            j, i = pairs[c, 0], pairs[c, 1]  #full
-            tb = (BODY + i * STRIDE) * W  #full
-            row, other = ((s * k + i) * 3) * W, ((s * k + j) * 3) * W  #full
-            wa, ws = weights[c, 0], weights[c, 1]  #full
-            for l in range(W):  #full
-                n, m = th[row + W + l], th[other + W + l]  #full
-                jet = wa * 0.5 * (abs(m) + m) + ws * 0.5 * (abs(m) - m)  #full
-                th[row + l] -= p[JET * W + l] * jet * 0.5 * (p[tb + l] * (n + abs(n)) + p[tb + W + l] * (n - abs(n)))  #full
-        for c in range(6):  #static
-            for l in range(W):  #static
-                tw[(s * 6 + c) * W + l] = 0.0  #static
-        for i in range(k):  #static
-            tb = (BODY + i * STRIDE) * W  #static
-            row = ((s * k + i) * 3) * W  #static
-            for c in range(6):  #static
-                for l in range(W):  #static
-                    tw[(s * 6 + c) * W + l] += th[row + l] * p[tb + (2 + c) * W + l]  #static
-
-
-@njit(**OPTIONS)
-def derivative(p, xs, sc, lg, th, tw, kd, place, advance, side, k, s):
-    """Time derivative ``kd`` (13 rows) of the state ``xs`` at stage time ``s``."""
+def logged(p, speed, t, start, step, m, end):
+    """Logged thruster speeds (rev/s) at one end of a step, each lane at its own place in the log."""
+    last = speed.shape[0] - 1
     for l in range(W):
-        qw, qx, qy, qz = xs[3 * W + l], xs[4 * W + l], xs[5 * W + l], xs[6 * W + l]
-        u, v, w = xs[7 * W + l], xs[8 * W + l], xs[9 * W + l]
-        pp, qq, rr = xs[10 * W + l], xs[11 * W + l], xs[12 * W + l]
-        r11, r12, r13 = 1.0 - 2.0 * (qy * qy + qz * qz), 2.0 * (qx * qy - qz * qw), 2.0 * (qx * qz + qy * qw)
-        r21, r22, r23 = 2.0 * (qx * qy + qz * qw), 1.0 - 2.0 * (qx * qx + qz * qz), 2.0 * (qy * qz - qx * qw)
-        r31, r32, r33 = 2.0 * (qx * qz - qy * qw), 2.0 * (qy * qz + qx * qw), 1.0 - 2.0 * (qx * qx + qy * qy)
-        vn, ve, vd = r11 * u + r12 * v + r13 * w, r21 * u + r22 * v + r23 * w, r31 * u + r32 * v + r33 * w
-        kd[l], kd[W + l], kd[2 * W + l] = vn, ve, vd
-        kd[3 * W + l] = -0.5 * (qx * pp + qy * qq + qz * rr)
-        kd[4 * W + l] = 0.5 * (qw * pp + qy * rr - qz * qq)
-        kd[5 * W + l] = 0.5 * (qw * qq + qz * pp - qx * rr)
-        kd[6 * W + l] = 0.5 * (qw * rr + qx * qq - qy * pp)
-        sc[6 * W + l], sc[7 * W + l], sc[8 * W + l] = r31, r32, r33
-        sc[l], sc[W + l], sc[2 * W + l] = r11, r12, r13  #full
-        sc[3 * W + l], sc[4 * W + l], sc[5 * W + l] = r21, r22, r23  #full
-        sc[15 * W + l], sc[16 * W + l], sc[17 * W + l] = vn, ve, vd  #full
-        cn = ce = cd = dn = de = dd = fn = fe = fd = 0.0  #full
-        #<water>#
-        sc[18 * W + l], sc[19 * W + l], sc[20 * W + l] = cn, ce, cd  #full
-        cu, cv, cw = r11 * cn + r21 * ce + r31 * cd, r12 * cn + r22 * ce + r32 * cd, r13 * cn + r23 * ce + r33 * cd  #full
-        sc[9 * W + l], sc[10 * W + l], sc[11 * W + l] = u - cu, v - cv, w - cw  #full
-        sc[12 * W + l] = r11 * dn + r21 * de + r31 * dd - (qq * cw - rr * cv)  #full
-        sc[13 * W + l] = r12 * dn + r22 * de + r32 * dd - (rr * cu - pp * cw)  #full
-        sc[14 * W + l] = r13 * dn + r23 * de + r33 * dd - (pp * cv - qq * cu)  #full
-        sc[27 * W + l] = r11 * fn + r21 * fe + r31 * fd  #full
-        sc[28 * W + l] = r12 * fn + r22 * fe + r32 * fd  #full
-        sc[29 * W + l] = r13 * fn + r23 * fe + r33 * fd  #full
-        sc[9 * W + l], sc[10 * W + l], sc[11 * W + l] = u, v, w  #nominal
-    for c in range(6):  #state
-        for l in range(W):  #state
-            sc[(21 + c) * W + l] = 0.0  #state
-    for i in range(k):  #state
-        tb = (BODY + i * STRIDE) * W  #state
-        row = ((s * k + i) * 3) * W  #state
-        x, y, z = place[i, 0], place[i, 1], place[i, 2]  #state
-        a1, a2, a3, b1, b2, b3 = advance[i, 0], advance[i, 1], advance[i, 2], advance[i, 3], advance[i, 4], advance[i, 5]  #advance
-        for l in range(W):  #state
-            T, n = th[row + l], th[row + W + l]  #state
-            ur, vr, wr = sc[9 * W + l], sc[10 * W + l], sc[11 * W + l]  #state
-            pp, qq, rr = xs[10 * W + l], xs[11 * W + l], xs[12 * W + l]  #state
-            vx, vy, vz = ur + qq * z - rr * y, vr + rr * x - pp * z, wr + pp * y - qq * x  #state
-            d1, d2, d3 = p[tb + 2 * W + l], p[tb + 3 * W + l], p[tb + 4 * W + l]  #state
-            ua = d1 * vx + d2 * vy + d3 * vz  #state
-            J = min(max(ua * th[row + 2 * W + l], -$JMAX$), $JMAX$)  #advance
-            ahead, astern = 1.0 + J * (a1 + J * (a2 + J * a3)), 1.0 + J * (b1 + J * (b2 + J * b3))  #advance
-            T = T * (ahead if n > 0.0 else astern)  #advance
-            rest = vx * vx + vy * vy + vz * vz - ua * ua  #full
-            cross = math.sqrt(0.5 * (rest + abs(rest)))  #full
-            #<thrust>#
-            sc[21 * W + l] += T * d1  #state
-            sc[22 * W + l] += T * d2  #state
-            sc[23 * W + l] += T * d3  #state
-            sc[24 * W + l] += T * p[tb + 5 * W + l]  #state
-            sc[25 * W + l] += T * p[tb + 6 * W + l]  #state
-            sc[26 * W + l] += T * p[tb + 7 * W + l]  #state
-            S = abs(T) * p[(JET + 1) * W + l]  #full
-            sc[21 * W + l] += S * side[i, 0]  #full
-            sc[22 * W + l] += S * side[i, 1]  #full
-            sc[23 * W + l] += S * side[i, 2]  #full
-            sc[24 * W + l] += S * side[i, 3]  #full
-            sc[25 * W + l] += S * side[i, 4]  #full
-            sc[26 * W + l] += S * side[i, 5]  #full
-    for l in range(W):
-        u, v, w = xs[7 * W + l], xs[8 * W + l], xs[9 * W + l]
-        pp, qq, rr = xs[10 * W + l], xs[11 * W + l], xs[12 * W + l]
-        ur, vr, wr = sc[9 * W + l], sc[10 * W + l], sc[11 * W + l]
-        X, Y, Z = sc[21 * W + l], sc[22 * W + l], sc[23 * W + l]  #state
-        K, M, N = sc[24 * W + l], sc[25 * W + l], sc[26 * W + l]  #state
-        X, Y, Z = tw[(s * 6) * W + l], tw[(s * 6 + 1) * W + l], tw[(s * 6 + 2) * W + l]  #static
-        K, M, N = tw[(s * 6 + 3) * W + l], tw[(s * 6 + 4) * W + l], tw[(s * 6 + 5) * W + l]  #static
-        m, c1, c2, c3 = p[MASS * W + l], p[(MASS + 1) * W + l], p[(MASS + 2) * W + l], p[(MASS + 3) * W + l]
-        i11, i12, i13 = p[(MASS + 4) * W + l], p[(MASS + 5) * W + l], p[(MASS + 6) * W + l]
-        i22, i23, i33 = p[(MASS + 7) * W + l], p[(MASS + 8) * W + l], p[(MASS + 9) * W + l]
-        l1, l2, l3 = m * u + qq * c3 - rr * c2, m * v + rr * c1 - pp * c3, m * w + pp * c2 - qq * c1
-        h1 = c2 * w - c3 * v + i11 * pp + i12 * qq + i13 * rr
-        h2 = c3 * u - c1 * w + i12 * pp + i22 * qq + i23 * rr
-        h3 = c1 * v - c2 * u + i13 * pp + i23 * qq + i33 * rr
-        X -= qq * l3 - rr * l2
-        Y -= rr * l1 - pp * l3
-        Z -= pp * l2 - qq * l1
-        K -= qq * h3 - rr * h2 + v * l3 - w * l2
-        M -= rr * h1 - pp * h3 + w * l1 - u * l3
-        N -= pp * h2 - qq * h1 + u * l2 - v * l1
-        #<added>#
-        X -= qq * a2 - rr * a1
-        Y -= rr * a0 - pp * a2
-        Z -= pp * a1 - qq * a0
-        K -= qq * a5 - rr * a4 + vr * a2 - wr * a1
-        M -= rr * a3 - pp * a5 + wr * a0 - ur * a2
-        N -= pp * a4 - qq * a3 + ur * a1 - vr * a0
-        #<drag>#
-        r31, r32, r33 = sc[6 * W + l], sc[7 * W + l], sc[8 * W + l]
-        net = p[RESTORING * W + l]
-        g1, g2, g3 = p[(RESTORING + 1) * W + l], p[(RESTORING + 2) * W + l], p[(RESTORING + 3) * W + l]
-        X += net * r31 - d0
-        Y += net * r32 - d1
-        Z += net * r33 - d2
-        K += g2 * r33 - g3 * r32 - d3
-        M += g3 * r31 - g1 * r33 - d4
-        N += g1 * r32 - g2 * r31 - d5
-        #<water_acceleration>#
-        fx, fy, fz = sc[27 * W + l], sc[28 * W + l], sc[29 * W + l]  #full
-        X += p[DISPLACED * W + l] * fx + lg[(5 * 3 + s) * W + l]  #full
-        Y += p[DISPLACED * W + l] * fy + lg[(6 * 3 + s) * W + l]  #full
-        Z += p[DISPLACED * W + l] * fz + lg[(7 * 3 + s) * W + l]  #full
-        K += p[(DISPLACED + 2) * W + l] * fz - p[(DISPLACED + 3) * W + l] * fy + lg[(8 * 3 + s) * W + l]  #full
-        M += p[(DISPLACED + 3) * W + l] * fx - p[(DISPLACED + 1) * W + l] * fz + lg[(9 * 3 + s) * W + l]  #full
-        N += p[(DISPLACED + 1) * W + l] * fy - p[(DISPLACED + 2) * W + l] * fx + lg[(10 * 3 + s) * W + l]  #full
-        #<wrench>#
-        #<solve>#
+        j = min(max(start[l] + step, 0), last)
+        x = j - (p[SHIFT * W + l] + p[(SHIFT + 1) * W + l] * t[j])  #full
+        x = min(max(x, 0.0), float(last))  #full
+        j = min(int(x), max(last - 1, 0))  #full
+        part = x - j  #full
+        after = min(j + 1, last)  #full
+        for i in range(THRUSTERS):
+            n = speed[j, i]
+            n = n + (speed[after, i] - n) * part  #full
+            <<speed>>
+            m[(ENDS + end * THRUSTERS + i) * W + l] = n
 
 
 @njit(**OPTIONS)
-def record(xs, out, sample, lane):
-    """Position, Euler angles and velocity of the block's lanes into ``out`` (samples, 12, lanes)."""
-    for l in range(W):
-        qw, qx, qy, qz = xs[3 * W + l], xs[4 * W + l], xs[5 * W + l], xs[6 * W + l]
-        r11, r21, r31 = 1.0 - 2.0 * (qy * qy + qz * qz), 2.0 * (qx * qy + qz * qw), 2.0 * (qx * qz - qy * qw)
-        r32, r33 = 2.0 * (qy * qz + qx * qw), 1.0 - 2.0 * (qx * qx + qy * qy)
-        out[sample, 9, lane + l] = atan2(r32, r33)
-        out[sample, 10, lane + l] = atan2(-r31, math.sqrt(r32 * r32 + r33 * r33))
-        out[sample, 11, lane + l] = atan2(r21, r11)
-    for c in range(6):
-        for l in range(W):
-            out[sample, c, lane + l] = xs[(7 + c) * W + l]
-    for c in range(3):
-        for l in range(W):
-            out[sample, 6 + c, lane + l] = xs[c * W + l]
-
-
-@njit(**OPTIONS)
-def advance_step(p, x0, xs, acc, kd, sc, lg, th, tw, place, advance, side, k, h):
-    """One Runge-Kutta 4 step from ``x0`` into ``xs``, the quaternion made of unit length again."""
-    for c in range(13 * W):
-        xs[c] = x0[c]
-    for stage in range(4):
-        s = (stage + 1) // 2
-        derivative(p, xs, sc, lg, th, tw, kd, place, advance, side, k, s)
-        weight = 1.0 if stage == 0 or stage == 3 else 2.0
-        ahead = 0.5 * h if stage < 2 else h
-        if stage == 0:
-            for c in range(13 * W):
-                acc[c] = kd[c]
-                xs[c] = x0[c] + ahead * kd[c]
-        else:
-            for c in range(13 * W):
-                acc[c] += weight * kd[c]
-                xs[c] = x0[c] + ahead * kd[c]
-    sixth = h / 6.0
-    for c in range(13 * W):
-        xs[c] = x0[c] + sixth * acc[c]
-    for l in range(W):
-        qw, qx, qy, qz = xs[3 * W + l], xs[4 * W + l], xs[5 * W + l], xs[6 * W + l]
-        inverse = 1.0 / math.sqrt(qw * qw + qx * qx + qy * qy + qz * qz)
-        xs[3 * W + l], xs[4 * W + l], xs[5 * W + l], xs[6 * W + l] = qw * inverse, qx * inverse, qy * inverse, qz * inverse
-
-
-@njit(**OPTIONS)
-def settle(x0, xs, alive, stopped, reason, limit, step):
-    """Take the new state of each lane that is alive and sane; a lane that is not keeps its last one for good."""
-    changed = 0
-    for l in range(W):
-        speed = xs[7 * W + l] * xs[7 * W + l] + xs[8 * W + l] * xs[8 * W + l] + xs[9 * W + l] * xs[9 * W + l]
-        rate = xs[10 * W + l] * xs[10 * W + l] + xs[11 * W + l] * xs[11 * W + l] + xs[12 * W + l] * xs[12 * W + l]
-        far = abs(xs[l]) + abs(xs[W + l]) + abs(xs[2 * W + l])
-        sane = 1 if (speed < $V2$) & (rate < $W2$) & (far < 1e12) & (step < limit[l]) else 0
-        changed |= alive[l] & (1 - sane)
-        alive[l] = alive[l] & sane
-    for c in range(13):
-        for l in range(W):
-            x0[c * W + l] = xs[c * W + l] if alive[l] == 1 else x0[c * W + l]
-    if changed:
-        for l in range(W):
-            if alive[l] == 0 and stopped[l] < 0:
-                stopped[l] = step + 1
-                speed = xs[7 * W + l] ** 2 + xs[8 * W + l] ** 2 + xs[9 * W + l] ** 2
-                rate = xs[10 * W + l] ** 2 + xs[11 * W + l] ** 2 + xs[12 * W + l] ** 2
-                reason[l] = 4
-                if step < limit[l]:
-                    reason[l] = 3
-                    if rate >= $W2$ and rate < math.inf:
-                        reason[l] = 2
-                    if speed >= $V2$ and speed < math.inf:
-                        reason[l] = 1
-
-
-@njit(**OPTIONS)
-def warm(p, memory, speed, t, start, dt, hold, index, part, ends):
+def warm(p, speed, t, start, dt, hold, m):
     """Lagged speed of each thruster at the window's first sample, from the log's first sample or 40 time constants before."""
-    longest = 0.0
+    longest, back = 0.0, 0
     for l in range(W):
         longest = max(longest, p[LAG * W + l])
-    k = speed.shape[1]
-    back = 0
     if longest > 0.0:
         for l in range(W):
             back = max(back, min(start[l], int(40.0 * longest / dt) + 1))
-    inv_dt = 1.0 / dt
-    for step in range(-back, 1):
-        load_back(p, speed, t, start, step, ends, index, part)
-        if step == -back:
-            for c in range(k * W):
-                memory[c] = ends[c]
-        else:
-            for i in range(k):
-                for l in range(W):
-                    tau = p[LAG * W + l]
-                    a, b = ends[(k + i) * W + l], ends[i * W + l]
-                    if hold:
-                        b = a
-                    decay = 0.0
-                    if tau > 0.0:
-                        decay = math.exp(-dt / tau)
-                    slope = (b - a) * inv_dt * tau
-                    memory[i * W + l] = b - slope + (memory[i * W + l] - a + slope) * decay
-        for c in range(k * W):
-            ends[k * W + c] = ends[c]
-
-
-@njit(**OPTIONS)
-def load_back(p, speed, t, start, step, ends, index, part):
-    """Logged speeds at sample start + step (not before the log's first)."""
-    last, k = speed.shape[0] - 1, speed.shape[1]
+    logged(p, speed, t, start, -back, m, 0)
+    for c in range(THRUSTERS * W):
+        m[MEMORY * W + c] = m[ENDS * W + c]
+    for step in range(-back, 0):
+        logged(p, speed, t, start, step + 1, m, 1)
+        for l in range(W):
+            if start[l] + step < 0:
+                continue
+            tau = p[LAG * W + l]
+            left = math.exp(-dt / tau) if tau > 0.0 else 0.0
+            for i in range(THRUSTERS):
+                a = m[(ENDS + i) * W + l]
+                b = a if hold else m[(ENDS + THRUSTERS + i) * W + l]
+                slope = (b - a) / dt * tau
+                m[(MEMORY + i) * W + l] = b - slope + (m[(MEMORY + i) * W + l] - a + slope) * left
+        for c in range(THRUSTERS * W):
+            m[ENDS * W + c] = m[(ENDS + THRUSTERS) * W + c]
     for l in range(W):
-        j = min(max(start[l] + step, 0), last)
-        x = j - (p[SHIFT * W + l] + p[(SHIFT + 1) * W + l] * t[j])
-        x = min(max(x, 0.0), float(last))
-        i0 = min(int(x), max(last - 1, 0))
-        index[l] = i0
-        part[l] = x - i0
-    for i in range(k):
-        tb = (BODY + i * STRIDE) * W
-        for l in range(W):
-            a = speed[index[l], i]
-            b = speed[min(index[l] + 1, last), i]
-            n = a + (b - a) * part[l]
-            #<speed>#
-            ends[i * W + l] = n
+        if start[l] == 0 or p[LAG * W + l] == 0.0:
+            for i in range(THRUSTERS):
+                m[(MEMORY + i) * W + l] = m[(ENDS + i) * W + l]
 
 
 @njit(**OPTIONS)
-def run(first, last, numbers, late, onset, states, start, limit, which, gain, speed, log, t, extra, place, advance, side,
-        diameter, pairs, weights, dt, hold, steps, substeps, out, stopped, reason):
-    """Blocks ``first`` to ``last`` of W lanes each: time runs inside the block, so that its numbers stay in the cache."""
-    k = speed.shape[1]
-    h = dt / substeps
-    p = np.empty(numbers.shape[1])
-    x0, xs, acc, kd, sc = np.empty(13 * W), np.empty(13 * W), np.empty(13 * W), np.empty(13 * W), np.zeros(30 * W)
-    ends, memory, th, tw = np.zeros(2 * k * W), np.zeros(k * W), np.zeros(9 * k * W), np.zeros(18 * W)
-    la, lg = np.zeros(22 * W), np.zeros(33 * W)
-    index, part = np.zeros(W, np.int64), np.zeros(W)
-    alive, pending = np.ones(W, np.int64), np.zeros(W, np.int64)
-    for b in range(first, last):
-        p[:] = numbers[b]
-        x0[:] = states[b]
-        alive[:] = 1
-        use_extra = False
-        any_pending = False
+def settle(m, stopped, reason, limit, step):
+    """Stop each lane that has left sane limits; all others take their new state (in ACC)."""
+    alive = 0.0
+    for l in range(W):
+        speed = m[(ACC + 7) * W + l] ** 2 + m[(ACC + 8) * W + l] ** 2 + m[(ACC + 9) * W + l] ** 2
+        rate = m[(ACC + 10) * W + l] ** 2 + m[(ACC + 11) * W + l] ** 2 + m[(ACC + 12) * W + l] ** 2
+        far = abs(m[ACC * W + l]) + abs(m[(ACC + 1) * W + l]) + abs(m[(ACC + 2) * W + l])
+        sane = m[ALIVE * W + l] if (speed < V2) & (rate < W2) & (far < 1e12) else 0.0
+        m[XS * W + l] = sane
+    for l in range(W):
+        if step >= limit[l]:
+            m[XS * W + l] = 0.0
+        if m[XS * W + l] != m[ALIVE * W + l]:
+            speed = m[(ACC + 7) * W + l] ** 2 + m[(ACC + 8) * W + l] ** 2 + m[(ACC + 9) * W + l] ** 2
+            rate = m[(ACC + 10) * W + l] ** 2 + m[(ACC + 11) * W + l] ** 2 + m[(ACC + 12) * W + l] ** 2
+            stopped[l] = step + 1
+            reason[l] = 3
+            if rate >= W2 and rate < math.inf:
+                reason[l] = 2
+            if speed >= V2 and speed < math.inf:
+                reason[l] = 1
+            if step >= limit[l]:
+                reason[l] = 4
+    for l in range(W):
+        m[ALIVE * W + l] = m[XS * W + l]
+    for c in range(13):
         for l in range(W):
+            m[(X0 + c) * W + l] = m[(ACC + c) * W + l] if m[ALIVE * W + l] > 0.5 else m[(X0 + c) * W + l]
+
+
+@njit(**OPTIONS)
+def record(m, out, sample, lane):
+    """Velocity, position and Euler angles of the block's lanes into ``out`` (samples, 12, lanes)."""
+    for l in range(W):
+        qw, qx, qy, qz = m[(X0 + 3) * W + l], m[(X0 + 4) * W + l], m[(X0 + 5) * W + l], m[(X0 + 6) * W + l]
+        r11, r21, r31 = 1.0 - 2.0 * (qy * qy + qz * qz), 2.0 * (qx * qy + qz * qw), 2.0 * (qx * qz - qy * qw)
+        r32, r33 = 2.0 * (qy * qz + qx * qw), 1.0 - 2.0 * (qx * qx + qy * qy)
+        m[(SEEN + 9) * W + l] = atan2(r32, r33)
+        m[(SEEN + 10) * W + l] = atan2(-r31, math.sqrt(r32 * r32 + r33 * r33))
+        m[(SEEN + 11) * W + l] = atan2(r21, r11)
+    for c in range(6):
+        for l in range(W):
+            m[(SEEN + c) * W + l] = m[(X0 + 7 + c) * W + l]
+    for c in range(3):
+        for l in range(W):
+            m[(SEEN + 6 + c) * W + l] = m[(X0 + c) * W + l]
+    for c in range(12):
+        for l in range(W):
+            out[sample, c, lane + l] = m[(SEEN + c) * W + l]
+
+
+@njit(**OPTIONS)
+def run(first, last, numbers, late, onset, states, start, limit, which, gain, speed, log, t, extra, geo, pairs,
+        weights, dt, hold, steps, substeps, out, stopped, reason):
+    """Blocks ``first`` to ``last`` of W lanes each: time runs inside the block, so that its numbers stay in the cache."""
+    h, inv_dt = dt / substeps, 1.0 / dt
+    p, m, th = np.empty(ROWS * W), np.zeros(SCRATCH * W), np.zeros(3 * max(3 * THRUSTERS, 6) * W)
+    la, lg = np.zeros(2 * LOGS * W), np.zeros(3 * LOGS * W)
+    for b in range(first, last):
+        for c in range(ROWS * W):
+            p[c] = numbers[b, c]
+        for c in range(13 * W):
+            m[c] = states[b, c]
+        use_extra, use_wake, pending = False, False, False
+        for l in range(W):
+            m[ALIVE * W + l] = 1.0
             use_extra = use_extra or which[b, l] >= 0
-            pending[l] = 1 if onset[b, l] < math.inf else 0
-            any_pending = any_pending or pending[l] == 1
-        la[:] = 0.0
-        warm(p, memory, speed, t, start[b], dt, hold, index, part, ends)  #full
-        record(x0, out, 0, b * W)
+            use_wake = use_wake or p[JET * W + l] != 0.0
+            pending = pending or onset[b, l] < math.inf
+        for c in range(2 * LOGS * W):
+            la[c] = 0.0
+        warm(p, speed, t, start[b], dt, hold, m)  #full
+        record(m, out, 0, b * W)
         for step in range(steps):
-            load(p, speed, t, start[b], step, hold, 1.0 / dt, ends, index, part)
-            load_log(log, t, extra, gain[b], which[b], start[b], step, dt, la, use_extra)  #full
+            if step == 0 or hold:
+                logged(p, speed, t, start[b], step, m, 0)
+            else:
+                for c in range(THRUSTERS * W):
+                    m[ENDS * W + c] = m[(ENDS + THRUSTERS) * W + c]
+            if hold:
+                for c in range(THRUSTERS * W):
+                    m[(ENDS + THRUSTERS) * W + c] = m[ENDS * W + c]
+            else:
+                logged(p, speed, t, start[b], step + 1, m, 1)
+            load_log(log, t, extra, gain[b], which[b], start[b], step, dt, la, use_extra, W, LOGS)  #full
             for sub in range(substeps):
                 f0, f1 = sub / substeps, (sub + 1) / substeps
-                between(la, lg, f0, f1)  #full
-                if any_pending:  #full
+                for s in range(3):  #full
+                    f = f0 + (f1 - f0) * 0.5 * s  #full
+                    for c in range(LOGS * W):  #full
+                        lg[s * LOGS * W + c] = la[c] + (la[LOGS * W + c] - la[c]) * f  #full
+                if pending:  #full
                     for l in range(W):  #full
-                        if pending[l] == 1 and lg[(4 * 3) * W + l] >= onset[b, l]:  #full
-                            pending[l] = 0  #full
-                            for c in range($ROWMASS$):  #full
+                        if lg[4 * W + l] >= onset[b, l]:  #full
+                            for c in range(PAYLOAD):  #full
                                 p[(MASS + c) * W + l] = late[b, c * W + l]  #full
-                thrusters(p, ends, memory, lg, th, tw, diameter, pairs, weights, f0, f1, 1.0 / dt, k)
-                advance_step(p, x0, xs, acc, kd, sc, lg, th, tw, place, advance, side, k, h)
-                settle(x0, xs, alive, stopped[b], reason[b], limit[b], step)
-            record(x0, out, step + 1, b * W)
+                for s in range(3):
+                    f, ts, ls = f0 + (f1 - f0) * 0.5 * s, s * max(3 * THRUSTERS, 6) * W, s * LOGS * W
+                    for l in range(W):
+                        tau, left = p[LAG * W + l], p[(LAG + 1 + s) * W + l]  #full
+                        <<at_rest>>
+                    if use_wake:  #full
+                        for c in range(pairs.shape[0]):  #full
+                            row, other, first_row = ts + 3 * pairs[c, 1] * W, ts + 3 * pairs[c, 0] * W, (BODY + pairs[c, 1] * STRIDE) * W  #full
+                            wa, ws = 0.5 * weights[c, 0], 0.5 * weights[c, 1]  #full
+                            for l in range(W):  #full
+                                n, up = th[row + W + l], th[other + W + l]  #full
+                                jet = wa * (abs(up) + up) + ws * (abs(up) - up)  #full
+                                own = 0.5 * (p[first_row + l] * (n + abs(n)) + p[first_row + W + l] * (n - abs(n)))  #full
+                                th[row + l] -= p[JET * W + l] * jet * own  #full
+                for c in range(THRUSTERS * W):  #full
+                    m[MEMORY * W + c] = m[NEXT * W + c]  #full
+                for c in range(13 * W):
+                    m[XS * W + c] = m[X0 * W + c]
+                for c in range(13 * W):
+                    m[ACC * W + c] = m[X0 * W + c]
+                for stage in range(4):
+                    s = (stage + 1) // 2
+                    ts, ls = s * max(3 * THRUSTERS, 6) * W, s * LOGS * W
+                    weight = h / 6.0 if stage == 0 or stage == 3 else h / 3.0
+                    reach = 0.5 * h if stage < 2 else h
+                    for l in range(W):
+                        qw, qx, qy, qz = m[(XS + 3) * W + l], m[(XS + 4) * W + l], m[(XS + 5) * W + l], m[(XS + 6) * W + l]
+                        u, v, w = m[(XS + 7) * W + l], m[(XS + 8) * W + l], m[(XS + 9) * W + l]
+                        r_p, r_q, r_r = m[(XS + 10) * W + l], m[(XS + 11) * W + l], m[(XS + 12) * W + l]
+                        r11, r12, r13 = 1.0 - 2.0 * (qy * qy + qz * qz), 2.0 * (qx * qy - qz * qw), 2.0 * (qx * qz + qy * qw)
+                        r21, r22, r23 = 2.0 * (qx * qy + qz * qw), 1.0 - 2.0 * (qx * qx + qz * qz), 2.0 * (qy * qz - qx * qw)
+                        r31, r32, r33 = 2.0 * (qx * qz - qy * qw), 2.0 * (qy * qz + qx * qw), 1.0 - 2.0 * (qx * qx + qy * qy)
+                        vn, ve, vd = r11 * u + r12 * v + r13 * w, r21 * u + r22 * v + r23 * w, r31 * u + r32 * v + r33 * w
+                        k0, k1, k2 = vn, ve, vd
+                        k3 = -0.5 * (qx * r_p + qy * r_q + qz * r_r)
+                        k4 = 0.5 * (qw * r_p + qy * r_r - qz * r_q)
+                        k5 = 0.5 * (qw * r_q + qz * r_p - qx * r_r)
+                        k6 = 0.5 * (qw * r_r + qx * r_q - qy * r_p)
+                        ur, vr, wr = u, v, w  #nominal
+                        cn, ce, cd, dn, de, dd, fn, fe, fd = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0  #full
+                        <<water>>
+                        cx, cy, cz = r11 * cn + r21 * ce + r31 * cd, r12 * cn + r22 * ce + r32 * cd, r13 * cn + r23 * ce + r33 * cd  #full
+                        ur, vr, wr = u - cx, v - cy, w - cz  #full
+                        <<thrusters>>
+                        mass, c1, c2, c3 = p[MASS * W + l], p[(MASS + 1) * W + l], p[(MASS + 2) * W + l], p[(MASS + 3) * W + l]
+                        i11, i12, i13 = p[(MASS + 4) * W + l], p[(MASS + 5) * W + l], p[(MASS + 6) * W + l]
+                        i22, i23, i33 = p[(MASS + 7) * W + l], p[(MASS + 8) * W + l], p[(MASS + 9) * W + l]
+                        l1, l2, l3 = mass * u + r_q * c3 - r_r * c2, mass * v + r_r * c1 - r_p * c3, mass * w + r_p * c2 - r_q * c1
+                        h1 = c2 * w - c3 * v + i11 * r_p + i12 * r_q + i13 * r_r
+                        h2 = c3 * u - c1 * w + i12 * r_p + i22 * r_q + i23 * r_r
+                        h3 = c1 * v - c2 * u + i13 * r_p + i23 * r_q + i33 * r_r
+                        <<added>>
+                        K -= v * l3 - w * l2 + vr * a2 - wr * a1
+                        M -= w * l1 - u * l3 + wr * a0 - ur * a2
+                        N -= u * l2 - v * l1 + ur * a1 - vr * a0
+                        <<drag>>
+                        net = p[RESTORING * W + l]
+                        g1, g2, g3 = p[(RESTORING + 1) * W + l], p[(RESTORING + 2) * W + l], p[(RESTORING + 3) * W + l]
+                        X += net * r31 - d0 - (r_q * (l3 + a2) - r_r * (l2 + a1))
+                        Y += net * r32 - d1 - (r_r * (l1 + a0) - r_p * (l3 + a2))
+                        Z += net * r33 - d2 - (r_p * (l2 + a1) - r_q * (l1 + a0))
+                        K += g2 * r33 - g3 * r32 - d3 - (r_q * (h3 + a5) - r_r * (h2 + a4))
+                        M += g3 * r31 - g1 * r33 - d4 - (r_r * (h1 + a3) - r_p * (h3 + a5))
+                        N += g1 * r32 - g2 * r31 - d5 - (r_p * (h2 + a4) - r_q * (h1 + a3))
+                        wx = r11 * dn + r21 * de + r31 * dd - (r_q * cz - r_r * cy)  #full
+                        wy = r12 * dn + r22 * de + r32 * dd - (r_r * cx - r_p * cz)  #full
+                        wz = r13 * dn + r23 * de + r33 * dd - (r_p * cy - r_q * cx)  #full
+                        <<water_acceleration>>
+                        fx, fy, fz = r11 * fn + r21 * fe + r31 * fd, r12 * fn + r22 * fe + r32 * fd, r13 * fn + r23 * fe + r33 * fd  #full
+                        X += p[DISPLACED * W + l] * fx + lg[ls + 5 * W + l]  #full
+                        Y += p[DISPLACED * W + l] * fy + lg[ls + 6 * W + l]  #full
+                        Z += p[DISPLACED * W + l] * fz + lg[ls + 7 * W + l]  #full
+                        K += p[(DISPLACED + 2) * W + l] * fz - p[(DISPLACED + 3) * W + l] * fy + lg[ls + 8 * W + l]  #full
+                        M += p[(DISPLACED + 3) * W + l] * fx - p[(DISPLACED + 1) * W + l] * fz + lg[ls + 9 * W + l]  #full
+                        N += p[(DISPLACED + 1) * W + l] * fy - p[(DISPLACED + 2) * W + l] * fx + lg[ls + 10 * W + l]  #full
+                        <<wrench>>
+                        <<acceleration>>
+                        <<advance_state>>
+                for l in range(W):
+                    qw, qx, qy, qz = m[(ACC + 3) * W + l], m[(ACC + 4) * W + l], m[(ACC + 5) * W + l], m[(ACC + 6) * W + l]
+                    inverse = 1.0 / math.sqrt(qw * qw + qx * qx + qy * qy + qz * qz)
+                    m[(ACC + 3) * W + l], m[(ACC + 4) * W + l] = qw * inverse, qx * inverse
+                    m[(ACC + 5) * W + l], m[(ACC + 6) * W + l] = qy * inverse, qz * inverse
+                settle(m, stopped[b], reason[b], limit[b], step)
+            record(m, out, step + 1, b * W)
 '''
