@@ -24,6 +24,7 @@ from rovval.blind.scales import Scales
 from rovval.blind.spec import Array
 
 BASE = 13  # position 3, quaternion 4, momentum 6
+CLEAR_M = 0.3  # chosen: where the bottom and the surface begin to push back
 
 
 class Plant:
@@ -138,9 +139,19 @@ class Plant:
         f[3] += my * gz - mz * gy
         f[4] += mz * gx - mx * gz
         f[5] += mx * gy - my * gx
+        if k.altitude < CLEAR_M or k.z < CLEAR_M:
+            self._edge(k, f)
         for e, own in self.wrenches:
             e.wrench(k, y[own], f)
         return f
+
+    def _edge(self, k: Kin, f: list[float]) -> None:
+        """Soft bottom and surface, so that a vehicle out of control stays in the water; no pilot comes this near."""
+        depth = max(0.0, CLEAR_M - k.altitude) - max(0.0, CLEAR_M - k.z)
+        sink = k.r[6] * k.vel[0] + k.r[7] * k.vel[1] + k.r[8] * k.vel[2]
+        push = -6.0 * self.scale.force * (depth / CLEAR_M + 0.5 * abs(depth) / CLEAR_M * sink / self.scale.speed)
+        for i in range(3):
+            f[i] += push * k.r[6 + i]
 
     def rhs(self, t: float, y: Array) -> Array:
         """Time derivative of the state."""

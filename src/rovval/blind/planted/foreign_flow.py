@@ -127,7 +127,6 @@ class BodyLift(_Foreign):
     """Lift of the hull at an angle of attack: forces as u v and u w, ahead of the middle."""
 
     name = "body_lift"
-    least = -9.0
     unit = "0.9 of the working force at working speed and 45 degrees of drift"
 
     def setup(self, plan: Planting) -> None:

@@ -87,7 +87,7 @@ class HullInteraction(_Inflow):
         flat = np.linalg.norm(side, axis=1) < 0.5
         side[flat] = np.sign(self.at[flat, 1:2] + 1e-9) * np.array([0.0, 1.0, 0.0])
         self.side = np.hstack([side, np.cross(self.at, side)])
-        self.loss, self.bend = 0.35 * self.s, 0.2 * self.s
+        self.loss, self.bend = min(1.0, 0.35 * self.s), 0.2 * self.s
         self.values = {"loss": self.loss, "side_share": self.bend}
 
     def thrust(self, thrust: Array, k: Kin, own: Array) -> Array:
@@ -117,7 +117,7 @@ class ThrusterInteraction(Effect):
         gap = np.linalg.norm(plan.hull.positions - plan.hull.positions[self.at], axis=1)
         gap[self.at] = np.inf
         self.other = int(np.argmin(gap))
-        self.loss = 0.6 * self.s
+        self.loss = min(1.0, 0.6 * self.s)
         self.values = {"loss": self.loss, "upstream": plan.hull.thrusters[self.other]}
 
     def thrust(self, thrust: Array, k: Kin, own: Array) -> Array:

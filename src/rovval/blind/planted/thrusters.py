@@ -14,10 +14,11 @@ class _OneUnit(Effect):
     place = "input"
     targets = ("thruster",)
     share = 0.5
+    most = 1.0
 
     def setup(self, plan: Planting) -> None:
         """Loss at full level."""
-        self.loss = self.share * self.s
+        self.loss = min(self.most, self.share * self.s)
         self.at = self.unit_index
         self.values = {"loss": self.loss}
 
@@ -51,6 +52,7 @@ class Reversed(_OneUnit):
     name = "thruster_reversed"
     form = "equal"
     share = 2.0
+    most = 2.0
     unit = "fully reversed; 0.5 is dead"
 
 
@@ -81,7 +83,7 @@ class ReverseAsymmetry(Effect):
 
     def setup(self, plan: Planting) -> None:
         """Loss in reverse."""
-        self.loss = 0.35 * self.s
+        self.loss = min(1.0, 0.35 * self.s)
         self.values = {"loss": self.loss}
 
     def thrust(self, thrust: Array, k: Kin, own: Array) -> Array:
