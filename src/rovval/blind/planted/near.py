@@ -10,13 +10,13 @@ from rovval.blind.spec import Array
 
 
 class GroundEffect(Effect):
-    """Close to the bottom: suction of the flow below the hull, a cushion against heave, and recirculated vertical jets.
+    """Close to the bottom: a steady lift, suction with surge and sway speed, and a cushion against heave.
 
     The share falls as an image vortex does, (1 + (h/l)^2)^(-3/2) with h the altitude.
     """
 
     name = "ground_effect"
-    unit = "at half a metre (small vehicles 0.25 m): lift of 0.3 of the working force, as much again with heave and thrust"
+    unit = "at half a metre (small vehicles 0.25 m): steady lift of a quarter of the working force"
 
     def setup(self, plan: Planting) -> None:
         """Reach (m) and force (N)."""
@@ -25,7 +25,7 @@ class GroundEffect(Effect):
         self.values = {"reach_m": self.reach, "force": self.force, "start_altitude": plan.setting.bottom - plan.setting.depth}
 
     def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
-        """Lift away from the bottom, with speed and downward thrust."""
+        """Lift away from the bottom, less with forward speed, more on the way down."""
         near = max(0.05, k.altitude) / self.reach
         share = self.level(k.t) * (1.0 + near * near) ** -1.5
         u = math.hypot(k.rel[0], k.rel[1]) / self.plan.scale.speed
