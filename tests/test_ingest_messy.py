@@ -272,7 +272,7 @@ def test_paths_that_are_no_log(tmp_path):
         read(tmp_path, "merlin")
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(st.data())
 def test_any_order_and_any_loss_of_rows_keeps_stamps_and_values_together(tmp_path_factory, data):
     """Whatever rows are lost or moved a little, each kept sample still has its own stamp."""
@@ -352,3 +352,29 @@ def test_unreadable_datetimes_are_refused(tmp_path):
 
 def test_merlin_and_its_likes_are_told_apart_from_the_tank():
     assert load_profile("bluerov2_tank").absent == ("LinVelX",)
+
+
+def test_an_angle_averaged_across_the_wrap_is_dropped(tmp_path):
+    """Half way between 359 and 1 degrees a careless average says 180: published logs hold such samples."""
+
+    def spoil(cells):
+        at = next(i for i in range(300) if float(cells["Heading"][i]) > 350.0 and float(cells["Heading"][i + 1]) < 10.0)
+        cells["Heading"][at] = "180.0"
+
+    raw = edited(tmp_path, spoil)
+    assert len(raw.channels["psi"].t) == 299 and found(raw, "angle_spike")[0].where == "psi"
+
+
+def test_two_columns_for_one_thruster_are_refused(tmp_path):
+    path = tmp_path / "twice.csv"
+    path.write_text(text(columns() | {"HFP PV": ["1"] * 300}))
+    with pytest.raises(BadInput, match=r"two columns are 'n:HFP'"):
+        read(path)
+
+
+def test_a_large_export_is_recognised_by_its_beginning(tmp_path):
+    """The profile is chosen from the first 256 KiB, cut at a line, also when that cuts a letter of two bytes."""
+    cells = columns(3000) | {"Merknad": ["sjø" * 20] * 3000}
+    path = tmp_path / "large.csv"
+    path.write_text(text(cells), encoding="utf-8")
+    assert len(read(path).channels["u"].t) == 3000

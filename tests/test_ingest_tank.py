@@ -8,9 +8,16 @@ import numpy as np
 import pytest
 
 from real_data import real
+from rovval.data import Series
 from rovval.frames import rotation_from_euler
 from rovval.ingest import read
 from rovval.store import open_run
+
+
+def whole_rows(raw):
+    """The channels at the stamps that all of them have (one heading averaged across the wrap is dropped)."""
+    shared = raw.channels["psi"].t
+    return {n: Series(s.t[np.isin(s.t, shared)], s.values[np.isin(s.t, shared)], s.stamp) for n, s in raw.channels.items()}
 
 
 def misfit(c, signs=(1, 1, 1, 1, 1), k=8) -> float:
@@ -30,11 +37,11 @@ def test_velocity_is_the_rate_of_position(run):
     raw = read(real(f"bluerov2_tank/{run}.csv"))
     assert raw.profile == "bluerov2_tank" and raw.vehicle == "bluerov2_heavy"
     assert raw.t0_ns is not None and raw.t0_ns > 1_748_000_000 * 10**9
-    assert misfit(raw.channels) < 0.1
+    assert misfit(whole_rows(raw)) < 0.1
 
 
 def test_no_other_choice_of_signs_fits():
-    c = read(real("bluerov2_tank/run_c.csv")).channels
+    c = whole_rows(read(real("bluerov2_tank/run_c.csv")))
     errors = {signs: misfit(c, signs) for signs in itertools.product((1, -1), repeat=5)}
     best = sorted(errors, key=lambda s: errors[s])
     assert best[0] == (1, 1, 1, 1, 1) and errors[best[1]] > 1.5 * errors[best[0]]
@@ -42,7 +49,7 @@ def test_no_other_choice_of_signs_fits():
 
 @pytest.mark.parametrize("run", ["run_a", "run_b", "run_c"])
 def test_rates_are_those_of_the_attitude(run):
-    c = read(real(f"bluerov2_tank/{run}.csv")).channels
+    c = whole_rows(read(real(f"bluerov2_tank/{run}.csv")))
     turn = rotation_from_euler(np.stack([c[n].values for n in ("phi", "theta", "psi")], axis=1))
     step = np.einsum("nji,njk->nik", turn[:-1], turn[1:])
     small = np.trace(step, axis1=1, axis2=2) > 2.9  # below 0.3 rad, where the skew part is the rotation

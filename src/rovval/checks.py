@@ -139,10 +139,11 @@ def _while(flag: Flags, k: int) -> Flags:
 
 def _agree(names: str, moved: Array, said: Array) -> list[Finding]:
     a, b = moved - moved.mean(), said - said.mean()
-    size = float(np.sqrt((a @ a) * (b @ b)))
+    aa, ab, bb = (float((x * y).sum()) for x, y in ((a, a), (a, b), (b, b)))
+    size = float(np.sqrt(aa * bb))
     if size < 1e-12 * len(a):
         return []
-    correlation, scale = float(a @ b) / size, float(a @ b) / float(b @ b)
+    correlation, scale = ab / size, ab / bb
     if correlation < -SURE:
         detail = f"the pose runs against the velocity that is its rate (correlation {correlation:.2f}): one of the signs is wrong"
         return [Finding("sign", names, detail)]

@@ -19,6 +19,7 @@ from rovval.units import to_si
 SIDEWAYS_OR_DOWN = ("v", "w", "q", "r", "vdot", "wdot")  # change sign between forward-left-up and forward-starboard-down
 TO_NED = {"ned": np.eye(3), "enu": ENU_TO_NED, "nwu": FLU_TO_FSD}
 EULER = ("phi", "theta", "psi")
+SPIKE = 1.5  # rad
 WGS84_A, WGS84_E2 = 6378137.0, 6.69437999014e-3  # semi-major axis (m) and first eccentricity squared, NIMA TR8350.2, table 3.1
 
 
@@ -63,7 +64,7 @@ def build(
         found.append(told)
     if not series:
         raise BadInput(f"{path}: every channel of profile {profile.name!r} is empty", "see `rovval show profile`")
-    ordered = {name: _wrapped(name, series[name]) for name in _in_order(profile, series)}
+    ordered = {name: _angles(name, series[name], found) for name in _in_order(profile, series)}
     return RawLog(
         source=str(path), sha256=sha256, profile=profile.name, vehicle=profile.vehicle, t0_ns=t0_ns, channels=ordered,
         findings=tuple(found), properties=facts, rules={n: r for n in ordered if (r := _rule(profile, signals, n)) is not None},
@@ -157,12 +158,22 @@ def _scaled(series: Series, factor: float) -> Series:
     return series if factor == 1.0 else Series(series.t, series.values * factor, series.stamp)
 
 
-def _wrapped(name: str, series: Series) -> Series:
-    """Angles beyond half a turn brought into (-pi, pi]; the others keep every bit, and absurd ones stay to be masked."""
+def _angles(name: str, series: Series, found: list[Finding]) -> Series:
+    """Angles beyond half a turn brought into (-pi, pi]; the others keep every bit, and absurd ones stay to be masked.
+
+    A single sample far from two neighbours that agree is what averaging two angles across the wrap leaves: it is dropped.
+    """
     if name not in EULER:
         return series
     beyond = (np.abs(series.values) > np.pi) & (np.abs(series.values) <= 7.0)
-    return Series(series.t, np.where(beyond, wrap(series.values), series.values), series.stamp)
+    values = np.where(beyond, wrap(series.values), series.values)
+    step, over = np.abs(wrap(np.diff(values))), np.abs(wrap(values[2:] - values[:-2]))
+    spike = np.concatenate(([False], (step[:-1] > SPIKE) & (step[1:] > SPIKE) & (over < SPIKE / 3), [False]))
+    spike = spike[: len(values)] & (np.abs(values) <= np.pi)
+    if spike.any():
+        detail = f"{spike.sum()} single samples far from both neighbours, from t = {series.t[spike][0]:.1f} s; dropped"
+        found.append(Finding("angle_spike", name, detail))
+    return Series(series.t[~spike], values[~spike], series.stamp)
 
 
 def _rule(profile: Profile, signals: Mapping[str, Signal], name: str) -> Rule | None:

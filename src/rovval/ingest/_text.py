@@ -25,9 +25,15 @@ class Table:
     findings: tuple[Finding, ...]
 
 
-def decode(path: Path) -> str:
-    """The file as text: UTF-8 or UTF-16 with mark, UTF-8, else latin-1. Raises `BadInput` for binary content."""
-    content = path.read_bytes()
+def decode(path: Path, most: int = -1) -> str:
+    """The file (or the whole lines of its first ``most`` bytes) as text: UTF-8 or UTF-16 with mark, UTF-8, else latin-1.
+
+    Raises `BadInput` for binary content.
+    """
+    with path.open("rb") as file:
+        content = file.read(most)
+    if 0 <= most == len(content):
+        content = content[: content.rfind(b"\n") + 1] or content
     if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return content.decode("utf-16", errors="replace")
     if b"\0" in content[:65536]:
@@ -120,7 +126,7 @@ def _header(lines: Sequence[str], wanted: Sequence[str]) -> tuple[int, str] | No
             if separator not in line and len(wanted) > 1:
                 continue
             names = cells(line, separator)
-            score = len(plain & {bare(n) for n in names})
+            score = len(plain & {bare(n) for n in names if n.lower() != n.upper()})
             if score or not plain:
                 score += sum(any(fits(w, n) for n in names) for w in patterns)
             if score > best:

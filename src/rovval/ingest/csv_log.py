@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import polars as pl
 
 SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".log", ".asc")
+HEAD = 262_144  # bytes that hold the banner and the header
 SPELLINGS = {
     "°": "deg", "degrees": "deg", "degree": "deg", "°/s": "deg/s", "dps": "deg/s", "m/s^2": "m/s2", "m/s²": "m/s2",
     "1/min": "rpm", "r/min": "rpm", "metre": "m", "meter": "m", "metres": "m", "meters": "m", "mps": "m/s", "v": "V", "knots": "knot",
@@ -37,8 +38,7 @@ def sniff(path: Path) -> bool:
 
 def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     """Required columns of ``profile`` that the file has not, and `absent` ones that it has."""
-    text = _text.decode(path)[:1_000_000]
-    table = _text.split(text, _wanted(profile))
+    table = _text.split(_text.decode(path, HEAD), _wanted(profile))
     header = table.header if table else ()
     gone = [c for c in _wanted(profile, required=True) if not any(_text.fits(c, h) for h in header)]
     return (*gone, *(f"not {c}" for c in profile.absent if any(_text.fits(c, h) for h in header)))
@@ -103,7 +103,11 @@ def _columns(path: Path, profile: Profile, table: _text.Table) -> dict[str, tupl
         if "*" in name:
             for at in hits[0][1]:
                 member = _text.member(patterns[0], table.header[at]) or ""
-                where[name.replace("*", member)] = (source, {table.header[at]: at})
+                key = name.replace("*", member)
+                if key in where:
+                    first = next(iter(where[key][1]))
+                    raise BadInput(f"{path}: two columns are {key!r}: {first!r} and {table.header[at]!r}", "remove one")
+                where[key] = (source, {table.header[at]: at})
         else:
             where[name] = (source, {table.header[found[0]]: found[0] for _, found in hits})
     gone += [c for c in profile.time.columns if not _find(path, c, table.header)]
