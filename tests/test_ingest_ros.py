@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from mcap.writer import Writer as RawMcapWriter
 from mcap_ros2.writer import Writer as McapWriter
 from rosbags.rosbag1 import Writer as Bag1
 from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as Bag2
-from rosbags.typesys import Stores, get_typestore
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from real_data import real
 from rovval.data import Reason
@@ -216,3 +217,47 @@ def test_released_without_ballast_the_vehicle_sinks_and_with_it_floats():
     assert sunk.get("z")[-30:-10].mean() > 1.0 and abs(floating.get("z")[-30:-10].mean()) < 0.1
     assert not sunk.get("stick:heave")[sunk.ok("stick:heave")].any()
     assert (sunk.reasons["z"] != Reason.GAP).all()
+
+
+def custom(**more):
+    table = {
+        "name": "custom", "description": "", "format": "ros_bag", "frame": "fsd", "world": "ned", "time": {"kind": "header"},
+        "channels": {"n:HFP": {"topic": "/thruster", "field": "data", "unit": "rpm"}},
+    }  # fmt: skip
+    return parse_profile(table | more, "test")
+
+
+def test_types_that_an_old_db3_does_not_define_come_from_the_profile(tmp_path):
+    """Bags recorded before ROS 2 Iron hold no definitions; without the .msg text a custom type is a bare KeyError of rosbags."""
+    text = "std_msgs/Header header\nfloat64 data\n"
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    store.register(get_types_from_msg(text, "srov_msgs/msg/Float64Stamped"))
+    T, kind = store.types, "srov_msgs/msg/Float64Stamped"
+    with Bag2(tmp_path / "old", version=9, storage_plugin=StoragePlugin.SQLITE3) as bag:
+        connection = bag.add_connection("/thruster", kind, typestore=store)
+        for i in range(20):
+            stamp = T["builtin_interfaces/msg/Time"](sec=1_700_000_000 + i, nanosec=0)
+            message = T[kind](header=T["std_msgs/msg/Header"](stamp=stamp, frame_id=""), data=60.0 * i)
+            bag.write(connection, START_NS + i * 10**9, store.serialize_cdr(message, kind))
+    file = next((tmp_path / "old").glob("*.db3"))
+    database = sqlite3.connect(file)
+    database.execute("DROP TABLE message_definitions")
+    database.execute("UPDATE schema SET schema_version = 3")
+    database.commit()
+    database.close()
+    with pytest.raises(BadInput, match="damaged or foreign") as refused:
+        read_bag(file, custom())
+    assert "[messages]" in refused.value.hint
+    raw = read_bag(file, custom(messages={kind: text}))
+    assert np.allclose(raw.channels["n:HFP"].values, np.arange(20))
+
+
+def test_an_mcap_of_another_middleware_is_refused_with_its_reason(tmp_path):
+    path = tmp_path / "other.mcap"
+    with path.open("wb") as file:
+        writer = RawMcapWriter(file)
+        writer.start(profile="px4")
+        writer.finish()
+    with pytest.raises(BadInput) as refused:
+        read(path)
+    assert "not of ROS 2" in refused.value.hint
