@@ -3,7 +3,9 @@
 import json
 import re
 import shutil
+import sys
 from pathlib import Path
+from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
@@ -277,6 +279,29 @@ def test_demo_names_the_effect_that_was_left_in(here):
     document = json.loads(run("demo", "--json", "--out", "demo", "-q").stdout)
     assert [cause["effect"] for cause in document["diagnosis"]["causes"]] == [demo.EFFECT.partition(":")[0]]
     assert all(Path(p).exists() for p in document["files"].values())
+
+
+def test_fit_passes_on_what_was_asked_for(here, monkeypatch):
+    """The command alone, with the fit itself replaced."""
+    asked = {}
+
+    def fit(runs, vehicle, parameters, **options):
+        asked.update(runs=len(runs), vehicle=vehicle.name, parameters=list(parameters), **options)
+        return SimpleNamespace(vehicle="name = 'tuned'\n", document={"schema": "rovval.fit/1"}, text="tuned")
+
+    module = ModuleType("rovval.diagnose.fit")
+    monkeypatch.setattr(module, "fit", fit, raising=False)
+    monkeypatch.setitem(sys.modules, "rovval.diagnose.fit", module)
+    done = run("fit", "dive.csv", "--parameters", "quadratic_drag[surge],linear_drag[yaw]", "--out", "tuned.toml", "--json")
+    assert json.loads(done.stdout) == {"schema": "rovval.fit/1"}
+    assert asked == {
+        "runs": 1,
+        "vehicle": "merlin",
+        "parameters": ["quadratic_drag[surge]", "linear_drag[yaw]"],
+        "model": "fossen",
+        "window_s": 10.0,
+    }
+    assert Path("tuned.toml").read_text() == "name = 'tuned'\n"
 
 
 def test_blind_make(here):

@@ -231,3 +231,15 @@ def test_a_cluster_without_dask_says_what_to_install(monkeypatch):
 def test_workers_and_scheduler_exclude_each_other(site):
     with pytest.raises(UsageProblem):
         batch.run(batch_case.write_pipeline(site), workers=2, scheduler="tcp://localhost:1")
+
+
+@pytest.mark.slow
+def test_a_dask_cluster_gives_the_same_outcomes(site):
+    """With real worker processes; needs the extra `cluster`."""
+    distributed = pytest.importorskip("distributed", reason="pip install 'rovval[cluster]'")
+    (site / "logs" / "bad.csv").write_text("this is,not a log\n1,2\n")
+    path = batch_case.write_pipeline(site)
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as dask:
+        done = batch.run(path, scheduler=dask.scheduler_address)
+    assert counts(done) == {"done": 3, "quarantined": 1}
+    assert counts(batch.run(path, workers=1)) == {"unchanged": 3, "quarantined": 1}

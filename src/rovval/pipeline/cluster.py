@@ -32,7 +32,7 @@ def execute(
         ) from None
     with client:
         futures = {client.submit(work, task, pure=False): task for task in tasks}
-        for future in as_completed(futures):
+        for future in as_completed(futures, loop=client.loop):
             task = futures[future]
             try:
                 yield task, future.result()
