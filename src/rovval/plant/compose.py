@@ -24,7 +24,7 @@ LOG = ("altitude", "wall_distance", "voltage", "tether_length", "t")
 LOG_ROWS = len(LOG) + 6  # and the extra wrench
 
 # What a function of the state may ask for by the name of its argument, and what it is called in the kernel.
-AT_STAGE: Mapping[str, str] = {name: f"lg[ls + {i} * W + l]" for i, name in enumerate(LOG)}
+AT_STAGE: Mapping[str, str] = {name: f"lv[{i} * W + l]" for i, name in enumerate(LOG)}
 BODY_NAMES: Mapping[str, str] = {
     **{n: n for n in ("u", "v", "w", "ur", "vr", "wr", "vn", "ve", "vd", "cn", "ce", "cd")},
     **{n: f"r_{n}" for n in "pqr"},
@@ -127,8 +127,8 @@ def row_of(where: Layout, hook: Hook, argument: str, thruster: str) -> str:
     """Text of one of the effect's own rows; ``thruster`` is the text of the thruster's first row."""
     key = f"{hook.effect}.{argument}"
     if key in where.thruster_first:
-        return f"p[({thruster} + {where.thruster_first[key]}) * W + l]"
-    return f"p[{where.first[key]} * W + l]"
+        return f"m[({thruster} + {where.thruster_first[key]}) * W + l]"
+    return f"m[{where.first[key]} * W + l]"
 
 
 def calls(spec: Spec, kind: str, into: tuple[str, ...], add: bool, thruster: str = "") -> list[str]:

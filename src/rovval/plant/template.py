@@ -22,11 +22,11 @@ def render(spec: Spec) -> str:
     """The kernel's source for ``spec``."""
     where, k = layout(spec), spec.thrusters
     numbers = {
-        "W": compose.W, "THRUSTERS": k, "BODY": where.body_rows, "STRIDE": where.stride, "ROWS": where.rows, "LOGS": compose.LOG_ROWS,
+        "W": compose.W, "THRUSTERS": k, "THS": max(3 * k, 6) * compose.W, "BODY": where.body_rows, "STRIDE": where.stride, "ROWS": where.rows, "LOGS": compose.LOG_ROWS,
         "MASS": where.first["mass"], "RESTORING": where.first["restoring"], "DISPLACED": where.first["displaced"], "ADDED": where.first["added"],
         "LINEAR": where.first["linear"], "QUADRATIC": where.first["quadratic"], "LAG": where.first["lag"], "SHIFT": where.first["shift"],
         "JET": where.first["jet"], "PAYLOAD": compose.MASS_ROWS, "V2": SPEED_LIMIT**2, "W2": RATE_LIMIT**2, "JMAX": ADVANCE_LIMIT,
-        "X0": 0, "XS": 13, "ACC": 26, "SEEN": 39, "ENDS": 51, "MEMORY": 51 + 2 * k, "NEXT": 51 + 3 * k, "ALIVE": 51 + 4 * k, "SCRATCH": 52 + 4 * k,
+        **_state_rows(where.rows, k),
     }  # fmt: skip
     kept = "\n".join(_kept(TEXT, spec))
     generated = {
@@ -40,6 +40,7 @@ def render(spec: Spec) -> str:
         "drag": _drag(spec.dense),
         "water_acceleration": _added_dot(spec.dense) if spec.full else [],
         "acceleration": _acceleration(),
+        "geometry": [f"g_{c} = geo[{c}]" for c in range(16 * k)] if spec.full or spec.advance else [],
         "advance_state": _advance_state(),
     }
     lines = []
@@ -51,6 +52,17 @@ def render(spec: Spec) -> str:
         else:
             lines.append(line)
     return "\n".join(lines) + "\n"
+
+
+def _state_rows(first: int, k: int) -> dict[str, int]:
+    """Rows of state and scratch, which follow the lane's numbers in the same array: LLVM then proves without checks at run time
+    that what a loop writes is not what it reads."""
+    sizes = {"X0": 13, "XS": 13, "ACC": 13, "SEEN": 12, "ENDS": 2 * k, "MEMORY": k, "NEXT": k, "ALIVE": 1}
+    rows = {}
+    for name, size in sizes.items():
+        rows[name] = first
+        first += size
+    return {**rows, "TOTAL": first}
 
 
 def _kept(text: str, spec: Spec) -> list[str]:
@@ -83,60 +95,60 @@ def _at_rest(spec: Spec) -> list[str]:
             ]
         lines += calls(spec, "acting", ("n",), False, row)
         lines += ["ahead, astern = 0.5 * (abs(n) + n), 0.5 * (abs(n) - n)"]
-        lines += [f"T = p[{row} * W + l] * ahead * ahead - p[({row} + 1) * W + l] * astern * astern"]
+        lines += [f"T = m[{row} * W + l] * ahead * ahead - m[({row} + 1) * W + l] * astern * astern"]
         lines += calls(spec, "static", ("T",), False, row)
         if state:
-            lines += [f"th[ts + {3 * i} * W + l] = T", f"th[ts + {3 * i + 1} * W + l] = n"]
+            lines += [f"tv[{3 * i} * W + l] = T", f"tv[{3 * i + 1} * W + l] = n"]
             if spec.advance:
-                lines += [f"th[ts + {3 * i + 2} * W + l] = n / (geo[{16 * i + 15}] * (n * n + 1e-12))"]
+                lines += [f"tv[{3 * i + 2} * W + l] = n / (g_{16 * i + 15} * (n * n + 1e-12))"]
         else:
-            lines += [f"{name} {'+=' if i else '='} T * p[({row} + {2 + c}) * W + l]" for c, name in enumerate(FORCE)]
+            lines += [f"{name} {'+=' if i else '='} T * m[({row} + {2 + c}) * W + l]" for c, name in enumerate(FORCE)]
     if not state:
-        lines += [f"th[ts + {c} * W + l] = {name}" for c, name in enumerate(FORCE)]
+        lines += [f"tv[{c} * W + l] = {name}" for c, name in enumerate(FORCE)]
     return lines
 
 
 def _thrusters(spec: Spec) -> list[str]:
     """Wrench of all thrusters under way, or as it stands where thrust does not depend on the motion."""
     if not (spec.full or spec.advance):
-        return [f"{name} = th[ts + {c} * W + l]" for c, name in enumerate(FORCE)]
+        return [f"{name} = tv[{c} * W + l]" for c, name in enumerate(FORCE)]
     lines = [f"{name} = 0.0" for name in FORCE]
     for i in range(spec.thrusters):
         row = f"(BODY + {i} * STRIDE)"
         lines += [
-            f"T, n = th[ts + {3 * i} * W + l], th[ts + {3 * i + 1} * W + l]",
-            f"vx, vy, vz = ur + r_q * geo[{16 * i + 2}] - r_r * geo[{16 * i + 1}], vr + r_r * geo[{16 * i + 0}] - r_p * geo[{16 * i + 2}], "
-            f"wr + r_p * geo[{16 * i + 1}] - r_q * geo[{16 * i + 0}]",
-            f"ua = p[({row} + 2) * W + l] * vx + p[({row} + 3) * W + l] * vy + p[({row} + 4) * W + l] * vz",
+            f"T, n = tv[{3 * i} * W + l], tv[{3 * i + 1} * W + l]",
+            f"vx, vy, vz = ur + r_q * g_{16 * i + 2} - r_r * g_{16 * i + 1}, vr + r_r * g_{16 * i + 0} - r_p * g_{16 * i + 2}, "
+            f"wr + r_p * g_{16 * i + 1} - r_q * g_{16 * i + 0}",
+            f"ua = m[({row} + 2) * W + l] * vx + m[({row} + 3) * W + l] * vy + m[({row} + 4) * W + l] * vz",
         ]
         if spec.advance:
-            lines += [f"J = min(max(ua * th[ts + {3 * i + 2} * W + l], -JMAX), JMAX)"]
+            lines += [f"J = min(max(ua * tv[{3 * i + 2} * W + l], -JMAX), JMAX)"]
             for name, first in (("ahead", 0), ("astern", 3)):
-                c1, c2, c3 = (f"geo[{16 * i + 3 + first + c}]" for c in range(3))
+                c1, c2, c3 = (f"g_{16 * i + 3 + first + c}" for c in range(3))
                 lines += [f"{name} = 1.0 + J * ({c1} + J * ({c2} + J * {c3}))"]
             lines += ["T = T * (ahead if n > 0.0 else astern)"]
         if spec.full:
             lines += ["rest = vx * vx + vy * vy + vz * vz - ua * ua", "cross = math.sqrt(0.5 * (rest + abs(rest)))"]
         lines += calls(spec, "thrust", ("T",), False, row)
-        lines += [f"{name} += T * p[({row} + {2 + c}) * W + l]" for c, name in enumerate(FORCE)]
+        lines += [f"{name} += T * m[({row} + {2 + c}) * W + l]" for c, name in enumerate(FORCE)]
         if spec.full:
-            lines += ["S = abs(T) * p[(JET + 1) * W + l]", *(f"{name} += S * geo[{16 * i + 9 + c}]" for c, name in enumerate(FORCE))]
+            lines += ["S = abs(T) * m[(JET + 1) * W + l]", *(f"{name} += S * g_{16 * i + 9 + c}" for c, name in enumerate(FORCE))]
     return lines
 
 
 def _entry(name: str, i: int, j: int) -> str:
-    return f"p[({name} + {6 * i + j}) * W + l]"
+    return f"m[({name} + {6 * i + j}) * W + l]"
 
 
 def _matvec(out: str, name: str, vector: tuple[str, ...], dense: bool) -> list[str]:
     if not dense:
-        return [f"{out}{i} = p[({name} + {i}) * W + l] * {vector[i]}" for i in range(6)]
+        return [f"{out}{i} = m[({name} + {i}) * W + l] * {vector[i]}" for i in range(6)]
     return [f"{out}{i} = " + " + ".join(f"{_entry(name, i, j)} * {vector[j]}" for j in range(6)) for i in range(6)]
 
 
 def _drag(dense: bool) -> list[str]:
     if not dense:
-        return [f"d{i} = (p[(LINEAR + {i}) * W + l] + p[(QUADRATIC + {i}) * W + l] * abs({n})) * {n}" for i, n in enumerate(NU_R)]
+        return [f"d{i} = (m[(LINEAR + {i}) * W + l] + m[(QUADRATIC + {i}) * W + l] * abs({n})) * {n}" for i, n in enumerate(NU_R)]
     squares = tuple(f"s{j}" for j in range(6))
     first = [f"s{j} = abs({n}) * {n}" for j, n in enumerate(NU_R)]
     both = zip(_matvec("d", "LINEAR", NU_R, True), _matvec("d", "QUADRATIC", squares, True), strict=True)
@@ -147,14 +159,14 @@ def _added_dot(dense: bool) -> list[str]:
     """M_A times the acceleration of the water in the body frame, on the right-hand side."""
     if dense:
         return [f"{name} += " + " + ".join(f"{_entry('ADDED', i, j)} * {w}" for j, w in enumerate(("wx", "wy", "wz"))) for i, name in enumerate(FORCE)]
-    return [f"{name} += p[(ADDED + {i}) * W + l] * {w}" for i, (name, w) in enumerate(zip(FORCE, ("wx", "wy", "wz"), strict=False))]
+    return [f"{name} += m[(ADDED + {i}) * W + l] * {w}" for i, (name, w) in enumerate(zip(FORCE, ("wx", "wy", "wz"), strict=False))]
 
 
 def _acceleration() -> list[str]:
     """M^-1 times force, the inverse symmetric."""
     place = {pair: 10 + n for n, pair in enumerate(compose.SYMMETRIC)}
     return [
-        f"k{7 + i} = " + " + ".join(f"p[(MASS + {place[min(i, j), max(i, j)]}) * W + l] * {FORCE[j]}" for j in range(6)) for i in range(6)
+        f"k{7 + i} = " + " + ".join(f"m[(MASS + {place[min(i, j), max(i, j)]}) * W + l] * {FORCE[j]}" for j in range(6)) for i in range(6)
     ]
 
 
@@ -179,12 +191,12 @@ from rovval.plant.compiled import OPTIONS, _clip, _cos, _exp, _positive, _sin, _
 
 
 @njit(**OPTIONS)
-def logged(p, speed, t, start, step, m, end):
+def logged(speed, t, start, step, m, end):
     """Logged thruster speeds (rev/s) at one end of a step, each lane at its own place in the log."""
     last = speed.shape[0] - 1
     for l in range(W):
         j = min(max(start[l] + step, 0), last)
-        x = j - (p[SHIFT * W + l] + p[(SHIFT + 1) * W + l] * t[j])  #full
+        x = j - (m[SHIFT * W + l] + m[(SHIFT + 1) * W + l] * t[j])  #full
         x = min(max(x, 0.0), float(last))  #full
         j = min(int(x), max(last - 1, 0))  #full
         part = x - j  #full
@@ -197,23 +209,23 @@ def logged(p, speed, t, start, step, m, end):
 
 
 @njit(**OPTIONS)
-def warm(p, speed, t, start, dt, hold, m):
+def warm(speed, t, start, dt, hold, m):
     """Lagged speed of each thruster at the window's first sample, from the log's first sample or 40 time constants before."""
     longest, back = 0.0, 0
     for l in range(W):
-        longest = max(longest, p[LAG * W + l])
+        longest = max(longest, m[LAG * W + l])
     if longest > 0.0:
         for l in range(W):
             back = max(back, min(start[l], int(40.0 * longest / dt) + 1))
-    logged(p, speed, t, start, -back, m, 0)
+    logged(speed, t, start, -back, m, 0)
     for c in range(THRUSTERS * W):
         m[MEMORY * W + c] = m[ENDS * W + c]
     for step in range(-back, 0):
-        logged(p, speed, t, start, step + 1, m, 1)
+        logged(speed, t, start, step + 1, m, 1)
         for l in range(W):
             if start[l] + step < 0:
                 continue
-            tau = p[LAG * W + l]
+            tau = m[LAG * W + l]
             left = math.exp(-dt / tau) if tau > 0.0 else 0.0
             for i in range(THRUSTERS):
                 a = m[(ENDS + i) * W + l]
@@ -223,7 +235,7 @@ def warm(p, speed, t, start, dt, hold, m):
         for c in range(THRUSTERS * W):
             m[ENDS * W + c] = m[(ENDS + THRUSTERS) * W + c]
     for l in range(W):
-        if start[l] == 0 or p[LAG * W + l] == 0.0:
+        if start[l] == 0 or m[LAG * W + l] == 0.0:
             for i in range(THRUSTERS):
                 m[(MEMORY + i) * W + l] = m[(ENDS + i) * W + l]
 
@@ -285,26 +297,27 @@ def run(first, last, numbers, late, onset, states, start, limit, which, gain, sp
         weights, dt, hold, steps, substeps, out, stopped, reason):
     """Blocks ``first`` to ``last`` of W lanes each: time runs inside the block, so that its numbers stay in the cache."""
     h, inv_dt = dt / substeps, 1.0 / dt
-    p, m, th = np.empty(ROWS * W), np.zeros(SCRATCH * W), np.zeros(3 * max(3 * THRUSTERS, 6) * W)
+    m, th = np.zeros(TOTAL * W), np.zeros(3 * THS)
     la, lg = np.zeros(2 * LOGS * W), np.zeros(3 * LOGS * W)
+    <<geometry>>
     for b in range(first, last):
         for c in range(ROWS * W):
-            p[c] = numbers[b, c]
+            m[c] = numbers[b, c]
         for c in range(13 * W):
-            m[c] = states[b, c]
+            m[X0 * W + c] = states[b, c]
         use_extra, use_wake, pending = False, False, False
         for l in range(W):
             m[ALIVE * W + l] = 1.0
             use_extra = use_extra or which[b, l] >= 0
-            use_wake = use_wake or p[JET * W + l] != 0.0
+            use_wake = use_wake or m[JET * W + l] != 0.0
             pending = pending or onset[b, l] < math.inf
         for c in range(2 * LOGS * W):
             la[c] = 0.0
-        warm(p, speed, t, start[b], dt, hold, m)  #full
+        warm(speed, t, start[b], dt, hold, m)  #full
         record(m, out, 0, b * W)
         for step in range(steps):
             if step == 0 or hold:
-                logged(p, speed, t, start[b], step, m, 0)
+                logged(speed, t, start[b], step, m, 0)
             else:
                 for c in range(THRUSTERS * W):
                     m[ENDS * W + c] = m[(ENDS + THRUSTERS) * W + c]
@@ -312,7 +325,7 @@ def run(first, last, numbers, late, onset, states, start, limit, which, gain, sp
                 for c in range(THRUSTERS * W):
                     m[(ENDS + THRUSTERS) * W + c] = m[ENDS * W + c]
             else:
-                logged(p, speed, t, start[b], step + 1, m, 1)
+                logged(speed, t, start[b], step + 1, m, 1)
             load_log(log, t, extra, gain[b], which[b], start[b], step, dt, la, use_extra, W, LOGS)  #full
             for sub in range(substeps):
                 f0, f1 = sub / substeps, (sub + 1) / substeps
@@ -324,21 +337,22 @@ def run(first, last, numbers, late, onset, states, start, limit, which, gain, sp
                     for l in range(W):  #full
                         if lg[4 * W + l] >= onset[b, l]:  #full
                             for c in range(PAYLOAD):  #full
-                                p[(MASS + c) * W + l] = late[b, c * W + l]  #full
+                                m[(MASS + c) * W + l] = late[b, c * W + l]  #full
                 for s in range(3):
-                    f, ts, ls = f0 + (f1 - f0) * 0.5 * s, s * max(3 * THRUSTERS, 6) * W, s * LOGS * W
+                    f = f0 + (f1 - f0) * 0.5 * s
+                    tv, lv = th[s * THS : (s + 1) * THS], lg[s * LOGS * W : (s + 1) * LOGS * W]
                     for l in range(W):
-                        tau, left = p[LAG * W + l], p[(LAG + 1 + s) * W + l]  #full
+                        tau, left = m[LAG * W + l], m[(LAG + 1 + s) * W + l]  #full
                         <<at_rest>>
                     if use_wake:  #full
                         for c in range(pairs.shape[0]):  #full
-                            row, other, first_row = ts + 3 * pairs[c, 1] * W, ts + 3 * pairs[c, 0] * W, (BODY + pairs[c, 1] * STRIDE) * W  #full
+                            row, other, first_row = 3 * pairs[c, 1] * W, 3 * pairs[c, 0] * W, (BODY + pairs[c, 1] * STRIDE) * W  #full
                             wa, ws = 0.5 * weights[c, 0], 0.5 * weights[c, 1]  #full
                             for l in range(W):  #full
-                                n, up = th[row + W + l], th[other + W + l]  #full
+                                n, up = tv[row + W + l], tv[other + W + l]  #full
                                 jet = wa * (abs(up) + up) + ws * (abs(up) - up)  #full
-                                own = 0.5 * (p[first_row + l] * (n + abs(n)) + p[first_row + W + l] * (n - abs(n)))  #full
-                                th[row + l] -= p[JET * W + l] * jet * own  #full
+                                own = 0.5 * (m[first_row + l] * (n + abs(n)) + m[first_row + W + l] * (n - abs(n)))  #full
+                                tv[row + l] -= m[JET * W + l] * jet * own  #full
                 for c in range(THRUSTERS * W):  #full
                     m[MEMORY * W + c] = m[NEXT * W + c]  #full
                 for c in range(13 * W):
@@ -347,7 +361,7 @@ def run(first, last, numbers, late, onset, states, start, limit, which, gain, sp
                     m[ACC * W + c] = m[X0 * W + c]
                 for stage in range(4):
                     s = (stage + 1) // 2
-                    ts, ls = s * max(3 * THRUSTERS, 6) * W, s * LOGS * W
+                    tv, lv = th[s * THS : (s + 1) * THS], lg[s * LOGS * W : (s + 1) * LOGS * W]
                     weight = h / 6.0 if stage == 0 or stage == 3 else h / 3.0
                     reach = 0.5 * h if stage < 2 else h
                     for l in range(W):
@@ -369,9 +383,9 @@ def run(first, last, numbers, late, onset, states, start, limit, which, gain, sp
                         cx, cy, cz = r11 * cn + r21 * ce + r31 * cd, r12 * cn + r22 * ce + r32 * cd, r13 * cn + r23 * ce + r33 * cd  #full
                         ur, vr, wr = u - cx, v - cy, w - cz  #full
                         <<thrusters>>
-                        mass, c1, c2, c3 = p[MASS * W + l], p[(MASS + 1) * W + l], p[(MASS + 2) * W + l], p[(MASS + 3) * W + l]
-                        i11, i12, i13 = p[(MASS + 4) * W + l], p[(MASS + 5) * W + l], p[(MASS + 6) * W + l]
-                        i22, i23, i33 = p[(MASS + 7) * W + l], p[(MASS + 8) * W + l], p[(MASS + 9) * W + l]
+                        mass, c1, c2, c3 = m[MASS * W + l], m[(MASS + 1) * W + l], m[(MASS + 2) * W + l], m[(MASS + 3) * W + l]
+                        i11, i12, i13 = m[(MASS + 4) * W + l], m[(MASS + 5) * W + l], m[(MASS + 6) * W + l]
+                        i22, i23, i33 = m[(MASS + 7) * W + l], m[(MASS + 8) * W + l], m[(MASS + 9) * W + l]
                         l1, l2, l3 = mass * u + r_q * c3 - r_r * c2, mass * v + r_r * c1 - r_p * c3, mass * w + r_p * c2 - r_q * c1
                         h1 = c2 * w - c3 * v + i11 * r_p + i12 * r_q + i13 * r_r
                         h2 = c3 * u - c1 * w + i12 * r_p + i22 * r_q + i23 * r_r
@@ -381,8 +395,8 @@ def run(first, last, numbers, late, onset, states, start, limit, which, gain, sp
                         M -= w * l1 - u * l3 + wr * a0 - ur * a2
                         N -= u * l2 - v * l1 + ur * a1 - vr * a0
                         <<drag>>
-                        net = p[RESTORING * W + l]
-                        g1, g2, g3 = p[(RESTORING + 1) * W + l], p[(RESTORING + 2) * W + l], p[(RESTORING + 3) * W + l]
+                        net = m[RESTORING * W + l]
+                        g1, g2, g3 = m[(RESTORING + 1) * W + l], m[(RESTORING + 2) * W + l], m[(RESTORING + 3) * W + l]
                         X += net * r31 - d0 - (r_q * (l3 + a2) - r_r * (l2 + a1))
                         Y += net * r32 - d1 - (r_r * (l1 + a0) - r_p * (l3 + a2))
                         Z += net * r33 - d2 - (r_p * (l2 + a1) - r_q * (l1 + a0))
@@ -394,12 +408,12 @@ def run(first, last, numbers, late, onset, states, start, limit, which, gain, sp
                         wz = r13 * dn + r23 * de + r33 * dd - (r_p * cy - r_q * cx)  #full
                         <<water_acceleration>>
                         fx, fy, fz = r11 * fn + r21 * fe + r31 * fd, r12 * fn + r22 * fe + r32 * fd, r13 * fn + r23 * fe + r33 * fd  #full
-                        X += p[DISPLACED * W + l] * fx + lg[ls + 5 * W + l]  #full
-                        Y += p[DISPLACED * W + l] * fy + lg[ls + 6 * W + l]  #full
-                        Z += p[DISPLACED * W + l] * fz + lg[ls + 7 * W + l]  #full
-                        K += p[(DISPLACED + 2) * W + l] * fz - p[(DISPLACED + 3) * W + l] * fy + lg[ls + 8 * W + l]  #full
-                        M += p[(DISPLACED + 3) * W + l] * fx - p[(DISPLACED + 1) * W + l] * fz + lg[ls + 9 * W + l]  #full
-                        N += p[(DISPLACED + 1) * W + l] * fy - p[(DISPLACED + 2) * W + l] * fx + lg[ls + 10 * W + l]  #full
+                        X += m[DISPLACED * W + l] * fx + lv[5 * W + l]  #full
+                        Y += m[DISPLACED * W + l] * fy + lv[6 * W + l]  #full
+                        Z += m[DISPLACED * W + l] * fz + lv[7 * W + l]  #full
+                        K += m[(DISPLACED + 2) * W + l] * fz - m[(DISPLACED + 3) * W + l] * fy + lv[8 * W + l]  #full
+                        M += m[(DISPLACED + 3) * W + l] * fx - m[(DISPLACED + 1) * W + l] * fz + lv[9 * W + l]  #full
+                        N += m[(DISPLACED + 1) * W + l] * fy - m[(DISPLACED + 2) * W + l] * fx + lv[10 * W + l]  #full
                         <<wrench>>
                         <<acceleration>>
                         <<advance_state>>
