@@ -283,7 +283,7 @@ def test_demo_names_the_effect_that_was_left_in(here):
 
 def test_fit_passes_on_what_was_asked_for(here, monkeypatch):
     """The command alone, with the fit itself replaced."""
-    asked = {}
+    asked: dict[str, object] = {}
 
     def fit(runs, vehicle, parameters, **options):
         asked.update(runs=len(runs), vehicle=vehicle.name, parameters=list(parameters), **options)
