@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+import llvmlite.binding
 import numpy as np
 from numba import njit
 
@@ -17,7 +18,9 @@ FLAGS = {"contract", "nsz", "arcp"}
 OPTIONS: dict[str, Any] = {"nogil": True, "cache": True, "fastmath": FLAGS, "error_model": "numpy"}
 INLINE: dict[str, Any] = {"forceinline": True, "fastmath": FLAGS, "error_model": "numpy"}
 
-LOG2 = math.log(2.0)
+# A loop that touches more than some sixty rows is left scalar unless LLVM may merge its memory checks (measured: 2.8 times slower).
+llvmlite.binding.set_option("rovval", "--memory-check-merge-threshold=100000")
+
 TWO_PI_HIGH = 6.28125  # exact in few bits, so that k * TWO_PI_HIGH is exact (Cody and Waite)
 TWO_PI_LOW = 2.0 * math.pi - 6.28125
 SIN = tuple((-1.0) ** i / math.factorial(2 * i + 1) for i in range(11))
