@@ -38,9 +38,11 @@ class Electrical:
         return np.asarray(np.sign(voltage) * root**2)
 
     def __str__(self) -> str:
+        bound = [name for name, value in (("R_m/K_m", self.resistive), ("K_E/sqrt(K_T)", self.back_emf)) if value == 0]
+        note = f"; {' and '.join(bound)} at its bound of 0: not identified by these points" if bound else ""
         return (
             f"V = {self.resistive:.4g} T + {self.back_emf:.4g} sqrt(T) (thesis 2.4), {self.n} points from {self.lowest:g} to {self.highest:g} N: "
-            f"rms error {self.rms:.3f} V, largest {self.largest:.3f} V"
+            f"rms error {self.rms:.3f} V, largest {self.largest:.3f} V{note}"
         )
 
 

@@ -22,6 +22,7 @@ from rovval.vehicle.model import Vehicle
 Array = NDArray[np.float64]
 FLIP = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])  # forward-left-up to forward-starboard-down, force and moment
 REQUIRED = ("mass", "inertial", "volume", "cog", "cob", "Ma", "linear_damping", "quad_damping", "tam", "conversion_fcn_params")
+PRINTED_DIGITS = 1e-3  # asymmetry, relative to the diagonal, that is the last printed digit (RexROV: 10.774 and 10.775)
 RPM = 2.0 * np.pi / 60.0  # rad/s of one revolution per minute
 DEFAULTS = {"density": 1028.0, "gravity": 9.81}  # uuv_simulator's own (vehicle.py: density 1028, gravity 9.81)
 
@@ -84,6 +85,9 @@ def _matrix(values: Any, sign: float) -> list[list[float]] | list[float]:
     a = sign * np.array(values, dtype=float)
     if a.ndim == 1:
         return [float(x) for x in a]
+    scale = np.sqrt(np.abs(np.outer(np.diag(a), np.diag(a)))) + 1e-300
+    if (np.abs(a - a.T) <= PRINTED_DIGITS * scale).all():
+        a = 0.5 * (a + a.T)
     turned = FLIP[:, None] * a * FLIP
     return [[float(x) + 0.0 for x in row] for row in turned]
 
