@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-import plant_cases as cases
 import pytest
 
+import plant_cases as cases
 from rovval.frames import wrap
 from rovval.plant import Inputs, Plant, oracle
 

@@ -113,13 +113,18 @@ def reference_added_mass(vehicle: Vehicle) -> Array:
     return np.where(own > 0, own, 0.5 * rigid)
 
 
+def reference_drag_force(vehicle: Vehicle) -> float:
+    """Drag at 1 m/s ahead, N; a tenth of the weight for a vehicle without any (chosen: only a size for priors and bounds)."""
+    drag = float(square(vehicle.body.linear_drag)[0, 0] + square(vehicle.body.quadratic_drag)[0, 0])
+    return drag if drag > 0 else 0.1 * vehicle.weight
+
+
 def reference_speed(vehicle: Vehicle) -> float:
     """Thruster speed n, rev/s, at which all thrusters together hold the vehicle at 1 m/s ahead, each turning the way that helps,
     at its mean gain: the reference of inflow and dead-band effects."""
     surge = np.abs(allocation(vehicle)[0])
     gain = np.array([0.5 * (t.k_pos + t.k_neg) for t in vehicle.thruster]) * SECONDS_PER_MINUTE**2
-    body = vehicle.body
-    drag = square(body.linear_drag)[0, 0] + square(body.quadratic_drag)[0, 0]
+    drag = reference_drag_force(vehicle)
     forward = float(surge @ gain)
     strongest = float(gain.sum())
     return float(np.sqrt(drag / (forward if forward > 1e-6 * strongest else strongest)))

@@ -15,7 +15,8 @@ EFFECT = Effect(
     name="linear_drag",
     title="Linear drag differs",
     place="vehicle",
-    equation="tau_i = -(1 + scale) d_i nu_r,i (thesis 3.13; Fossen 2021, 6.4); where the file has none, scale refers to the quadratic force at 0.1 m/s (rad/s).",
+    equation="tau_i = -(1 + scale) d_i nu_r,i (thesis 3.13; Fossen 2021, 6.4); "
+    "where the file has none, scale refers to the quadratic force at 0.1 m/s (rad/s).",
     parameters=(Parameter("scale", "1", -0.95, 9.0, 0.0, 0.3, "published BlueROV2 surge values run from 4 to 14 N s/m (diagnosis.md H1)"),),
     per="axis",
     axes=AXES,

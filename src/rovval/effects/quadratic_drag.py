@@ -15,7 +15,8 @@ EFFECT = Effect(
     name="quadratic_drag",
     title="Quadratic drag differs",
     place="vehicle",
-    equation="tau_i = -(1 + scale) q_i |nu_r,i| nu_r,i (thesis 3.13; Fossen 2021, 6.4); where the file has none, scale refers to the linear force at 1 m/s (rad/s).",
+    equation="tau_i = -(1 + scale) q_i |nu_r,i| nu_r,i (thesis 3.13; Fossen 2021, 6.4); "
+    "where the file has none, scale refers to the linear force at 1 m/s (rad/s).",
     parameters=(Parameter("scale", "1", -0.95, 9.0, 0.0, 0.3, "published BlueROV2 surge values run from 18 to 141 N s2/m2 (diagnosis.md H2)"),),
     per="axis",
     axes=AXES,

@@ -7,7 +7,8 @@
 
 from __future__ import annotations
 
-from rovval.plant.model import Inputs, Motion, Plant, parse_settings
+from rovval.plant.inputs import Inputs
+from rovval.plant.model import Motion, Plant, parse_settings
 from rovval.plant.slots import Slot
 
 __all__ = ["Inputs", "Motion", "Plant", "Slot", "parse_settings"]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 import llvmlite.binding
 import numpy as np
@@ -17,6 +17,13 @@ from numba import njit
 FLAGS = {"contract", "nsz", "arcp"}
 OPTIONS: dict[str, Any] = {"nogil": True, "cache": True, "fastmath": FLAGS, "error_model": "numpy"}
 INLINE: dict[str, Any] = {"forceinline": True, "fastmath": FLAGS, "error_model": "numpy"}
+
+
+
+def compiled(options: dict[str, Any]) -> Callable[[Callable[..., Any]], Any]:
+    """numba's decorator, which has no types of its own."""
+    return cast("Callable[[Callable[..., Any]], Any]", njit(**options))
+
 
 # A loop that touches more than some sixty rows is left scalar unless LLVM may merge its memory checks (measured: 2.8 times slower).
 llvmlite.binding.set_option("rovval", "--memory-check-merge-threshold=100000")
@@ -37,15 +44,15 @@ def _polynomial(name: str, coefficients: tuple[float, ...]) -> Any:
         body = f"({c!r} + x * {body})"
     scope: dict[str, Any] = {}
     exec(f"def {name}(x):\n    return {body}\n", scope)
-    return njit(**INLINE)(scope[name])
+    return compiled(INLINE)(scope[name])
 
 
 _sin_series, _cos_series = _polynomial("_sin_series", SIN), _polynomial("_cos_series", COS)
 _exp_series, _atan_series = _polynomial("_exp_series", EXP), _polynomial("_atan_series", ATAN)
 
 
-@njit(**INLINE)
-def _half_turns(x: float) -> tuple[float, float]:
+@compiled(INLINE)
+def _half_turns(x: Any) -> Any:
     """Sine and cosine of half of x brought into [-pi/2, pi/2]."""
     k = np.floor(x / (2.0 * math.pi) + 0.5)
     y = 0.5 * ((x - k * TWO_PI_HIGH) - k * TWO_PI_LOW)
@@ -53,20 +60,20 @@ def _half_turns(x: float) -> tuple[float, float]:
     return y * _sin_series(square), _cos_series(square)
 
 
-@njit(**INLINE)
-def _sin(x: float) -> float:
+@compiled(INLINE)
+def _sin(x: Any) -> Any:
     s, c = _half_turns(x)
     return 2.0 * s * c
 
 
-@njit(**INLINE)
-def _cos(x: float) -> float:
+@compiled(INLINE)
+def _cos(x: Any) -> Any:
     s, c = _half_turns(x)
     return c * c - s * s
 
 
-@njit(**INLINE)
-def _exp(x: float) -> float:
+@compiled(INLINE)
+def _exp(x: Any) -> Any:
     """(exp(x / 256)) ** 256 over [-69, 69]: no exponent bits to touch, relative error below 1e-13."""
     y = _exp_series(min(max(x, -69.0), 69.0) * (1.0 / 256.0))
     y = y * y
@@ -79,8 +86,8 @@ def _exp(x: float) -> float:
     return y * y
 
 
-@njit(**INLINE)
-def atan2(y: float, x: float) -> float:
+@compiled(INLINE)
+def atan2(y: Any, x: Any) -> Any:
     """Angle of (x, y) in (-pi, pi]: one division brings the tangent within tan(pi/8), where 20 terms of the series reach 1e-17."""
     ax, ay = abs(x), abs(y)
     low, high = min(ax, ay), max(ax, ay)
@@ -95,22 +102,22 @@ def atan2(y: float, x: float) -> float:
     return -angle if y < 0.0 else angle
 
 
-@njit(**INLINE)
-def _positive(x: float) -> float:
+@compiled(INLINE)
+def _positive(x: Any) -> Any:
     return 0.5 * (x + abs(x))
 
 
-@njit(**INLINE)
-def _clip(x: float, low: float, high: float) -> float:
+@compiled(INLINE)
+def _clip(x: Any, low: Any, high: Any) -> Any:
     return min(max(x, low), high)
 
 
-@njit(**INLINE)
-def _sqrt(x: float) -> float:
+@compiled(INLINE)
+def _sqrt(x: Any) -> Any:
     return math.sqrt(x)
 
 
-@njit(**{**OPTIONS, "cache": False})
+@compiled({**OPTIONS, "cache": False})
 def load_log(
     log: Any, t: Any, extra: Any, gain: Any, which: Any, start: Any, step: int, dt: float, la: Any, use_extra: bool, width: int, rows: int
 ) -> None:

@@ -82,7 +82,7 @@ def prepare(inputs: Inputs, vehicle: Vehicle) -> Prepared:
         axis=1,
     )  # fmt: skip
     speed = np.stack([_held(column, samples, 0.0) for column in inputs.speed.T], axis=1)
-    t = np.arange(samples) * inputs.dt if inputs.t is None else np.ascontiguousarray(inputs.t, dtype=float)
+    t = np.asarray(np.arange(samples) * inputs.dt if inputs.t is None else inputs.t, dtype=np.float64)
     extra = np.zeros((1, 1, 6)) if inputs.extra is None else np.ascontiguousarray(inputs.extra, dtype=float)
     return Prepared(np.ascontiguousarray(speed), np.ascontiguousarray(log), t, extra, next_gap)
 

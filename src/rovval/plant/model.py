@@ -129,8 +129,9 @@ class Plant:
         size = len(start)
         which = np.full(size, -1, dtype=np.int64) if extra is None else np.asarray(extra, dtype=np.int64)
         gain = np.ones(size) if extra_gain is None else np.asarray(extra_gain, dtype=float)
-        wanted = {"nu0": (nu0, (size, 6)), "eta0": (eta0, (size, 6)), "beta": (beta, (size, len(self.slots))), "extra": (which, (size,)), "extra_gain": (gain, (size,))}
-        problems = [f"{name} is {a.shape}, not {shape}" for name, (a, shape) in wanted.items() if a.shape != shape]
+        given = {"nu0": nu0, "eta0": eta0, "beta": beta, "extra": which, "extra_gain": gain}
+        wanted = {"nu0": (size, 6), "eta0": (size, 6), "beta": (size, len(self.slots)), "extra": (size,), "extra_gain": (size,)}
+        problems = [f"{name} is {a.shape}, not {wanted[name]}" for name, a in given.items() if a.shape != wanted[name]]
         samples, k = inputs.speed.shape
         if k != len(self.vehicle.thruster):
             problems.append(f"{k} thruster speeds for {len(self.vehicle.thruster)} thrusters")

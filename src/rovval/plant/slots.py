@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
 from types import MappingProxyType
 
 import numpy as np
@@ -13,15 +12,16 @@ from numpy.typing import NDArray
 from rovval import effects
 from rovval.channels import AXES
 from rovval.effects import Parameter
-from rovval.effects._lanes import reference_speed
+from rovval.effects._lanes import reference_drag_force, reference_speed
 from rovval.errors import UsageProblem, all_at_once
-from rovval.vehicle.model import Vehicle, square
+from rovval.vehicle.model import Vehicle
 
 Array = NDArray[np.float64]
 
-# The vehicle for which effects with sized parameters give their numbers: BlueROV2 Heavy, 13.5 kg, 141 N s2/m2, 64.4 rev/s at 1 m/s.
+# The vehicle for which effects with sized parameters give their numbers: BlueROV2 Heavy, 13.5 kg; 154.7 N of drag and
+# 64.4 rev/s at 1 m/s ahead.
 REFERENCE_WEIGHT = 132.57
-REFERENCE_DRAG = 141.0
+REFERENCE_DRAG = 154.7
 REFERENCE_SPEED = 64.43
 
 
@@ -42,7 +42,7 @@ def sizes(vehicle: Vehicle) -> Mapping[str, float]:
         {
             "": 1.0,
             "weight": vehicle.weight / REFERENCE_WEIGHT,
-            "drag": float(square(vehicle.body.quadratic_drag)[0, 0]) / REFERENCE_DRAG,
+            "drag": reference_drag_force(vehicle) / REFERENCE_DRAG,
             "speed": reference_speed(vehicle) / REFERENCE_SPEED,
         }
     )
@@ -69,11 +69,6 @@ def slots(vehicle: Vehicle, model: str) -> tuple[Slot, ...]:
     return tuple(found)
 
 
-@cache
-def _columns(name: str, hypotheses: tuple[str, ...]) -> tuple[int, ...]:
-    return tuple(i for i, h in enumerate(hypotheses) if h == name)
-
-
 def gather(vehicle: Vehicle, index: Mapping[str, int], name: str, beta: Array) -> dict[str, Array]:
     """One effect's parameters out of ``beta`` (B, K): (B,), (B, 6) per axis with the null value on axes without, (B, k)."""
     effect = effects.load(name)
@@ -96,8 +91,8 @@ def check_bounds(found: Sequence[Slot], beta: Array) -> None:
     low, high = np.array([s.parameter.low for s in found]), np.array([s.parameter.high for s in found])
     with np.errstate(invalid="ignore"):
         wrong = ~((beta >= low) & (beta <= high))
-    columns = np.flatnonzero(wrong.any(axis=0))
-    if len(columns):
+    columns = [int(c) for c in np.flatnonzero(wrong.any(axis=0))]
+    if columns:
         problems = []
         for c in columns:
             p, values = found[c].parameter, beta[wrong[:, c], c]

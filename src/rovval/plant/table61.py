@@ -1,6 +1,6 @@
 """Table 6.1 of the thesis from our own plant: each thruster alone at 70 rpm on both platforms, beside the printed figures.
 
-Thrust is read off the motion: a vehicle at rest with one thruster running and the same with none, a thousandth of a second later.
+Thrust is read off the motion: a vehicle at rest with one thruster running and the same with none, a millionth of a second later.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ PRINTED = {
     "MATLAB": (82.7, 31.3, 83.8, 87.0, 35.2, 86.7, 31.4),
     "ROS": (80.5, 30.4, 78.7, 82.1, 31.7, 80.3, 29.5),
 }
-MOMENT = 1e-3  # s
+MOMENT = 1e-6  # s, short enough that drag has done nothing yet
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,7 +23,8 @@ def render(spec: Spec) -> str:
     where, k = layout(spec), spec.thrusters
     numbers = {
         "W": compose.W, "THRUSTERS": k, "THS": max(3 * k, 6) * compose.W, "BODY": where.body_rows, "STRIDE": where.stride, "ROWS": where.rows, "LOGS": compose.LOG_ROWS,
-        "MASS": where.first["mass"], "RESTORING": where.first["restoring"], "DISPLACED": where.first["displaced"], "ADDED": where.first["added"],
+        "MASS": where.first["mass"],
+        "RESTORING": where.first["restoring"], "DISPLACED": where.first["displaced"], "ADDED": where.first["added"],
         "LINEAR": where.first["linear"], "QUADRATIC": where.first["quadratic"], "LAG": where.first["lag"], "SHIFT": where.first["shift"],
         "JET": where.first["jet"], "PAYLOAD": compose.MASS_ROWS, "V2": SPEED_LIMIT**2, "W2": RATE_LIMIT**2, "JMAX": ADVANCE_LIMIT,
         **_state_rows(where.rows, k),

@@ -56,7 +56,8 @@ def as_toml(paths: Sequence[str | Path], name: str) -> str:
 
 def _found(paths: Sequence[str | Path]) -> dict[str, Any]:
     """Every key of every file, nested ones too; the first of a name counts."""
-    from ruamel.yaml import YAML, YAMLError
+    from ruamel.yaml import YAML
+    from ruamel.yaml.error import YAMLError
 
     found: dict[str, Any] = {}
 
@@ -103,7 +104,8 @@ def _toml(found: Mapping[str, Any], columns: Array, gains: list[float], name: st
     lines += ["[body]", f"mass = {float(found['mass'])!r}"]
     lines += [f"{ours} = {float(inertial[theirs])!r}" for ours, theirs in (("Ixx", "ixx"), ("Iyy", "iyy"), ("Izz", "izz"))]
     # Gazebo's ixy is the tensor's own entry, ours (thesis 3.11) its negative; y and z change sign with the axes.
-    lines += [f"{ours} = {-s * float(inertial.get(theirs, 0.0)) + 0.0!r}" for ours, theirs, s in (("Ixy", "ixy", -1), ("Ixz", "ixz", -1), ("Iyz", "iyz", 1))]
+    products = (("Ixy", "ixy", 1.0), ("Ixz", "ixz", 1.0), ("Iyz", "iyz", -1.0))
+    lines += [f"{ours} = {s * float(inertial.get(theirs, 0.0)) + 0.0!r}" for ours, theirs, s in products]
     lines += [f"added_mass = {_matrix(found['Ma'], 1.0)}", f"linear_drag = {_matrix(found['linear_damping'], -1.0)}"]
     lines += [f"quadratic_drag = {_matrix(found['quad_damping'], -1.0)}", f"volume = {float(found['volume'])!r}"]
     lines += [f"centre_of_gravity = {place[0]}", f"centre_of_buoyancy = {place[1]}", "[water]"]

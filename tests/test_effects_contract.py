@@ -1,0 +1,97 @@
+"""Every file of effects/ keeps the contract: what it says, what it asks for, and that a sensor's log starts where it was measured."""
+
+from __future__ import annotations
+
+import inspect
+
+import numpy as np
+import pytest
+
+import plant_cases as cases
+from rovval import effects
+from rovval.channels import AXES, CHANNELS
+from rovval.plant import Inputs, Plant, compose
+
+LIBRARY = """added_mass linear_drag quadratic_drag cross_drag current_constant current_shear current_varying waves density_gradient
+ground_effect wall_suction tether_drag tether_tension tether_snag buoyancy_error cg_offset payload_change inertia_error thruster_degraded
+thruster_fault_onset thruster_deadband thruster_reversed reverse_asymmetry thrust_lag inflow_loss crossflow_loss hull_interaction
+thruster_interaction thruster_misaligned propeller_torque rpm_scale voltage_sag time_offset clock_drift dvl_scale dvl_misalignment
+dvl_lever_arm gyro_bias compass_deviation attitude_bias velocity_filter_lag""".split()
+
+
+def test_every_name_of_the_contract_is_there():
+    assert set(LIBRARY) <= set(effects.names())
+
+
+@pytest.mark.parametrize("name", effects.names())
+def test_an_effect_says_what_an_engineer_needs(name):
+    effect = effects.load(name)
+    assert effect.name == name and effect.title and effect.signature and effect.separates
+    assert effect.place in ("vehicle", "input", "water", "wrench", "sensor")
+    assert "(" in effect.equation, "an equation names its source"
+    assert effect.confused_with and set(effect.confused_with) <= set(effects.names()) - {name}
+    for p in effect.parameters:
+        assert p.source and p.unit and p.low <= p.null <= p.high and p.typical > 0
+    assert (effect.per == "axis") == bool(effect.axes) and set(effect.axes) <= set(AXES)
+    assert set(effect.needs) <= set(CHANNELS)
+    assert set(effect.grid) <= {p.name for p in effect.parameters}
+    for p in effect.parameters:
+        if p.name != "onset":
+            assert all(p.low <= v <= p.high for v in effect.grid.get(p.name, ()))
+
+
+@pytest.mark.parametrize("name", effects.names())
+def test_an_effect_asks_only_for_what_there_is(name):
+    module = effects.module(name)
+    kinds = [k for k in (*compose.HOOKS, "lower", "observe") if hasattr(module, k)]
+    assert kinds, "an effect must act somewhere"
+    rows = getattr(module, "ROWS", ())
+    assert hasattr(module, "rows") == bool(rows)
+    assert hasattr(module, "observe") == hasattr(module, "unobserve")
+    for kind in kinds:
+        if kind in compose.HOOKS:
+            known = compose.THRUSTER_NAMES if kind in compose.PER_THRUSTER else compose.BODY_NAMES
+            assert set(inspect.signature(getattr(module, kind)).parameters) <= {*rows, *known}
+
+
+@pytest.mark.parametrize("name", [n for n in effects.names() if effects.load(n).place == "sensor"])
+def test_a_sensor_s_log_starts_where_it_was_measured(name):
+    """The first state is what the log says; the simulated log begins there, whatever the sensor does."""
+    plant = Plant(cases.merlin())
+    beta = plant.null.copy()
+    for hypothesis, columns in plant.hypotheses.items():
+        if hypothesis.partition("[")[0] == name:
+            beta[list(columns)] = [min(plant.slots[c].parameter.null + plant.slots[c].parameter.typical, plant.slots[c].parameter.high) for c in columns]
+    assert (beta != plant.null).any()
+    rng = np.random.default_rng(0)
+    nu, eta = cases.random_states(rng, 5)
+    inputs = Inputs(0.1, np.ones((50, 7)), False)
+    out = plant.simulate(inputs, np.full(5, 10), 20, nu, eta, np.tile(beta, (5, 1)))
+    assert np.abs(out.nu[:, 0] - nu).max() < 1e-12
+    assert np.abs(np.angle(np.exp(1j * (out.eta[:, 0] - eta)))).max() < 1e-12
+
+
+def test_a_window_reproduces_the_log_that_its_own_effects_made():
+    """Shooting from a logged state with the true effects gives the log back (velocity filter: to second order in its lag)."""
+    plant = Plant(cases.merlin())
+    rng = np.random.default_rng(1)
+    inputs = cases.random_inputs(rng, plant)
+    for key, value, tolerance in (
+        ("dvl_misalignment.yaw", 0.2, 1e-9), ("dvl_lever_arm.x", 0.5, 1e-9), ("compass_deviation.sine", 0.2, 1e-9), ("attitude_bias.phi", 0.05, 1e-9),
+        ("time_offset.tau", 0.25, 1e-9), ("thrust_lag.tau", 0.3, 1e-9), ("gyro_bias.r", 0.02, 1e-9), ("velocity_filter_lag.tau", 0.3, 0.05),
+    ):  # fmt: skip
+        beta = plant.null.copy()
+        beta[plant.index[key]] = value
+        zero = np.zeros((1, 6))
+        log = plant.simulate(inputs, np.zeros(1, int), 150, zero, zero, beta[None])
+        window = plant.simulate(inputs, np.array([80]), 60, log.nu[:, 80], log.eta[:, 80], beta[None])
+        assert np.abs(window.nu - log.nu[:, 80:141]).max() < tolerance, key
+
+
+def test_sized_parameters_grow_with_the_vehicle():
+    """A buoyancy error of newtons means another thing for 13 kg than for 3 t."""
+    from rovval import vehicle
+
+    small, large = (Plant(vehicle.load(n)) for n in ("bluerov2_heavy", "merlin"))
+    typical = [p.slots[p.index["buoyancy_error.force"]].parameter.typical for p in (small, large)]
+    assert typical[0] == pytest.approx(3.0, rel=1e-3) and typical[1] == pytest.approx(3.0 * 2936 * 9.81 / 132.57, rel=1e-3)
