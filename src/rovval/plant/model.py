@@ -91,24 +91,24 @@ class Plant:
         lanes = _Lanes(start, true_nu, true_eta, which, gain)
         if sensors.settling(lowered.active):
             first, _, _ = self._run(inputs, prepared, lowered, lanes, min(1, steps))
-            true_nu = sensors.settle(self.vehicle, self.index, self.null, beta, true_nu, (first[-1, :6] - first[0, :6]).T / inputs.dt)
+            true_nu = sensors.settle(self.vehicle, self.index, self.null, beta, true_nu, (first[:, -1, :6] - first[:, 0, :6]) / inputs.dt)
             lanes = _Lanes(start, true_nu, true_eta, which, gain)
         out, stopped, codes = self._run(inputs, prepared, lowered, lanes, steps)
         seen = sensors.observe(
             self.vehicle, self.index, self.null, beta,
-            sensors.Log(out[:, :6].transpose(2, 0, 1), out[:, 6:].transpose(2, 0, 1), inputs.dt, nu0),
+            sensors.Log(out[..., :6], out[..., 6:], inputs.dt, nu0),
         )  # fmt: skip
         why = tuple(f"lane {b} stopped at {stopped[b] * inputs.dt:.1f} s: {REASONS[codes[b]]}" for b in np.flatnonzero(stopped >= 0))
         return Motion(seen.nu, seen.eta, stopped, why)
 
     def _run(self, inputs: Inputs, prepared: Prepared, lowered: Lowered, lanes: _Lanes, steps: int) -> tuple[Array, Indices, Indices]:
-        """True motion (steps + 1, 12, B): u v w p q r, x y z phi theta psi; first invalid sample and its reason per lane."""
+        """True motion (B, steps + 1, 12): u v w p q r, x y z phi theta psi; first invalid sample and its reason per lane."""
         spec = compose.Spec(len(self.vehicle.thruster), self._dense, self._advance, bool(lowered.active) or bool((lanes.which >= 0).any()))
         size, blocks = len(lanes.start), -(-len(lanes.start) // compose.W)
         numbers = _blocked(pack(lowered, spec, inputs.dt, self.substeps))
         late, onset = self._payload(lowered.lanes, blocks)
         states = _blocked(np.concatenate([lanes.eta[:, :3], quaternion_from_euler(lanes.eta[:, 3:]), lanes.nu], axis=1))
-        out = np.empty((steps + 1, 12, blocks * compose.W))
+        out = np.empty((blocks * compose.W, steps + 1, 12))
         stopped, reason = np.full((blocks, compose.W), -1), np.zeros((blocks, compose.W), dtype=np.int64)
         limit = prepared.steps_before_gap(lanes.start, inputs.hold)
         kernel.run(
@@ -118,7 +118,7 @@ class Plant:
                 prepared.log, prepared.t, prepared.extra, *self._geometry, inputs.dt, inputs.hold, steps, self.substeps, out, stopped, reason,
             ),
         )  # fmt: skip
-        return out[:, :, :size], stopped.reshape(-1)[:size], reason.reshape(-1)[:size]
+        return out[:size], stopped.reshape(-1)[:size], reason.reshape(-1)[:size]
 
     def _checked(
         self, inputs: Inputs, start: Indices, steps: int, nu0: Array, eta0: Array, beta: Array,

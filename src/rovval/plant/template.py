@@ -58,7 +58,7 @@ def render(spec: Spec) -> str:
 def _state_rows(first: int, k: int) -> dict[str, int]:
     """Rows of state and scratch, which follow the lane's numbers in the same array: LLVM then proves without checks at run time
     that what a loop writes is not what it reads."""
-    sizes = {"X0": 13, "XS": 13, "ACC": 13, "SEEN": 12, "ENDS": 2 * k, "MEMORY": k, "NEXT": k, "ALIVE": 1}
+    sizes = {"X0": 13, "XS": 13, "ACC": 13, "SEEN": 3, "ENDS": 2 * k, "MEMORY": k, "NEXT": k, "ALIVE": 1}
     rows = {}
     for name, size in sizes.items():
         rows[name] = first
@@ -242,15 +242,33 @@ def warm(speed, t, start, dt, hold, m):
 
 
 @njit(**OPTIONS)
-def settle(m, stopped, reason, limit, step):
-    """Stop each lane that has left sane limits; all others take their new state (in ACC)."""
-    alive = 0.0
+def settle(m, stopped, reason, limit, least, step):
+    """Take the new state (in ACC, its quaternion made of unit length) of every lane that is alive and sane."""
     for l in range(W):
-        speed = m[(ACC + 7) * W + l] ** 2 + m[(ACC + 8) * W + l] ** 2 + m[(ACC + 9) * W + l] ** 2
-        rate = m[(ACC + 10) * W + l] ** 2 + m[(ACC + 11) * W + l] ** 2 + m[(ACC + 12) * W + l] ** 2
+        qw, qx, qy, qz = m[(ACC + 3) * W + l], m[(ACC + 4) * W + l], m[(ACC + 5) * W + l], m[(ACC + 6) * W + l]
+        inverse = 1.0 / math.sqrt(qw * qw + qx * qx + qy * qy + qz * qz)
+        m[(ACC + 3) * W + l], m[(ACC + 4) * W + l] = qw * inverse, qx * inverse
+        m[(ACC + 5) * W + l], m[(ACC + 6) * W + l] = qy * inverse, qz * inverse
+        u, v, w = m[(ACC + 7) * W + l], m[(ACC + 8) * W + l], m[(ACC + 9) * W + l]
+        a, b, c = m[(ACC + 10) * W + l], m[(ACC + 11) * W + l], m[(ACC + 12) * W + l]
         far = abs(m[ACC * W + l]) + abs(m[(ACC + 1) * W + l]) + abs(m[(ACC + 2) * W + l])
-        sane = m[ALIVE * W + l] if (speed < V2) & (rate < W2) & (far < 1e12) else 0.0
-        m[XS * W + l] = sane
+        sane = (u * u + v * v + w * w < V2) & (a * a + b * b + c * c < W2) & (far < 1e12)
+        m[XS * W + l] = m[ALIVE * W + l] if sane else 0.0
+    for l in range(W // 4):  # a sum that stays a vector instruction
+        m[(XS + 1) * W + l] = m[XS * W + l] + m[XS * W + W // 4 + l] + m[XS * W + W // 2 + l] + m[XS * W + 3 * W // 4 + l]
+    alive = 0.0
+    for l in range(W // 4):
+        alive += m[(XS + 1) * W + l]
+    if alive == float(W) and step < least:
+        for c in range(13 * W):
+            m[X0 * W + c] = m[ACC * W + c]
+    else:
+        stop(m, stopped, reason, limit, step)
+
+
+@njit(**OPTIONS)
+def stop(m, stopped, reason, limit, step):
+    """Some lane of the block has stopped: it keeps its last state, with the step and the reason; the others go on."""
     for l in range(W):
         if step >= limit[l]:
             m[XS * W + l] = 0.0
@@ -265,32 +283,28 @@ def settle(m, stopped, reason, limit, step):
                 reason[l] = 1
             if step >= limit[l]:
                 reason[l] = 4
-    for l in range(W):
         m[ALIVE * W + l] = m[XS * W + l]
-    for c in range(13):
-        for l in range(W):
-            m[(X0 + c) * W + l] = m[(ACC + c) * W + l] if m[ALIVE * W + l] > 0.5 else m[(X0 + c) * W + l]
+        if m[ALIVE * W + l] > 0.5:
+            for c in range(13):
+                m[(X0 + c) * W + l] = m[(ACC + c) * W + l]
 
 
 @njit(**OPTIONS)
 def record(m, out, sample, lane):
-    """Velocity, position and Euler angles of the block's lanes into ``out`` (samples, 12, lanes)."""
+    """Velocity, position and Euler angles of the block's lanes into ``out`` (lanes, samples, 12)."""
     for l in range(W):
         qw, qx, qy, qz = m[(X0 + 3) * W + l], m[(X0 + 4) * W + l], m[(X0 + 5) * W + l], m[(X0 + 6) * W + l]
         r11, r21, r31 = 1.0 - 2.0 * (qy * qy + qz * qz), 2.0 * (qx * qy + qz * qw), 2.0 * (qx * qz - qy * qw)
         r32, r33 = 2.0 * (qy * qz + qx * qw), 1.0 - 2.0 * (qx * qx + qy * qy)
-        m[(SEEN + 9) * W + l] = atan2(r32, r33)
-        m[(SEEN + 10) * W + l] = atan2(-r31, math.sqrt(r32 * r32 + r33 * r33))
-        m[(SEEN + 11) * W + l] = atan2(r21, r11)
-    for c in range(6):
-        for l in range(W):
-            m[(SEEN + c) * W + l] = m[(X0 + 7 + c) * W + l]
-    for c in range(3):
-        for l in range(W):
-            m[(SEEN + 6 + c) * W + l] = m[(X0 + c) * W + l]
-    for c in range(12):
-        for l in range(W):
-            out[sample, c, lane + l] = m[(SEEN + c) * W + l]
+        m[SEEN * W + l] = atan2(r32, r33)
+        m[(SEEN + 1) * W + l] = atan2(-r31, math.sqrt(r32 * r32 + r33 * r33))
+        m[(SEEN + 2) * W + l] = atan2(r21, r11)
+    for l in range(W):
+        for c in range(6):
+            out[lane + l, sample, c] = m[(X0 + 7 + c) * W + l]
+        for c in range(3):
+            out[lane + l, sample, 6 + c] = m[(X0 + c) * W + l]
+            out[lane + l, sample, 9 + c] = m[(SEEN + c) * W + l]
 
 
 @njit(**OPTIONS)
@@ -306,9 +320,10 @@ def run(first, last, numbers, late, onset, states, start, limit, which, gain, sp
             m[c] = numbers[b, c]
         for c in range(13 * W):
             m[X0 * W + c] = states[b, c]
-        use_extra, use_wake, pending = False, False, False
+        use_extra, use_wake, pending, least = False, False, False, steps
         for l in range(W):
             m[ALIVE * W + l] = 1.0
+            least = min(least, limit[b, l])
             use_extra = use_extra or which[b, l] >= 0
             use_wake = use_wake or m[JET * W + l] != 0.0
             pending = pending or onset[b, l] < math.inf
@@ -339,7 +354,12 @@ def run(first, last, numbers, late, onset, states, start, limit, which, gain, sp
                         if lg[4 * W + l] >= onset[b, l]:  #full
                             for c in range(PAYLOAD):  #full
                                 m[(MASS + c) * W + l] = late[b, c * W + l]  #full
-                for s in range(3):
+                again = 0
+                if not hold and step + sub > 0:  # a step begins where the last one ended
+                    again = 1
+                    for c in range(THS):
+                        th[c] = th[2 * THS + c]
+                for s in range(again, 3):
                     f = f0 + (f1 - f0) * 0.5 * s
                     tv, lv = th[s * THS : (s + 1) * THS], lg[s * LOGS * W : (s + 1) * LOGS * W]
                     for l in range(W):
@@ -418,11 +438,6 @@ def run(first, last, numbers, late, onset, states, start, limit, which, gain, sp
                         <<wrench>>
                         <<acceleration>>
                         <<advance_state>>
-                for l in range(W):
-                    qw, qx, qy, qz = m[(ACC + 3) * W + l], m[(ACC + 4) * W + l], m[(ACC + 5) * W + l], m[(ACC + 6) * W + l]
-                    inverse = 1.0 / math.sqrt(qw * qw + qx * qx + qy * qy + qz * qz)
-                    m[(ACC + 3) * W + l], m[(ACC + 4) * W + l] = qw * inverse, qx * inverse
-                    m[(ACC + 5) * W + l], m[(ACC + 6) * W + l] = qy * inverse, qz * inverse
-                settle(m, stopped[b], reason[b], limit[b], step)
+                settle(m, stopped[b], reason[b], limit[b], least, step)
             record(m, out, step + 1, b * W)
 '''
