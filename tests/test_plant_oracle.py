@@ -67,7 +67,9 @@ def test_a_null_effect_changes_nothing_to_the_last_bit():
     even = np.arange(2, lanes, 2)
     assert (beside.nu[even] == alone.nu[even]).all() and (beside.eta[even] == alone.eta[even]).all()
     nominal = plant.simulate(inputs, start, 50, nu, eta, null)
-    assert np.abs(nominal.nu[even] - alone.nu[even]).max() < 1e-13
+    assert (nominal.nu[even] == alone.nu[even]).all() and (nominal.eta[even] == alone.eta[even]).all()
+    forced = plant.simulate(inputs, start, 50, nu, eta, null, np.zeros(lanes, int), np.zeros(lanes))  # the full kernel, nothing on
+    assert np.abs(nominal.nu - forced.nu).max() < 1e-13
     moved = plant.simulate(inputs, start[::-1], 50, nu[::-1], eta[::-1], null[::-1])
     assert (moved.nu[::-1] == nominal.nu).all()
 

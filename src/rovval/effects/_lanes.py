@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +50,10 @@ class Lanes:
 
     def __len__(self) -> int:
         return len(self.mass)
+
+    def take(self, which: NDArray[np.int64]) -> Lanes:
+        """Some of the lanes."""
+        return replace(self, **{f.name: getattr(self, f.name)[which] for f in fields(self) if f.name not in ("vehicle", "model")})
 
 
 def nominal(vehicle: Vehicle, model: str, size: int) -> Lanes:

@@ -15,7 +15,7 @@ EFFECT = Effect(
     title="Thruster and hull interaction",
     place="input",
     equation="T <- (1 - loss c) T for the sense of rotation whose jet points at the hull's middle, c the cosine of the angle it meets it at; "
-    "side force side |T| towards the hull, across the thruster (Coanda; diagnosis.md A9).",
+    "side force side |T at rest| towards the hull, across the thruster (Coanda; diagnosis.md A9).",
     parameters=(
         Parameter("loss", "1", -0.3, 1.0, 0.0, 0.15, "5 to 30 % (diagnosis.md A9)"),
         Parameter("side", "1", -0.5, 0.5, 0.0, 0.05, "chosen: a tenth of the thrust"),

@@ -15,15 +15,26 @@ from rovval.plant import compose, slots
 from rovval.vehicle.model import Vehicle
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+# Effects that only lower numbers, but numbers that the nominal kernel does not hold.
+BEYOND_NOMINAL = {"thrust_lag", "time_offset", "clock_drift", "thruster_interaction", "hull_interaction", "payload_change"}
 
 
 @dataclass(frozen=True, slots=True)
 class Lowered:
-    """Lanes after every active effect, and each effect's own rows: (B,) or (B, k) under ``effect.row``."""
+    """Lanes after every active effect, each effect's own rows, (B,) or (B, k) under ``effect.row``, and which lanes (B,) need the full
+    kernel."""
 
     lanes: Lanes
     rows: Mapping[str, Array]
     active: frozenset[str]
+    full: Flags
+
+    def take(self, which: NDArray[np.int64]) -> Lowered:
+        """Some of the lanes; rows of an effect that no lane has stand once for all."""
+        rows = {name: values[which] if len(values) == len(self.lanes) and len(values) > 1 else values for name, values in self.rows.items()}
+        return Lowered(self.lanes.take(which), rows, self.active, self.full[which])
 
 
 def active_effects(found: tuple[slots.Slot, ...], null: Array, beta: Array) -> frozenset[str]:
@@ -50,7 +61,14 @@ def lower(vehicle: Vehicle, model: str, found: tuple[slots.Slot, ...], index: Ma
         values = effects.module(name).rows(lanes if name in active else nominal(vehicle, model, 1), p)
         for row in own:
             rows[f"{name}.{row}"] = values[row]
-    return Lowered(lanes, rows, active)
+    return Lowered(lanes, rows, active, _full(found, null, beta))
+
+
+def _full(found: tuple[slots.Slot, ...], null: Array, beta: Array) -> Flags:
+    """Lanes (B,) that need the kernel with every effect in it: some effect acts on more than the numbers of the nominal one."""
+    beyond = {name for name in effects.names() if any(hasattr(effects.module(name), kind) for kind in compose.HOOKS)} | BEYOND_NOMINAL
+    columns = [c for c, slot in enumerate(found) if slot.effect in beyond]
+    return np.asarray((beta[:, columns] != null[columns]).any(axis=1))
 
 
 def rigid_body(mass: Array, first_moment: Array, inertia: Array) -> Array:

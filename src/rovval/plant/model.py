@@ -46,6 +46,10 @@ class _Lanes:
     which: Indices
     gain: Array
 
+    def take(self, part: Indices) -> _Lanes:
+        """Some of the lanes."""
+        return _Lanes(self.start[part], self.nu[part], self.eta[part], self.which[part], self.gain[part])
+
 
 class Plant:
     """A vehicle as one of the two platforms has it, and the library's parameters for it (see the package's example)."""
@@ -103,7 +107,21 @@ class Plant:
 
     def _run(self, inputs: Inputs, prepared: Prepared, lowered: Lowered, lanes: _Lanes, steps: int) -> tuple[Array, Indices, Indices]:
         """True motion (B, steps + 1, 12): u v w p q r, x y z phi theta psi; first invalid sample and its reason per lane."""
-        spec = compose.Spec(len(self.vehicle.thruster), self._dense, self._advance, bool(lowered.active) or bool((lanes.which >= 0).any()))
+        full = lowered.full | (lanes.which >= 0)
+        if full.all() or not full.any():
+            return self._run_one(inputs, prepared, lowered, lanes, steps, bool(full.any()))
+        out = np.empty((len(full), steps + 1, 12))
+        stopped, codes = np.empty(len(full), dtype=np.int64), np.empty(len(full), dtype=np.int64)
+        for kind in (False, True):
+            part = np.flatnonzero(full == kind)
+            out[part], stopped[part], codes[part] = self._run_one(inputs, prepared, lowered.take(part), lanes.take(part), steps, kind)
+        return out, stopped, codes
+
+    def _run_one(
+        self, inputs: Inputs, prepared: Prepared, lowered: Lowered, lanes: _Lanes, steps: int, full: bool
+    ) -> tuple[Array, Indices, Indices]:
+        """As `_run`, in one kernel."""
+        spec = compose.Spec(len(self.vehicle.thruster), self._dense, self._advance, full)
         size, blocks = len(lanes.start), -(-len(lanes.start) // compose.W)
         numbers = _blocked(pack(lowered, spec, inputs.dt, self.substeps))
         late, onset = self._payload(lowered.lanes, blocks)

@@ -244,7 +244,7 @@ def _thrusters(run: _Run, nu_r: Array, stage: Mapping[str, Array]) -> Array:
     thrust = _chain(run, "thrust", thrust, {**stage, "ua": axial, "cross": cross})
     moment = np.cross(run.place, lanes.direction) + (lanes.torque_arm[:, None] * run.hand)[..., None] * lanes.direction
     columns = np.concatenate([lanes.direction, moment], axis=-1)
-    side = lanes.side[:, None] * np.abs(thrust)
+    side = lanes.side[:, None] * np.abs(stage["T"])
     return np.asarray(np.einsum("bk,bki->bi", thrust, columns) + side @ run.side)
 
 

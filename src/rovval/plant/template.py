@@ -22,7 +22,7 @@ def render(spec: Spec) -> str:
     """The kernel's source for ``spec``."""
     where, k = layout(spec), spec.thrusters
     numbers = {
-        "W": compose.W, "THRUSTERS": k, "THS": max(3 * k, 6) * compose.W, "BODY": where.body_rows, "STRIDE": where.stride, "ROWS": where.rows, "LOGS": compose.LOG_ROWS,
+        "W": compose.W, "THRUSTERS": k, "THS": (3 * k + 6) * compose.W, "BODY": where.body_rows, "STRIDE": where.stride, "ROWS": where.rows, "LOGS": compose.LOG_ROWS,
         "MASS": where.first["mass"],
         "RESTORING": where.first["restoring"], "DISPLACED": where.first["displaced"], "ADDED": where.first["added"],
         "LINEAR": where.first["linear"], "QUADRATIC": where.first["quadratic"], "LAG": where.first["lag"], "SHIFT": where.first["shift"],
@@ -36,6 +36,7 @@ def render(spec: Spec) -> str:
         "at_rest": _at_rest(spec),
         "water": calls(spec, "water", WATER, True),
         "thrusters": _thrusters(spec),
+        "side": _side(spec),
         "wrench": calls(spec, "wrench", FORCE, True),
         "added": _matvec("a", "ADDED", NU_R, spec.dense),
         "drag": _drag(spec.dense),
@@ -113,7 +114,7 @@ def _thrusters(spec: Spec) -> list[str]:
     """Wrench of all thrusters under way, or as it stands where thrust does not depend on the motion."""
     if not (spec.full or spec.advance):
         return [f"{name} = tv[{c} * W + l]" for c, name in enumerate(FORCE)]
-    lines = [f"{name} = 0.0" for name in FORCE]
+    lines = [f"{name} = tv[{3 * spec.thrusters + c} * W + l]" if spec.full else f"{name} = 0.0" for c, name in enumerate(FORCE)]
     for i in range(spec.thrusters):
         row = f"(BODY + {i} * STRIDE)"
         lines += [
@@ -132,9 +133,17 @@ def _thrusters(spec: Spec) -> list[str]:
             lines += ["rest = vx * vx + vy * vy + vz * vz - ua * ua", "cross = math.sqrt(0.5 * (rest + abs(rest)))"]
         lines += calls(spec, "thrust", ("T",), False, row)
         lines += [f"{name} += T * m[({row} + {2 + c}) * W + l]" for c, name in enumerate(FORCE)]
-        if spec.full:
-            lines += ["S = abs(T) * m[(JET + 1) * W + l]", *(f"{name} += S * g_{16 * i + 9 + c}" for c, name in enumerate(FORCE))]
     return lines
+
+
+def _side(spec: Spec) -> list[str]:
+    """Side wrench of all thrusters at one stage time, from their thrust at rest."""
+    if not spec.full:
+        return []
+    lines = [f"{name} = 0.0" for name in FORCE]
+    for i in range(spec.thrusters):
+        lines += [f"S = abs(tv[{3 * i} * W + l]) * m[(JET + 1) * W + l]", *(f"{name} += S * g_{16 * i + 9 + c}" for c, name in enumerate(FORCE))]
+    return lines + [f"tv[{3 * spec.thrusters + c} * W + l] = {name}" for c, name in enumerate(FORCE)]
 
 
 def _entry(name: str, i: int, j: int) -> str:
@@ -316,16 +325,19 @@ def run(first, last, numbers, late, onset, states, start, limit, which, gain, sp
     la, lg = np.zeros(2 * LOGS * W), np.zeros(3 * LOGS * W)
     <<geometry>>
     for b in range(first, last):
+        for c in range(3 * THS):
+            th[c] = 0.0
         for c in range(ROWS * W):
             m[c] = numbers[b, c]
         for c in range(13 * W):
             m[X0 * W + c] = states[b, c]
-        use_extra, use_wake, pending, least = False, False, False, steps
+        use_extra, use_wake, use_side, pending, least = False, False, False, False, steps
         for l in range(W):
             m[ALIVE * W + l] = 1.0
             least = min(least, limit[b, l])
             use_extra = use_extra or which[b, l] >= 0
             use_wake = use_wake or m[JET * W + l] != 0.0
+            use_side = use_side or m[(JET + 1) * W + l] != 0.0
             pending = pending or onset[b, l] < math.inf
         for c in range(2 * LOGS * W):
             la[c] = 0.0
@@ -374,6 +386,9 @@ def run(first, last, numbers, late, onset, states, start, limit, which, gain, sp
                                 jet = wa * (abs(up) + up) + ws * (abs(up) - up)  #full
                                 own = 0.5 * (m[first_row + l] * (n + abs(n)) + m[first_row + W + l] * (n - abs(n)))  #full
                                 tv[row + l] -= m[JET * W + l] * jet * own  #full
+                    if use_side:  #full
+                        for l in range(W):  #full
+                            <<side>>
                 for c in range(THRUSTERS * W):  #full
                     m[MEMORY * W + c] = m[NEXT * W + c]  #full
                 for c in range(13 * W):
