@@ -7,7 +7,7 @@ import numpy as np
 from rovval import __version__, effects
 from rovval.data import Array
 from rovval.diagnose import Diagnosis
-from rovval.diagnose.confirm import Confirmed, confirm, interval
+from rovval.diagnose.confirm import Confirmed, confirm, errors, interval
 from rovval.diagnose.experiment import Advice, best_manoeuvre
 from rovval.diagnose.gap import axis_rows, axis_squares, noise_loss
 from rovval.diagnose.library import Hypothesis
@@ -17,7 +17,6 @@ from rovval.diagnose.pictures import coherence_matrix, heat_map, traces
 from rovval.diagnose.problem import Problem, corrected_residuals
 from rovval.diagnose.select import Named, Selection
 from rovval.diagnose.separate import interval as shrink_interval
-from rovval.diagnose.unknown import ceiling
 from rovval.diagnose.verdict import Judgement, judge
 from rovval.diagnose.words import sentence
 from rovval.vehicle.write import with_effects
@@ -30,8 +29,7 @@ def answer(
 ) -> Diagnosis:
     """Put everything that was found into one document."""
     before = corrected_residuals(problem)
-    top = ceiling(problem, problem.origin)
-    judgement = judge(problem, selection, top)
+    judgement = judge(problem, selection)
     final = judgement.final
     after = corrected_residuals(problem, final.beta) if final else before
     axes = axis_rows(problem, before)
@@ -60,7 +58,9 @@ def answer(
         "ranking": [{"effect": name, "score": score} for name, score in selection.ranking],
         "not_testable": _not_testable(problem, library, untestable),
         "next_experiment": _experiment(advice),
-        "detection": {"p_value": selection.last_p if not selection.named else selection.named[0].p_value, "ceiling": judgement.ceiling_share, "over_slop": judgement.over_slop},
+        "detection": {"p_value": selection.last_p if not selection.named else selection.named[0].p_value, "last_p": selection.last_p, "last_evidence": selection.last_evidence, "null_evidence": selection.null_evidence,
+                      "slop": judgement.slop_share, "ceiling": judgement.ceiling_share, "cause_and_slop": judgement.cause_share},
+        "finalists": [[{"effect": n, "evidence": e, "gain": g} for n, e, g in one] for one in selection.rounds],
         "left": judgement.left,
         "harm": _harm(problem, before, after),
         "parity": [row for check, part in zip(problem.parity, problem.parts, strict=True) for row in faults(check, part)],
@@ -87,11 +87,11 @@ def _cause(problem: Problem, judgement: Judgement, named: Named, before: list[Ar
     nominal = axis_squares(problem, before)
     members = judgement.groups[h.name]
     onset = next((float(final.beta[s]) for s in h.slots if problem.plant.slots[s].parameter.name == "onset"), None)
-    parameters = {}
+    parameters, error = {}, errors(problem, final)
     for slot in h.slots:
         i = final.slots.index(slot)
         p = problem.plant.slots[slot].parameter
-        bottom, top = interval(float(final.beta[slot]), float(final.error[i]), problem.blocks)
+        bottom, top = interval(float(final.beta[slot]), float(error[i]), problem.blocks)
         parameters[p.name] = {
             "value": float(final.beta[slot]), "low": max(bottom, p.low), "high": min(top, p.high), "unit": p.unit, "at_bound": slot in final.at_bound,
         }  # fmt: skip
@@ -103,6 +103,7 @@ def _cause(problem: Problem, judgement: Judgement, named: Named, before: list[Ar
         "onset_s": onset,
         "parameters": parameters,
         "p_value": named.p_value,
+        "evidence": named.evidence,
         "shrinkage": {
             "total": value, "low": low, "high": high, "of_explainable": _explainable(problem, alone),
             "axes": {axis: float(1 - after[axis].sum() / nominal[axis].sum()) for axis in nominal if nominal[axis].sum() > 0},

@@ -17,16 +17,20 @@ from rovval.diagnose.products import Products
 
 @dataclass(frozen=True, slots=True)
 class Prior:
-    """Standard deviation of the departure of plant slots from where the model stands; slots not named do not move."""
+    """Standard deviation of the departure of columns from where the model stands; columns not named do not move."""
 
     sd: Mapping[int, float]
 
     def widened(self, other: Prior) -> Prior:
-        """Both sets free; a slot in both takes the wider prior."""
+        """Both sets free; a column in both takes the wider prior."""
         merged = dict(self.sd)
-        for slot, value in other.sd.items():
-            merged[slot] = max(value, merged.get(slot, 0.0))
+        for column, value in other.sd.items():
+            merged[column] = max(value, merged.get(column, 0.0))
         return Prior(merged)
+
+    def scaled(self, factor: float) -> Prior:
+        """The same columns, each free within ``factor`` of its prior."""
+        return Prior({column: factor * value for column, value in self.sd.items()})
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,51 +51,84 @@ def folds_of(run_of_window: np.ndarray, count: int = 5) -> tuple[Fold, ...]:
 
 
 @dataclass(frozen=True, slots=True)
-class Fit:
-    """A hypothesis after the contest: held-out loss per window (m,), and its step (k,) over the product columns on all windows."""
+class Ring:
+    """Products summed over the windows of each fold: ``A`` (f, k, k), ``b`` (f, k), ``c`` (f,) of the held-out parts; what a fold is
+    fitted on is the total less its own part."""
 
-    loss: Array
+    data: Products
+    A: Array
+    b: Array
+    c: Array
+
+    @classmethod
+    def of(cls, data: Products, folds: Sequence[Fold]) -> Ring:
+        """Sum products over each fold's held-out windows."""
+        return cls(
+            data,
+            np.stack([data.A[f.test].sum(axis=0) for f in folds]),
+            np.stack([data.b[f.test].sum(axis=0) for f in folds]),
+            np.array([data.c[f.test].sum() for f in folds]),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """Held-out loss, summed over folds, and the step (k,) over the product columns that fits all windows."""
+
+    loss: float
     step: Array
 
 
-def contest(
-    data: Products, folds: Sequence[Fold], base: Prior, hypotheses: Mapping[str, Prior], inflation: float
-) -> tuple[Fit, dict[str, Fit]]:
-    """Held-out losses of the base and of the base with each hypothesis set free."""
-    return fit(data, folds, base, inflation), {
-        name: fit(data, folds, base.widened(prior), inflation) for name, prior in hypotheses.items()
-    }
-
-
-def fit(data: Products, folds: Sequence[Fold], prior: Prior, inflation: float) -> Fit:
-    """Ridge fit of the slots of ``prior``: held-out loss of every window, and the step on all windows."""
+def fit(ring: Ring, prior: Prior, inflation: float) -> Fit:
+    """Ridge fit of the columns of ``prior``: scored on each fold with what the other folds give, and fitted on all."""
+    step = np.zeros(ring.b.shape[1])
     if not prior.sd:
-        return Fit(data.c.copy(), np.zeros(len(data.columns)))
-    free = data.place(tuple(prior.sd))
-    ridge = np.diag(inflation / np.array(list(prior.sd.values())) ** 2)
-    loss = np.empty(len(data.c))
-    for fold in folds:
-        step = _solve(data, free, ridge, fold.train)
-        loss[fold.test] = losses(data, free, step, fold.test)
-    full = np.zeros(len(data.columns))
-    full[free] = _solve(data, free, ridge, np.ones(len(data.c), dtype=bool))
-    return Fit(loss, full)
+        return Fit(float(ring.c.sum()), step)
+    free, ridge = free_of(ring.data, prior, inflation)
+    block = np.ix_(free, free)
+    A, b = ring.A.sum(axis=0)[block], ring.b.sum(axis=0)[free]
+    loss = 0.0
+    for own_A, own_b, own_c in zip(ring.A, ring.b, ring.c, strict=True):
+        mine_A, mine_b = own_A[block], own_b[free]
+        held = np.linalg.solve(A - mine_A + ridge, b - mine_b)
+        loss += float(own_c - 2 * mine_b @ held + held @ mine_A @ held)
+    step[free] = np.linalg.solve(A + ridge, b)
+    return Fit(loss, step)
+
+
+def free_of(data: Products, prior: Prior, inflation: float) -> tuple[np.ndarray, Array]:
+    """Places of the free columns and their ridge."""
+    sd = np.array(list(prior.sd.values()))
+    return data.place(tuple(prior.sd)), np.diag(inflation / sd**2)
+
+
+def contest(ring: Ring, base: Prior, hypotheses: Mapping[str, Prior], inflation: float) -> tuple[Fit, dict[str, Fit]]:
+    """Fits of the base and of the base with each hypothesis set free."""
+    return fit(ring, base, inflation), {name: fit(ring, base.widened(prior), inflation) for name, prior in hypotheses.items()}
+
+
+def heldout(data: Products, folds: Sequence[Fold], prior: Prior, inflation: float) -> Array:
+    """Held-out loss of every window (m,)."""
+    ring, out = Ring.of(data, folds), data.c.copy()
+    if not prior.sd:
+        return out
+    free, ridge = free_of(data, prior, inflation)
+    A, b = ring.A.sum(axis=0)[np.ix_(free, free)], ring.b.sum(axis=0)[free]
+    for i, fold in enumerate(folds):
+        step = np.linalg.solve(A - ring.A[i][np.ix_(free, free)] + ridge, b - ring.b[i][free])
+        out[fold.test] = losses(data, free, step, fold.test)
+    return out
 
 
 def losses(data: Products, free: np.ndarray, step: Array, which: np.ndarray) -> Array:
-    """Weighted squared residual of windows after a step of the free parameters."""
+    """Weighted squared residual of windows after a step of the free columns."""
     A, b = data.A[which][:, free[:, None], free[None, :]], data.b[which][:, free]
     return np.asarray(data.c[which] - 2 * b @ step + np.einsum("i,wij,j->w", step, A, step))
 
 
-def _solve(data: Products, free: np.ndarray, ridge: Array, which: np.ndarray) -> Array:
-    A = data.A[which][:, free[:, None], free[None, :]].sum(axis=0)
-    return np.asarray(np.linalg.solve(A + ridge, data.b[which][:, free].sum(axis=0)))
-
-
 def inflation_of(data: Products, step: Array) -> float:
     """How far residuals are from white: variance of the per-window score over its variance for white residuals, median over
-    parameters (the design effect of cluster sampling); never below 1."""
+    columns (the design effect of cluster sampling); never below 1."""
     score = data.b - np.einsum("wij,j->wi", data.A, step)
     spread = (score**2).mean(axis=0)
     white = np.einsum("wii->wi", data.A).mean(axis=0)

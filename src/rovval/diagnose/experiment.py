@@ -13,7 +13,8 @@ import numpy as np
 
 from rovval.channels import AXES, VELOCITIES
 from rovval.data import Array, ClockReport, Reason, Run
-from rovval.diagnose.contest import Prior, fit, folds_of
+from rovval.diagnose.contest import Prior, Ring, fit, folds_of
+from rovval.diagnose.library import PRIOR_WIDTH
 from rovval.diagnose.linearise import linearise, state_spread
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import products
@@ -136,9 +137,9 @@ def _misfit(problem: Problem, beta: Array, members: tuple[str, ...], manoeuvre: 
         return None
     variance = problem.variance[: stretches.steps + 1][:, keep]
     data = products(linearise(stretches, base, columns), stretches.ok, variance, state_spread(stretches))
-    folds = folds_of(np.zeros(len(data.c), dtype=int))
+    ring = Ring.of(data, folds_of(np.zeros(len(data.c), dtype=int)))
     left = [
-        float(fit(data, folds, Prior({s: 4.0 * plant.slots[s].parameter.typical for s in slots}), problem.inflation).loss.sum())
+        fit(ring, Prior({s: PRIOR_WIDTH * plant.slots[s].parameter.typical for s in slots}), problem.inflation).loss
         for name, slots in free.items()
     ]
     return (min(left[1:]) - left[0]) / (problem.inflation * len(data.c))

@@ -17,6 +17,7 @@ from rovval.diagnose.stretches import ANGLES, VELOCITY_CHANNELS, Stretches, diff
 POSE_INDEX = {6: 3, 7: 4, 8: 2, 9: 5}  # start states after the six velocities: roll, pitch, depth, heading
 LANES = 20_000  # lanes a call, to bound memory (about 200 MB)
 STEP = 0.25  # finite-difference step as a share of a parameter's typical size
+ATTITUDE_DRIFT = 0.004  # rad: slow error of an AHRS within a window, 0.2 degrees (MTi class data sheets)
 STATE_STEP = (0.02, 0.02, 0.02, 0.01, 0.01, 0.01, 0.01, 0.01, 0.02)  # m/s, rad/s, rad, m: about twice the noise of good sensors
 
 
@@ -68,7 +69,9 @@ def linearise(stretches: Stretches, beta: Array, columns: tuple[int, ...], direc
     out = out.reshape(len(lanes), windows, stretches.steps + 1, len(stretches.channels))
     nominal = out[0]
     ids = (*columns, *(d.id for d in directions))
-    J, S = np.zeros((*nominal.shape, len(states))), np.zeros((*nominal.shape, len(ids)))
+    J, S = np.zeros((*nominal.shape, len(states) + len(_drifting(stretches)))), np.zeros((*nominal.shape, len(ids)))
+    for i, channel in enumerate(_drifting(stretches)):
+        J[..., channel, len(states) + i] = 1.0
     place = {column: i for i, column in enumerate(ids)}
     for i, lane in enumerate(lanes):
         if lane.state >= 0:
@@ -154,8 +157,14 @@ def _state_steps(stretches: Stretches) -> list[tuple[int, float]]:
     return chosen
 
 
+def _drifting(stretches: Stretches) -> list[int]:
+    """Channels whose sensor drifts slowly beside its white noise: roll and pitch of an AHRS."""
+    return [i for i, c in enumerate(stretches.channels) if c in ("phi", "theta")]
+
+
 def state_spread(stretches: Stretches) -> Array:
-    """Standard error of each marginalised initial state (s,): the channel's noise, or a stated value where it was not measured."""
+    """Standard error of each nuisance of a window (s,): start states (the channel's noise, or a stated value where it was not measured),
+    then the attitude sensors' drift."""
     noise = dict(zip(stretches.channels, stretches.noise, strict=True))
     run = stretches.run
     spread = []
@@ -166,4 +175,4 @@ def state_spread(stretches: Stretches) -> Array:
             spread.append(max(noise.get(name, 0.0), least))
         else:
             spread.append(0.3)  # not logged: any small start is possible (m/s, rad/s, rad)
-    return np.array(spread)
+    return np.array([*spread, *[ATTITUDE_DRIFT] * len(_drifting(stretches))])

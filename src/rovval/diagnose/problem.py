@@ -12,12 +12,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rovval.data import Array
-from rovval.diagnose.contest import Fold, Prior, fit, folds_of, inflation_of
+from rovval.diagnose.contest import Fold, Prior, Ring, fit, folds_of, inflation_of
 from rovval.diagnose.library import Hypothesis
 from rovval.diagnose.linearise import Direction, Linear, linearise, state_spread
 from rovval.diagnose.parity import Parity, parity
 from rovval.diagnose.products import Products, joined, products, start_corrected
 from rovval.diagnose.stretches import Stretches
+from rovval.diagnose.tolerance import slop_prior
 from rovval.plant import Plant, parse_settings
 from rovval.simulate import carried_effects
 
@@ -65,11 +66,11 @@ def pose(parts: tuple[Stretches, ...], library: Sequence[Hypothesis], slop: floa
     checks = tuple(parity(part, columns) for part in parts)
     early = _joined(parts, linear, first)
     everything = Prior({c: plant.slots[c].parameter.typical for c in columns})
-    inflation = inflation_of(early, fit(early, folds, everything, 10.0).step)
-    best = fit(early, folds, everything, inflation).step
+    inflation = inflation_of(early, fit(Ring.of(early, folds), everything, 10.0).step)
+    best = fit(Ring.of(early, folds), everything, inflation).step
     variance = first + _unexplained(parts, linear, first, best)
     dynamic = _joined(parts, linear, variance)
-    inflation = inflation_of(dynamic, fit(dynamic, folds, everything, inflation).step)
+    inflation = inflation_of(dynamic, fit(Ring.of(dynamic, folds), everything, inflation).step)
     data = dynamic + joined([check.moved(origin, dynamic.columns).products(inflation) for check in checks])
     return Problem(parts, origin, variance, prior, linear, dynamic, data, checks, folds, inflation, run_of_window)
 
@@ -83,7 +84,21 @@ def columns_of(library: Sequence[Hypothesis], slop: Prior) -> tuple[tuple[int, .
 
 def at(problem: Problem, beta: Array, columns: tuple[int, ...], directions: Sequence[Direction] = ()) -> tuple[Products, Products]:
     """Products of every window about ``beta`` for the given columns: (dynamics alone, dynamics and parity)."""
-    linear = tuple(linearise(part, beta, columns, directions) for part in problem.parts)
+    return _products(problem, beta, tuple(linearise(part, beta, columns, directions) for part in problem.parts))
+
+
+def beside_slop(problem: Problem, beta: Array, columns: tuple[int, ...]) -> tuple[Products, Products]:
+    """As `at`, with the columns of calibration slop beside them; those are taken from the nominal vehicle, where they were simulated."""
+    linear = []
+    for part, nominal in zip(problem.parts, problem.at_null, strict=True):
+        one = linearise(part, beta, columns)
+        extra = tuple(c for c in problem.slop.sd if c not in columns)
+        place = [nominal.columns.index(c) for c in extra]
+        linear.append(replace(one, S=np.concatenate([one.S, nominal.S[..., place]], axis=-1), columns=(*columns, *extra)))
+    return _products(problem, beta, tuple(linear))
+
+
+def _products(problem: Problem, beta: Array, linear: tuple[Linear, ...]) -> tuple[Products, Products]:
     dynamic = _joined(problem.parts, linear, problem.variance)
     moved = joined([check.moved(beta, dynamic.columns).products(problem.inflation) for check in problem.parity])
     return dynamic, dynamic + moved
@@ -95,17 +110,6 @@ def corrected_residuals(problem: Problem, beta: Array | None = None) -> list[Arr
     return [
         start_corrected(one, part.ok, problem.variance, state_spread(part)) for part, one in zip(problem.parts, linear, strict=True)
     ]
-
-
-SLOP = {"added_mass": 1.0, "linear_drag": 1.0, "quadratic_drag": 1.0, "inertia_error": 1.0, "thruster_degraded": 1.0, "reverse_asymmetry": 1.0}
-
-
-def slop_prior(plant: Plant, slop: float) -> Prior:
-    """The nominal coefficients that calibration slop moves, each within ``slop`` of itself (one standard deviation)."""
-    if slop <= 0:
-        return Prior({})
-    sd = {i: slop * SLOP[s.effect] for i, s in enumerate(plant.slots) if s.effect in SLOP and s.parameter.unit in ("1", "fraction")}
-    return Prior(sd)
 
 
 def _joined(parts: Sequence[Stretches], linear: Sequence[Linear], variance: Array) -> Products:

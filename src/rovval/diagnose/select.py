@@ -8,14 +8,14 @@ is not real or too small to matter; an effect that later ones make needless is d
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rovval.data import Array
-from rovval.diagnose.confirm import Confirmed, confirm
-from rovval.diagnose.contest import Fit, Prior, contest, fit
-from rovval.diagnose.detect import null_gains
+from rovval.diagnose.confirm import NAMING_SLOP, Confirmed, confirm
+from rovval.diagnose.contest import Fit, Prior, Ring, contest, fit
+from rovval.diagnose.detect import Detection, detect
 from rovval.diagnose.library import PRIOR_WIDTH, Hypothesis
 from rovval.diagnose.problem import Problem, at, columns_of
 from rovval.diagnose.products import Products
@@ -24,8 +24,9 @@ from rovval.diagnose.separate import group
 MOST = 3  # effects at once
 FINALISTS = 8  # hypotheses that are re-simulated in a round
 FALSE_ALARM = 0.05  # family-wise, over the whole library
-LEAST_GAIN = 0.05  # of the gap that is there in this round, on top of slop: less is not worth a name
-NAMING_SLOP = 0.3  # share of the declared slop that stays in the contest of names
+NEEDLESS = 6.0  # twice the log Bayes factor below which an effect is dropped again (Kass & Raftery 1995: positive evidence)
+HALF_REVERSED = 0.55  # 0.5 is a dead thruster; the margin is chosen
+LEAST_GAIN = 0.03  # of the gap, on held-out windows: less is not worth a name
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,50 +38,72 @@ class Named:
     group: tuple[tuple[str, float], ...]
     fitted: Confirmed
     p_value: float
-    gain_over_slop: float
+    evidence: float
 
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """Effects in the order found; the final joint fit (None: nothing found); every hypothesis's held-out share of the gap alone; the
-    p-value and gain of the round that ended the search."""
+    """Effects in the order found; the final joint fit (None: nothing found); every hypothesis's held-out share of the gap alone;
+    of each round the finalists with their evidence and held-out gain; the p-value of the round that ended the search."""
 
     named: tuple[Named, ...]
     final: Confirmed | None
     ranking: tuple[tuple[str, float], ...]
+    rounds: tuple[tuple[tuple[str, float, float], ...], ...]
     last_p: float
-    last_gain: float
+    last_evidence: float
+    null_evidence: float
 
 
 def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Callable[[str, float], None]) -> Selection:
     """Search for the effects that explain the gap; see the module."""
     beta, chosen = problem.origin.copy(), tuple[int, ...]()
     named: list[Named] = []
+    rounds: list[tuple[tuple[str, float, float], ...]] = []
     ranking: tuple[tuple[str, float], ...] = ()
-    p, gain = 1.0, 0.0
+    p, last, null = 1.0, 0.0, 0.0
     for round_number in range(MOST):
         progress(f"screening {len(library)} hypotheses, round {round_number + 1}", 0.3 + 0.2 * round_number)
         data = _bank(problem, library, beta, chosen)
         open_now = [h for h in library if h.name not in {n.hypothesis.name for n in named}]
-        over_slop, p = _detect(problem, data, open_now, chosen, seed + round_number)
-        best_share = max(over_slop.values(), default=0.0)
+        detection = _detect(problem, data, open_now, chosen, seed + round_number)
         names = _name(problem, data, open_now, chosen)
         if not ranking:
             ranking = _ranking(names)
-        gain = best_share
-        if p > FALSE_ALARM or best_share < LEAST_GAIN:
+        p, last, null = detection.p_value(detection.best), detection.evidence[detection.best], float(np.quantile(detection.null, 0.95))
+        if p > FALSE_ALARM:
             break
         progress("re-simulating the finalists", 0.4 + 0.2 * round_number)
-        fitted = _finalists(problem, data, names, over_slop, beta, chosen)
+        before = named[-1].fitted.loss if named else problem.data.c
+        fitted = _finalists(problem, data, names, detection, beta, chosen)
         if not fitted:
             break
-        losses = {h.name: c.loss for h, c in fitted}
-        winner, best = min(fitted, key=lambda item: float(item[1].loss.sum()))
-        members = tuple(group(losses, winner.name, seed))
-        named.append(Named(winner, members, best, p, over_slop[winner.label]))
-        beta, chosen = best.beta, best.slots
+        fitted.sort(key=lambda item: -item[1].evidence)
+        winner, best = fitted[0]
+        gap = float(problem.data.c.sum())
+        rounds.append(tuple((h.name, c.evidence, float((before - c.loss).sum()) / gap) for h, c in fitted))
+        if rounds[-1][0][2] < LEAST_GAIN:
+            break
+        members = tuple(group(problem, {h.name: c for h, c in fitted}, winner.name, seed))
+        named.append(Named(winner, members, best, detection.p_value(winner.label), detection.evidence[winner.label]))
+        named = _pruned(problem, named)
+        beta, chosen = named[-1].fitted.beta, named[-1].fitted.slots
     final = named[-1].fitted if named else None
-    return Selection(tuple(named), final, ranking, p, gain)
+    return Selection(tuple(named), final, ranking, tuple(rounds), p, last, null)
+
+
+def _pruned(problem: Problem, named: list[Named]) -> list[Named]:
+    """Drop effects that the last one made needless: without them the evidence of the joint fit is no worse."""
+    for one in named[:-1]:
+        whole = named[-1].fitted
+        slots = tuple(s for s in whole.slots if s not in one.hypothesis.slots)
+        start = whole.beta.copy()
+        start[list(one.hypothesis.slots)] = problem.origin[list(one.hypothesis.slots)]
+        without = confirm(problem, start, slots)
+        if without.evidence > whole.evidence - NEEDLESS:
+            rest = [n for n in named if n is not one]
+            named = [*rest[:-1], replace(rest[-1], fitted=without)]
+    return named
 
 
 def _bank(problem: Problem, library: list[Hypothesis], beta: Array, chosen: tuple[int, ...]) -> Products:
@@ -99,23 +122,20 @@ def _prior(h: Hypothesis) -> Prior:
     return Prior(dict(zip(h.columns, h.sd, strict=True)))
 
 
-def _detect(problem: Problem, data: Products, library: list[Hypothesis], chosen: tuple[int, ...], seed: int) -> tuple[dict[str, float], float]:
-    """Held-out gain of each hypothesis on top of slop, as a share of the loss that slop leaves; p-value of the best."""
-    base = problem.slop.widened(_free(problem, chosen))
-    total, fits = contest(data, problem.folds, base, {h.label: _prior(h) for h in library}, problem.inflation)
-    left = float(total.loss.sum())
-    share = {label: float((left - one.loss.sum()) / left) for label, one in fits.items()}
+def _detect(problem: Problem, data: Products, library: list[Hypothesis], chosen: tuple[int, ...], seed: int) -> Detection:
+    """Evidence of each hypothesis on top of slop and of what was chosen before."""
     slots = [c for c in data.columns if c < len(problem.plant.slots)]
-    everything = fit(data, problem.folds, Prior({c: problem.plant.slots[c].parameter.typical for c in slots}), problem.inflation).step
-    null = null_gains(data, problem.folds, base, problem.slop, {h.label: _prior(h) for h in library}, problem.inflation, everything, seed)
-    return share, null.p_value(max(share.values(), default=0.0))
+    typical = Prior({c: problem.plant.slots[c].parameter.typical for c in slots})
+    everything = fit(Ring.of(data, problem.folds), typical, problem.inflation).step
+    base = problem.slop.widened(_free(problem, chosen))
+    return detect(data, base, problem.slop, {h.label: _prior(h) for h in library}, problem.inflation, everything, seed)
 
 
 def _name(problem: Problem, data: Products, library: list[Hypothesis], chosen: tuple[int, ...]) -> dict[str, tuple[Hypothesis, Fit, float]]:
     """Held-out contest of names with only a trace of slop: label -> hypothesis, fit, share of the loss that it takes away."""
-    tight = Prior({s: NAMING_SLOP * sd for s, sd in problem.slop.sd.items()}).widened(_free(problem, chosen))
-    _, fits = contest(data, problem.folds, tight, {h.label: _prior(h) for h in library}, problem.inflation)
-    return {h.label: (h, fits[h.label], float(1.0 - fits[h.label].loss.sum() / data.c.sum())) for h in library}
+    tight = problem.slop.scaled(NAMING_SLOP).widened(_free(problem, chosen))
+    _, fits = contest(Ring.of(data, problem.folds), tight, {h.label: _prior(h) for h in library}, problem.inflation)
+    return {h.label: (h, fits[h.label], float(1.0 - fits[h.label].loss / data.c.sum())) for h in library}
 
 
 def _ranking(contest: dict[str, tuple[Hypothesis, Fit, float]]) -> tuple[tuple[str, float], ...]:
@@ -126,20 +146,26 @@ def _ranking(contest: dict[str, tuple[Hypothesis, Fit, float]]) -> tuple[tuple[s
 
 
 def _finalists(
-    problem: Problem, data: Products, names: dict[str, tuple[Hypothesis, Fit, float]], over_slop: dict[str, float], beta: Array, chosen: tuple[int, ...]
+    problem: Problem, data: Products, names: dict[str, tuple[Hypothesis, Fit, float]], detection: Detection, beta: Array, chosen: tuple[int, ...]
 ) -> list[tuple[Hypothesis, Confirmed]]:
     """The best starting point of each of the best hypotheses, refitted by re-simulation jointly with what was chosen before."""
-    threshold = 0.5 * max(over_slop.values())
-    ordered = sorted((v for label, v in names.items() if over_slop[label] > threshold), key=lambda item: -item[2])
+    ordered = sorted(names.values(), key=lambda item: -detection.evidence[item[0].label])
     seen: set[str] = set()
     fitted = []
     for h, one, _ in ordered:
-        if h.name in seen or len(seen) >= FINALISTS:
+        if h.name in seen or len(seen) >= FINALISTS or detection.evidence[h.label] <= 0:
             continue
         seen.add(h.name)
         start = _start(problem, data, h, one, beta)
-        fitted.append((h, confirm(problem, start, tuple(dict.fromkeys((*chosen, *h.slots))))))
+        one_fit = confirm(problem, start, tuple(dict.fromkeys((*chosen, *h.slots))))
+        if _admissible(problem, h, one_fit):
+            fitted.append((h, one_fit))
     return fitted
+
+
+def _admissible(problem: Problem, h: Hypothesis, fitted: Confirmed) -> bool:
+    """A thruster counts as reversed only where it pushes the other way: up to half-reversed it is a degraded one."""
+    return not h.name.startswith("thruster_reversed") or all(fitted.beta[s] > HALF_REVERSED for s in h.slots)
 
 
 def _start(problem: Problem, data: Products, h: Hypothesis, one: Fit, beta: Array) -> Array:

@@ -7,21 +7,33 @@ from collections.abc import Mapping
 import numpy as np
 
 from rovval.data import Array
+from rovval.diagnose.confirm import Confirmed, evidence_of
+from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import Products
 
 RESAMPLES = 500
+GROUP_RESAMPLES = 200
+FORM = 0.05  # chosen: share of the evidence that may be owed to the form of an equation
 LEVEL = 0.05  # one-sided: a member of the group must be this plausible to be as good as the winner
 
 
-def group(losses: Mapping[str, Array], winner: str, seed: int, block: int = 2) -> list[tuple[str, float]]:
-    """Every hypothesis whose held-out loss is not worse than the winner's in a paired block bootstrap over windows, with the share of
-    resamples in which it comes first among the group; the winner leads."""
-    draws = _blocks(len(losses[winner]), block, np.random.default_rng(seed))
-    total = {name: loss[draws].sum(axis=1) for name, loss in losses.items()}
-    members = [n for n in losses if n == winner or float((total[n] <= total[winner]).mean()) > LEVEL]
-    firsts = np.argmin(np.stack([total[n] for n in members]), axis=0)
+def group(problem: Problem, fitted: Mapping[str, Confirmed], winner: str, seed: int, block: int = 2) -> list[tuple[str, float]]:
+    """Every hypothesis that this log does not tell from the winner, with the share of resamples in which it comes first.
+
+    It stays in the group if its evidence is as good in more than `LEVEL` of a paired block bootstrap over windows, or falls short by
+    less than `FORM` of the winner's: what equations that are only nearly right may cost. The winner leads.
+    """
+    draws = _blocks(problem.blocks, block, np.random.default_rng(seed))[:GROUP_RESAMPLES]
+    counts = np.stack([np.bincount(draw, minlength=problem.blocks) for draw in draws]).astype(float)
+    near = [n for n, c in fitted.items() if c.evidence > (1 - 4 * FORM) * fitted[winner].evidence]
+    total = {n: evidence_of(problem, fitted[n].point, len(fitted[n].slots), counts) for n in near}
+    members = [
+        n for n in near
+        if n == winner or float((total[n] >= total[winner]).mean()) > LEVEL or fitted[n].evidence > (1 - FORM) * fitted[winner].evidence
+    ]  # fmt: skip
+    firsts = np.argmax(np.stack([total[n] for n in members]), axis=0)
     share = {n: float((firsts == i).mean()) for i, n in enumerate(members)}
-    rest = sorted((n for n in members if n != winner), key=lambda n: (-share[n], float(losses[n].sum())))
+    rest = sorted((n for n in members if n != winner), key=lambda n: (-share[n], -fitted[n].evidence))
     return [(winner, share[winner]), *((n, share[n]) for n in rest)]
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from rovval.channels import AXES
 from rovval.data import Array
-from rovval.diagnose.contest import Fit, Prior, fit
+from rovval.diagnose.contest import Prior, Ring, fit, heldout
 from rovval.diagnose.linearise import Linear, linearise, simulate_windows, state_spread
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import Products, joined, products
@@ -35,17 +35,16 @@ class Ceiling:
 def ceiling(problem: Problem, beta: Array) -> Ceiling:
     """The best that a generic force (features x axes) achieves about ``beta``, on held-out windows."""
     data, names = _products(problem, beta)
-    free = range(len(names))
-    fits = [fit(data, problem.folds, Prior(dict.fromkeys(free, s)), problem.inflation) for s in SHARES]
-    best = min(range(len(SHARES)), key=lambda i: float(fits[i].loss.sum()))
-    whole = fits[best]
-    by_axis = [(axis, _gain(data, problem, [i for i, (a, _) in enumerate(names) if a == axis], SHARES[best])) for axis in AXES]
+    ring, free = Ring.of(data, problem.folds), range(len(names))
+    best = min(SHARES, key=lambda s: fit(ring, Prior(dict.fromkeys(free, s)), problem.inflation).loss)
+    loss = heldout(data, problem.folds, Prior(dict.fromkeys(free, best)), problem.inflation)
+    by_axis = [(axis, _gain(ring, problem, [i for i, (a, _) in enumerate(names) if a == axis], best)) for axis in AXES]
     by_axis.sort(key=lambda item: -item[1])
     leading = by_axis[0][0]
     features = sorted({f for a, f in names if a == leading})
-    by_feature = [(f, _gain(data, problem, [i for i, (a, n) in enumerate(names) if a == leading and n == f], SHARES[-1])) for f in features]
+    by_feature = [(f, _gain(ring, problem, [i for i, (a, n) in enumerate(names) if a == leading and n == f], SHARES[-1])) for f in features]
     by_feature.sort(key=lambda item: -item[1])
-    return Ceiling(whole.loss, tuple(by_axis), tuple(by_feature))
+    return Ceiling(loss, tuple(by_axis), tuple(by_feature))
 
 
 def features_of(stretches: Stretches) -> dict[str, Array]:
@@ -125,7 +124,6 @@ def _typical_wrench(parts: Sequence[Stretches]) -> Array:
     return np.asarray(np.maximum(np.sqrt(total), 0.01 * max(float(np.sqrt(total.max())), 0.01 * weight)))
 
 
-def _gain(data: Products, problem: Problem, free: Sequence[int], sd: float) -> float:
+def _gain(ring: Ring, problem: Problem, free: Sequence[int], sd: float) -> float:
     """Held-out share of the loss that forces of these columns take away alone."""
-    one: Fit = fit(data, problem.folds, Prior(dict.fromkeys(free, sd)), problem.inflation)
-    return float(1.0 - one.loss.sum() / data.c.sum())
+    return 1.0 - fit(ring, Prior(dict.fromkeys(free, sd)), problem.inflation).loss / float(ring.c.sum())

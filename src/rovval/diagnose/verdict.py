@@ -8,59 +8,62 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.data import Array
-from rovval.diagnose.confirm import Confirmed
-from rovval.diagnose.contest import fit
+from rovval.diagnose.confirm import Confirmed, slop_loss
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.select import FALSE_ALARM, Named, Selection
-from rovval.diagnose.unknown import Ceiling
+from rovval.diagnose.unknown import Ceiling, ceiling
 
-LEAST_OF_CEILING = 0.5  # a cause explains at least half of what any systematic force could (research E.9)
-STRUCTURED = 0.15  # a generic force must close this much more before something unknown is claimed (research E.9)
+LEAST_OF_CEILING = 0.5  # a cause takes at least half of the systematic gap that slop leaves (research E.9)
+STRUCTURED = 0.15  # of the gap: a generic force must close this much more before something unknown is claimed (research E.9)
 
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """``verdict`` of the contract; the causes that stand, their joint fit, groups and probabilities; the share of the gap that any
-    systematic force could close, that slop alone closes, and what is left in words."""
+    """``verdict`` of the contract; the causes that stand, their joint fit, groups and probabilities; the shares of the gap that slop
+    alone, any systematic force, and the causes with slop beside them close; what is left in words."""
 
     verdict: str
     named: tuple[Named, ...]
     final: Confirmed | None
     groups: Mapping[str, tuple[tuple[str, float], ...]]
     probability: Mapping[str, float]
+    slop_share: float
     ceiling_share: float
-    over_slop: float
+    cause_share: float
     left: dict[str, object] | None
 
 
-def judge(problem: Problem, selection: Selection, top: Ceiling) -> Judgement:
+def judge(problem: Problem, selection: Selection) -> Judgement:
     """Weigh what was found against what could have been found."""
     gap = float(problem.dynamic.c.sum())
-    slop_only = float(fit(problem.dynamic, problem.folds, problem.slop, problem.inflation).loss.sum())
-    possible = 1.0 - float(np.minimum(top.loss.sum(), gap)) / gap
-    beyond_slop = max(slop_only - float(top.loss.sum()), 0.0) / gap
-    closed = 1.0 - float(selection.final.dynamic_loss.sum()) / gap if selection.final else 0.0
-    structured = beyond_slop > STRUCTURED and _real(slop_only, problem, top)
-    named = selection.named
-    if named and closed < LEAST_OF_CEILING * possible:
-        named = ()
+    by_slop = slop_loss(problem, problem.origin)
+    top = ceiling(problem, problem.origin)
+    named, final = selection.named, selection.final
+    with_cause = slop_loss(problem, final.beta) if final else by_slop
+    rest = ceiling(problem, final.beta) if final else top
+    structure, remains = _beyond(by_slop, top), _beyond(with_cause, rest)
+    shares = tuple(1.0 - float(x.sum()) / gap for x in (by_slop, np.minimum(top.loss, by_slop), with_cause))
+    parity_led = bool(named) and float((problem.data.c - problem.dynamic.c).sum()) > gap
+    insufficient = remains / gap > STRUCTURED and remains > (1 - LEAST_OF_CEILING) * max(structure, 1e-12)
+    if named and final and not parity_led and insufficient:
+        named, final, remains, rest = (), None, structure, top
+    real = remains / gap > STRUCTURED and _most_windows(with_cause if final else by_slop, rest.loss)
+    left = _left(rest, remains / gap) if real else None
     if not named:
-        verdict = "unknown" if structured else "no_gap"
-        left = _left(top, beyond_slop) if structured else None
-        return Judgement(verdict, (), None, {}, {}, possible, beyond_slop, left)
-    rest = possible - closed
-    verdict = "explained" if rest < STRUCTURED else "partly_explained"
+        return Judgement("unknown" if real else "no_gap", (), None, {}, {}, *shares, left)
     groups = {n.hypothesis.name: n.group for n in named}
     probability = {n.hypothesis.name: _probability(n) for n in named}
-    return Judgement(verdict, named, selection.final, groups, probability, possible, beyond_slop, _left(top, rest) if rest >= STRUCTURED else None)
+    return Judgement("partly_explained" if real else "explained", named, final, groups, probability, *shares, left)
 
 
-def _real(slop_only: float, problem: Problem, top: Ceiling) -> bool:
-    """Whether the generic force's gain over slop is there in most of the log: sign test over windows."""
-    base: Array = fit(problem.dynamic, problem.folds, problem.slop, problem.inflation).loss
-    better = base - top.loss
-    m = len(better)
-    return bool(better.sum() > 0 and (better > 0).mean() > 0.5 + 0.82 / np.sqrt(m)) and slop_only > 0
+def _beyond(base: Array, top: Ceiling) -> float:
+    """What a generic force closes of a loss on held-out windows beyond ``base``."""
+    return max(float((base - top.loss).sum()), 0.0)
+
+
+def _most_windows(base: Array, loss: Array) -> bool:
+    """Whether the generic force helps in most of the log and not by a few windows: one-sided sign test at 5 %."""
+    return bool((base > loss).mean() > 0.5 + 0.82 / np.sqrt(len(base)))
 
 
 def _left(top: Ceiling, share: float) -> dict[str, object]:

@@ -1,0 +1,47 @@
+"""What a healthy simulator and healthy sensors may be off by, before anything is blamed: the prior that detection stands on.
+
+Coefficients are off by the declared calibration slop (`--calibration-slop`, one standard deviation, relative). Trim, mounting and
+sensors have tolerances of their own, stated here; each is what a careful installation of an ROV reaches (chosen; data sheets beside).
+"""
+
+from __future__ import annotations
+
+from rovval.diagnose.contest import Prior
+from rovval.plant import Plant
+
+RELATIVE = ("added_mass", "linear_drag", "quadratic_drag", "inertia_error", "thruster_degraded", "reverse_asymmetry", "rpm_scale")
+MOUNTING = 0.3  # rad per unit of slop: 5 % slop goes with thrusters mounted to within a degree
+TRIM = 0.02  # of the weight per unit of slop: 5 % slop goes with a vehicle trimmed to a thousandth of its weight
+LEVEL = 0.4  # of the metacentric height per unit of slop: 5 % slop goes with a vehicle that floats level to a degree
+SENSORS = {
+    "attitude_bias": 0.01,  # rad: AHRS of the class give 0.2 to 0.5 degrees static (Xsens MTi data sheets)
+    "gyro_bias": 0.002,  # rad/s: 0.1 degree a second, MEMS in-run bias with temperature
+    "compass_deviation": 0.03,  # rad: 2 degrees after a field calibration
+    "dvl_scale": 0.005,  # sound speed known to within half a per cent
+    "dvl_misalignment": 0.01,  # rad: half a degree of mounting
+    "dvl_lever_arm": 0.05,  # m: measured with a tape
+    "time_offset": 0.05,  # s: half a sample at 10 Hz
+    "velocity_filter_lag": 0.05,  # s: half a sample
+    "clock_drift": 5e-5,  # s/s: a quartz clock, 50 ppm
+}
+
+
+def slop_prior(plant: Plant, slop: float) -> Prior:
+    """Standard deviation by plant slot of what a healthy simulator and log may be off by; empty where ``slop`` is zero."""
+    if slop <= 0:
+        return Prior({})
+    body, sd = plant.vehicle.body, dict[int, float]()
+    height = abs(body.centre_of_gravity[2] - body.centre_of_buoyancy[2])
+    for i, slot in enumerate(plant.slots):
+        name = slot.parameter.name
+        if slot.effect in RELATIVE:
+            sd[i] = slop * (0.5 if slot.effect == "rpm_scale" else 1.0)
+        elif slot.effect == "thruster_misaligned":
+            sd[i] = MOUNTING * slop
+        elif slot.effect == "buoyancy_error":
+            sd[i] = TRIM * slop * plant.vehicle.weight
+        elif slot.effect == "cg_offset":
+            sd[i] = slop * height * (1.0 if name == "z" else LEVEL)
+        elif slot.effect in SENSORS:
+            sd[i] = SENSORS[slot.effect]
+    return Prior(sd)
