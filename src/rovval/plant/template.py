@@ -195,7 +195,7 @@ import math
 import numpy as np
 from numba import njit
 
-from rovval.plant.compiled import OPTIONS, _clip, _cos, _exp, _positive, _sin, _sqrt, atan2, load_log
+from rovval.plant.compiled import OPTIONS, _clip, _cos, _exp, _positive, _sin, _sqrt, aligned, atan2, load_log
 
 <<numbers>>
 
@@ -321,8 +321,8 @@ def run(first, last, numbers, late, onset, states, start, limit, which, gain, sp
         weights, dt, hold, steps, substeps, out, stopped, reason):
     """Blocks ``first`` to ``last`` of W lanes each: time runs inside the block, so that its numbers stay in the cache."""
     h, inv_dt = dt / substeps, 1.0 / dt
-    m, th = np.zeros(TOTAL * W), np.zeros(3 * THS)
-    la, lg = np.zeros(2 * LOGS * W), np.zeros(3 * LOGS * W)
+    m, th = aligned(TOTAL * W), aligned(3 * THS)
+    la, lg = aligned(2 * LOGS * W), aligned(3 * LOGS * W)
     <<geometry>>
     for b in range(first, last):
         for c in range(3 * THS):
