@@ -21,7 +21,7 @@ from rovval.diagnose.verdict import Judgement, judge
 from rovval.diagnose.words import sentence
 from rovval.vehicle.write import with_effects
 
-MOST_GROUP = 4  # names printed of a confusion group
+MOST_GROUP = 3  # names printed of a confusion group
 
 
 def answer(

@@ -19,20 +19,24 @@ from rovval.diagnose.detect import Detection, detect
 from rovval.diagnose.library import PRIOR_WIDTH, Hypothesis
 from rovval.diagnose.problem import Problem, at, columns_of
 from rovval.diagnose.products import Products
-from rovval.diagnose.separate import group
+from rovval.diagnose.separate import Rival, group
 
 MOST = 3  # effects at once
 FINALISTS = 8  # hypotheses that are re-simulated in a round
 FALSE_ALARM = 0.05  # family-wise, over the whole library
 NEEDLESS = 6.0  # twice the log Bayes factor below which an effect is dropped again (Kass & Raftery 1995: positive evidence)
 HALF_REVERSED = 0.55  # 0.5 is a dead thruster; the margin is chosen
-LEAST_GAIN = 0.03  # of the gap, on held-out windows: less is not worth a name
+LEAST_GAIN = 0.04  # of the gap, on held-out windows: less is not worth a name
+LATER_GAIN = 0.08  # the same for a second and third effect: the forms of equations alone leave structure of this size
+LEAST_EVIDENCE = 16.0  # over slop: well past "very strong" (10; Kass & Raftery 1995), since null logs reach 10 now and then
+SERIOUS = 0.5  # share of the best evidence from which a rival's gain counts
+LEAST_OF_BEST = 0.5  # of the gain of the best serious rival
 
 
 @dataclass(frozen=True, slots=True)
 class Named:
-    """One effect that was found: its hypothesis, the others this log cannot tell it from (with bootstrap shares), the joint fit after
-    it was added and the detection that let it in."""
+    """One effect that was found: its hypothesis, the group that this log cannot tell apart with probabilities (itself first), the joint
+    fit after it was added, the detection that let it in and its evidence over what was there before."""
 
     hypothesis: Hypothesis
     group: tuple[tuple[str, float], ...]
@@ -74,18 +78,15 @@ def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Cal
         if p > FALSE_ALARM:
             break
         progress("re-simulating the finalists", 0.4 + 0.2 * round_number)
-        before = named[-1].fitted.loss if named else problem.data.c
         fitted = _finalists(problem, data, names, detection, beta, chosen)
-        if not fitted:
+        ground = confirm(problem, beta, chosen)
+        able = admissible(fitted, ground, float(problem.data.c.sum()))
+        rounds.append(tuple((r.hypothesis.name, r.evidence, r.gain) for r in able or _weighed(fitted, ground, float(problem.data.c.sum()))))
+        if not able or able[0].gain < (LATER_GAIN if named else LEAST_GAIN) or able[0].evidence < LEAST_EVIDENCE:
             break
-        fitted.sort(key=lambda item: -item[1].evidence)
-        winner, best = fitted[0]
-        gap = float(problem.data.c.sum())
-        rounds.append(tuple((h.name, c.evidence, float((before - c.loss).sum()) / gap) for h, c in fitted))
-        if rounds[-1][0][2] < LEAST_GAIN:
-            break
-        members = tuple(group(problem, {h.name: c for h, c in fitted}, winner.name, seed))
-        named.append(Named(winner, members, best, detection.p_value(winner.label), detection.evidence[winner.label]))
+        best = able[0]
+        members = group(problem, able, ground, seed)
+        named.append(Named(best.hypothesis, members, best.fitted, detection.p_value(best.hypothesis.label), best.evidence))
         named = _pruned(problem, named)
         beta, chosen = named[-1].fitted.beta, named[-1].fitted.slots
     final = named[-1].fitted if named else None
@@ -157,15 +158,32 @@ def _finalists(
             continue
         seen.add(h.name)
         start = _start(problem, data, h, one, beta)
-        one_fit = confirm(problem, start, tuple(dict.fromkeys((*chosen, *h.slots))))
-        if _admissible(problem, h, one_fit):
-            fitted.append((h, one_fit))
+        fitted.append((h, confirm(problem, start, tuple(dict.fromkeys((*chosen, *h.slots))))))
     return fitted
 
 
-def _admissible(problem: Problem, h: Hypothesis, fitted: Confirmed) -> bool:
-    """A thruster counts as reversed only where it pushes the other way: up to half-reversed it is a degraded one."""
-    return not h.name.startswith("thruster_reversed") or all(fitted.beta[s] > HALF_REVERSED for s in h.slots)
+def _weighed(fitted: list[tuple[Hypothesis, Confirmed]], ground: Confirmed, gap: float) -> list[Rival]:
+    rivals = [Rival(h, c, c.evidence - ground.evidence, float((ground.loss - c.loss).sum()) / gap) for h, c in fitted]
+    return sorted(rivals, key=lambda r: -r.evidence)
+
+
+def admissible(fitted: list[tuple[Hypothesis, Confirmed]], ground: Confirmed, gap: float) -> list[Rival]:
+    """Finalists that could be the cause, best evidence first.
+
+    Evidence alone is not enough: what a hypothesis achieves only with slop's help leaves the gap itself open. It must close, by itself
+    and on held-out windows, at least half of what the best of its serious rivals closes. A thruster counts as reversed only where
+    it pushes the other way: up to half-reversed it is a degraded one.
+    """
+    rivals = [r for r in _weighed(fitted, ground, gap) if not _half_reversed(r)]
+    if not rivals:
+        return []
+    serious = max(r.gain for r in rivals if r.evidence >= SERIOUS * rivals[0].evidence)
+    return [r for r in rivals if r.gain >= LEAST_OF_BEST * serious and r.gain > 0]
+
+
+def _half_reversed(rival: Rival) -> bool:
+    h = rival.hypothesis
+    return h.name.startswith("thruster_reversed") and any(rival.fitted.beta[s] < HALF_REVERSED for s in h.slots)
 
 
 def _start(problem: Problem, data: Products, h: Hypothesis, one: Fit, beta: Array) -> Array:

@@ -2,39 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed, evidence_of
+from rovval.diagnose.library import Hypothesis
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import Products
 
 RESAMPLES = 500
 GROUP_RESAMPLES = 200
-FORM = 0.05  # chosen: share of the evidence that may be owed to the form of an equation
+FORM = 0.25  # chosen on the tuning set: share of the evidence that may be owed to the form of an equation
+TEMPER = 4.0  # twice the log Bayes factor that counts as a nat of belief, beside the form's share (chosen on the tuning set)
 LEVEL = 0.05  # one-sided: a member of the group must be this plausible to be as good as the winner
 
 
-def group(problem: Problem, fitted: Mapping[str, Confirmed], winner: str, seed: int, block: int = 2) -> list[tuple[str, float]]:
-    """Every hypothesis that this log does not tell from the winner, with the share of resamples in which it comes first.
+@dataclass(frozen=True, slots=True)
+class Rival:
+    """A finalist: its re-simulated fit, its evidence over what stood before, and the share of the gap it closes by itself, held out."""
 
-    It stays in the group if its evidence is as good in more than `LEVEL` of a paired block bootstrap over windows, or falls short by
-    less than `FORM` of the winner's: what equations that are only nearly right may cost. The winner leads.
+    hypothesis: Hypothesis
+    fitted: Confirmed
+    evidence: float
+    gain: float
+
+
+def group(problem: Problem, rivals: list[Rival], ground: Confirmed, seed: int, block: int = 2) -> tuple[tuple[str, float], ...]:
+    """The best rival and every other that this log does not tell from it, with probabilities, best first.
+
+    A rival stays in the group if its evidence is as good in more than `LEVEL` of a paired block bootstrap over windows, or falls
+    short by less than `FORM` of the best: what equations that are only nearly right may cost. Probabilities weigh evidence
+    tempered by the same share, so that they say how sure the name is, form of the equations included.
     """
+    best = rivals[0]
     draws = _blocks(problem.blocks, block, np.random.default_rng(seed))[:GROUP_RESAMPLES]
     counts = np.stack([np.bincount(draw, minlength=problem.blocks) for draw in draws]).astype(float)
-    near = [n for n, c in fitted.items() if c.evidence > (1 - 4 * FORM) * fitted[winner].evidence]
-    total = {n: evidence_of(problem, fitted[n].point, len(fitted[n].slots), counts) for n in near}
-    members = [
-        n for n in near
-        if n == winner or float((total[n] >= total[winner]).mean()) > LEVEL or fitted[n].evidence > (1 - FORM) * fitted[winner].evidence
-    ]  # fmt: skip
-    firsts = np.argmax(np.stack([total[n] for n in members]), axis=0)
-    share = {n: float((firsts == i).mean()) for i, n in enumerate(members)}
-    rest = sorted((n for n in members if n != winner), key=lambda n: (-share[n], -fitted[n].evidence))
-    return [(winner, share[winner]), *((n, share[n]) for n in rest)]
+    near = [r for r in rivals if r.evidence > (1 - 2 * FORM) * best.evidence]
+    total = {r.hypothesis.name: evidence_of(problem, r.fitted.point, len(r.fitted.slots), counts) for r in near}
+    lead = total[best.hypothesis.name]
+    kept = [r for r in near if r is best or r.evidence > (1 - FORM) * best.evidence or float((total[r.hypothesis.name] >= lead).mean()) > LEVEL]
+    weight = np.exp([(r.evidence - best.evidence) / (TEMPER + 0.5 * FORM * best.evidence) for r in rivals])
+    probability = {r.hypothesis.name: float(w) for r, w in zip(rivals, weight / weight.sum(), strict=True)}
+    return tuple((r.hypothesis.name, probability[r.hypothesis.name]) for r in kept)
 
 
 def coherence(data: Products, a: tuple[int, ...], b: tuple[int, ...]) -> float:
