@@ -2,7 +2,7 @@
    batch kernel. Same equations, Runge-Kutta 4, blocks of W lanes with time inside; gcc -O3 -march=native -ffp-contract=fast. */
 #include <math.h>
 #include <string.h>
-#define W 32
+#define W 16
 #define K 7
 #define ROWS (31 + 4 + 18 + 8 * K)
 #define ROW(a, i) ((a) + (i) * W)
@@ -51,7 +51,7 @@ static void derivative(const double *restrict p, const double *restrict x0, cons
 }
 
 /* speed (samples, K) rev/s linear between samples; numbers (blocks, ROWS, W); states (blocks, 13, W) in and out; out (lanes, samples, 13). */
-void run(int first, int last, const double *numbers, double *states, const long *start, const double *speed, double h, int steps, double *out) {
+void run(int first, int last, const double *numbers, double *states, const long *start, const double *speed, double h, int steps, int substeps, double *out) {
     double x[13 * W], xs[13 * W], xn[13 * W], acc[13 * W], n0[K * W], n1[K * W], tau[3][6 * W];
     for (int block = first; block < last; block++) {
         const double *p = numbers + (long)block * ROWS * W;
@@ -62,12 +62,13 @@ void run(int first, int last, const double *numbers, double *states, const long 
             memcpy(n0, n1, sizeof n0);
             for (int l = 0; l < W; l++)
                 for (int i = 0; i < K; i++) n1[i * W + l] = speed[(start[block * W + l] + step + 1) * K + i];
+            for (int sub = 0; sub < substeps; sub++) {
             for (int s = 0; s < 3; s++)
                 for (int l = 0; l < W; l++) {
                     double f[6] = {0};
                     for (int i = 0; i < K; i++) {
                         const double *t = p + (53 + 8 * i) * W + l;
-                        double n = n0[i * W + l] + (n1[i * W + l] - n0[i * W + l]) * 0.5 * s;
+                        double n = n0[i * W + l] + (n1[i * W + l] - n0[i * W + l]) * (sub + 0.5 * s) / substeps;
                         double ahead = 0.5 * (fabs(n) + n), astern = 0.5 * (fabs(n) - n), thrust = t[0] * ahead * ahead - t[W] * astern * astern;
                         for (int c = 0; c < 6; c++) f[c] += thrust * t[(2 + c) * W];
                     }
@@ -84,6 +85,7 @@ void run(int first, int last, const double *numbers, double *states, const long 
                 for (int c = 3; c < 7; c++) acc[c * W + l] *= inverse;
             }
             memcpy(x, acc, sizeof x);
+            }
             for (int l = 0; l < W; l++)
                 for (int c = 0; c < 13; c++) out[((long)(block * W + l) * steps + step) * 13 + c] = x[c * W + l];
         }

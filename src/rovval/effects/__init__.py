@@ -4,7 +4,8 @@ A file declares ``EFFECT`` and, where it needs them, any of these functions (``p
 thruster; every one changes nothing at the null value, to the last bit):
 
 - ``lower(lanes, p) -> Lanes``           vehicle and input numbers of each lane (`effects._lanes`)
-- ``rows(lanes, p) -> {row: array}``     the effect's own numbers for its functions of the state, in ``ROWS`` order
+- ``rows(lanes, p) -> {row: array}``     the effect's own numbers for its functions of the state, in ``ROWS`` order: (B,), or (B, k)
+  for functions of a thruster unless the file says ``SHARED = True``
 - ``water(...)``                         north-east-down velocity of the water, its change along the path and at a fixed point (9)
 - ``wrench(...)``                        body force and moment, N and N m (6)
 - ``speed(...)``, ``acting(...)``        thruster speed rev/s, before and after the lag

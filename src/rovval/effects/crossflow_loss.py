@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
-
 from rovval.effects import Effect, Parameter
 from rovval.effects._lanes import Array, Lanes
 from rovval.effects._scalar import Number, clip
@@ -25,11 +23,12 @@ EFFECT = Effect(
     separates="surge steps with and without sway speed",
 )
 ROWS = ("loss",)
+SHARED = True
 
 
 def rows(lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
-    """Loss, the same for each thruster."""
-    return {"loss": np.repeat(p["loss"][:, None], len(lanes.vehicle.thruster), axis=1)}
+    """The loss."""
+    return {"loss": p["loss"]}
 
 
 def thrust(loss: Number, T: Number, cross: Number) -> Number:

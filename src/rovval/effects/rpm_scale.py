@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
-
 from rovval.effects import Effect, Parameter
 from rovval.effects._lanes import Array, Lanes
 from rovval.effects._scalar import Number
@@ -21,11 +19,12 @@ EFFECT = Effect(
     separates="coast-down with thrust off: drag is left alone",
 )
 ROWS = ("factor",)
+SHARED = True
 
 
 def rows(lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
-    """Factor, the same for each thruster."""
-    return {"factor": np.repeat((1.0 + p["scale"])[:, None], len(lanes.vehicle.thruster), axis=1)}
+    """The factor."""
+    return {"factor": 1.0 + p["scale"]}
 
 
 def speed(factor: Number, n: Number) -> Number:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
-
 from rovval.effects import Effect, Parameter
 from rovval.effects._lanes import Array, Lanes
 from rovval.effects._scalar import Number, positive
@@ -24,11 +22,12 @@ EFFECT = Effect(
     grid={"width": (1.0, 4.0)},
 )
 ROWS = ("width",)
+SHARED = True
 
 
 def rows(lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
-    """Width, the same for each thruster."""
-    return {"width": np.repeat(p["width"][:, None], len(lanes.vehicle.thruster), axis=1)}
+    """The width."""
+    return {"width": p["width"]}
 
 
 def acting(width: Number, n: Number) -> Number:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
-
 from rovval.effects import Effect, Parameter
 from rovval.effects._lanes import Array, Lanes
 from rovval.effects._scalar import Number
@@ -25,12 +23,12 @@ EFFECT = Effect(
     separates="a log of the voltage; steps of load",
 )
 ROWS = ("gain", "rate")
+SHARED = True
 
 
 def rows(lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
-    """The same for each thruster."""
-    k = len(lanes.vehicle.thruster)
-    return {name: np.repeat(p[name][:, None], k, axis=1) for name in ROWS}
+    """Gain and rate."""
+    return {name: p[name] for name in ROWS}
 
 
 def static(gain: Number, rate: Number, T: Number, t: Number, voltage: Number) -> Number:

@@ -28,7 +28,7 @@ EFFECT = Effect(
     needs=("z",),
     grid={"period": (3.0, 4.5, 6.0, 8.0, 11.0), "direction": (0.0, np.pi / 2), "phase": (0.0, np.pi / 2)},
 )
-ROWS = ("velocity", "omega", "k", "kx", "ky", "phase")
+ROWS = ("velocity", "omega", "k", "north", "east", "phase")
 
 
 def rows(lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
@@ -39,22 +39,21 @@ def rows(lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
         "velocity": p["amplitude"] * omega,
         "omega": omega,
         "k": k,
-        "kx": k * np.cos(p["direction"]),
-        "ky": k * np.sin(p["direction"]),
+        "north": np.cos(p["direction"]),
+        "east": np.sin(p["direction"]),
         "phase": p["phase"],
     }
 
 
 def water(
-    velocity: Number, omega: Number, k: Number, kx: Number, ky: Number, phase: Number,
+    velocity: Number, omega: Number, k: Number, north: Number, east: Number, phase: Number,
     x: Number, y: Number, z: Number, t: Number, vn: Number, ve: Number, vd: Number,
 ) -> tuple[Number, ...]:  # fmt: skip
     """Velocity of the water, its change along the vehicle's path and at a fixed point."""
-    angle = kx * x + ky * y - omega * t + phase
+    angle = k * (north * x + east * y) - omega * t + phase
     size = velocity * exp(-k * positive(z))
     c, s = size * cos(angle), size * sin(angle)
-    north, east = kx / k, ky / k
-    turn, sink = kx * vn + ky * ve - omega, -k * vd
+    turn, sink = k * (north * vn + east * ve) - omega, -k * vd
     along, down = -s * turn + c * sink, -c * turn - s * sink
     here, below = s * omega, c * omega
     return north * c, east * c, -s, north * along, east * along, down, north * here, east * here, below

@@ -15,7 +15,7 @@ from typing import Any
 from rovval import effects
 from rovval.plant.inline import inline
 
-W = 32  # lanes of a block: at least 16 trips, or LLVM leaves the loop scalar (measured); state and numbers stay in L1
+W = 16  # lanes of a block: fewer than 16 trips and LLVM leaves the loop scalar; with 32 every effect's numbers leave a 32 kB L1 (measured)
 HOOKS = ("speed", "acting", "static", "thrust", "water", "wrench")
 PER_THRUSTER = ("speed", "acting", "static", "thrust")
 SYMMETRIC = tuple((i, j) for i in range(6) for j in range(i, 6))
@@ -87,9 +87,10 @@ def hooks(full: bool) -> tuple[Hook, ...]:
 
 @cache
 def effect_rows(name: str) -> tuple[tuple[str, ...], bool]:
-    """Names of the effect's own rows, and whether they stand once per thruster."""
+    """Names of the effect's own rows, and whether they stand once per thruster: those of a thruster's function do unless SHARED."""
     module = effects.module(name)
-    return tuple(getattr(module, "ROWS", ())), any(hasattr(module, kind) for kind in PER_THRUSTER)
+    each = any(hasattr(module, kind) for kind in PER_THRUSTER) and not getattr(module, "SHARED", False)
+    return tuple(getattr(module, "ROWS", ())), each
 
 
 @cache

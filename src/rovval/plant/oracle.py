@@ -18,6 +18,7 @@ from rovval import effects
 from rovval.effects._lanes import Lanes
 from rovval.frames import euler_from_quaternion, quaternion_from_euler, rotation_from_quaternion
 from rovval.plant import geometry, sensors
+from rovval.plant.compose import PER_THRUSTER
 from rovval.plant.inputs import Inputs, Prepared, prepare
 from rovval.plant.lower import Lowered, lower, rigid_body, with_payload
 from rovval.plant.model import Motion, Plant
@@ -265,6 +266,8 @@ def _call(run: _Run, name: str, kind: str, names: Mapping[str, Any]) -> Any:
     """One effect's function of the state with its own rows and whatever else it asks for by name."""
     function = getattr(effects.module(name), kind)
     own = {row.partition(".")[2]: value for row, value in run.lowered.rows.items() if row.startswith(name + ".")}
+    if kind in PER_THRUSTER:
+        own = {row: value[:, None] if value.ndim == 1 else value for row, value in own.items()}
     return function(**{a: own[a] if a in own else names[a] for a in inspect.signature(function).parameters})
 
 

@@ -22,7 +22,8 @@ def render(spec: Spec) -> str:
     """The kernel's source for ``spec``."""
     where, k = layout(spec), spec.thrusters
     numbers = {
-        "W": compose.W, "THRUSTERS": k, "THS": (3 * k + 6) * compose.W, "BODY": where.body_rows, "STRIDE": where.stride, "ROWS": where.rows, "LOGS": compose.LOG_ROWS,
+        "W": compose.W, "THRUSTERS": k, "THS": (3 * k + 6) * compose.W, "BODY": where.body_rows,
+        "STRIDE": where.stride, "ROWS": where.rows, "LOGS": compose.LOG_ROWS,
         "MASS": where.first["mass"],
         "RESTORING": where.first["restoring"], "DISPLACED": where.first["displaced"], "ADDED": where.first["added"],
         "LINEAR": where.first["linear"], "QUADRATIC": where.first["quadratic"], "LAG": where.first["lag"], "SHIFT": where.first["shift"],

@@ -97,7 +97,8 @@ def _toml(found: Mapping[str, Any], columns: Array, gains: list[float], name: st
     inertial = found["inertial"]
     place = [[float(x) for x in FLIP[:3] * np.array(found[key], dtype=float) + 0.0] for key in ("cog", "cob")]
     source = json.dumps("uuv_simulator YAML: " + ", ".join(files))
-    lines = [f"name = {json.dumps(name)}", 'notes = ["Only moment arms are in an allocation matrix: each thruster stands where its arm is shortest."]', "[sources]"]
+    note = 'notes = ["Only moment arms are in an allocation matrix: each thruster stands where its arm is shortest."]'
+    lines = [f"name = {json.dumps(name)}", note, "[sources]"]
     keys = ("mass", "inertia", "added_mass", "linear_drag", "quadratic_drag", "volume", "centre_of_gravity", "centre_of_buoyancy", "density", "gravity")
     lines += [f"{key} = {source}" for key in keys]
     lines += [f'"thruster.{key}" = {source}' for key in ("position", "direction", "k_pos", "k_neg")]
