@@ -50,13 +50,13 @@ def diagnose(
     from rovval.diagnose.library import hypotheses
     from rovval.diagnose.problem import pose
     from rovval.diagnose.select import select
-    from rovval.diagnose.stretches import cut
+    from rovval.diagnose.stretches import cut_all
 
     say = progress or (lambda text, share: None)
-    parts = tuple(cut(run, vehicle, model, window_s) for run in runs)
+    parts = cut_all(runs, vehicle, model, window_s)
     library, untestable = hypotheses(parts, without=without)
     say(f"simulating every effect of the library on {sum(p.count for p in parts)} windows", 0.05)
     problem = pose(parts, library, calibration_slop)
     selection = select(problem, library, seed, say)
     say("asking how much any systematic cause could explain", 0.85)
-    return answer(problem, library, untestable, selection, calibration_slop, window_s, seed)
+    return answer(problem, library, untestable, selection, calibration_slop, seed)

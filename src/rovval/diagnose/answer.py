@@ -25,7 +25,7 @@ MOST_GROUP = 3  # names printed of a confusion group
 
 
 def answer(
-    problem: Problem, library: list[Hypothesis], untestable: dict[str, str], selection: Selection, slop: float, window_s: float, seed: int
+    problem: Problem, library: list[Hypothesis], untestable: dict[str, str], selection: Selection, slop: float, seed: int
 ) -> Diagnosis:
     """Put everything that was found into one document."""
     before = corrected_residuals(problem)
@@ -43,7 +43,7 @@ def answer(
         "vehicle": problem.plant.vehicle.name,
         "vehicle_hash": problem.plant.vehicle.hash,
         "model": problem.plant.model,
-        "window_s": window_s,
+        "window_s": round((problem.parts[0].steps + 1) * problem.parts[0].run.dt, 6),
         "windows": problem.blocks,
         "calibration_slop": slop,
         "synthetic": next((p.run.properties["synthetic"] for p in problem.parts if "synthetic" in p.run.properties), ""),
@@ -68,6 +68,7 @@ def answer(
         "traces": traces(problem, final, before, after),
         "coherence": coherence_matrix(problem, selection, judgement),
         "inputs": problem.parts[0].driven.source,
+        "left_out_s": sum(part.contact_s for part in problem.parts),
         "outliers": sum(part.outliers for part in problem.parts),
     }  # fmt: skip
     if advice:

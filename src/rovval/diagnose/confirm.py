@@ -22,6 +22,7 @@ CONVERGED = 0.02  # of a parameter's standard error
 SHORTER = (1.0, 0.4, 0.1)  # shares of the Gauss-Newton step that are tried
 NAMING_SLOP = 0.6  # share of the declared slop that stands beside a hypothesis while it is named (research F9: tight)
 INTERVAL = 0.90
+PLACING = ("onset", "period", "phase", "direction", "height", "reach", "radius", "depth")
 ONSET_SEARCH_S = (-12.0, -6.0, -3.0, -1.5, 1.5, 3.0, 6.0, 12.0)
 
 
@@ -128,19 +129,26 @@ def evidence_of(problem: Problem, point: Point, own: int, counts: Array) -> Arra
 def errors(problem: Problem, fitted: Confirmed) -> Array:
     """Standard errors of the fitted slots that hold under autocorrelated residuals and calibration slop: a sandwich over pairs of
     windows, plus what slop of the other coefficients moves the estimate by."""
-    free = np.arange(len(fitted.slots))
-    data = beside_slop(problem, fitted.beta, fitted.slots)[1]
+    k, data = len(fitted.slots), fitted.point.data
     width = np.array([PRIOR_WIDTH * problem.plant.slots[s].parameter.typical for s in fitted.slots])
-    bread = np.linalg.inv(data.A[:, free[:, None], free[None, :]].sum(axis=0) + np.diag(problem.inflation / width**2))
-    score = data.b[:, free]
-    pairs = score[: len(score) // 2 * 2].reshape(-1, 2, len(free)).sum(axis=1)
+    A = data.A.sum(axis=0)
+    bread = np.linalg.inv(A[:k, :k] + np.diag(problem.inflation / width**2))
+    score = data.b[:, :k]
+    pairs = score[: len(score) // 2 * 2].reshape(-1, 2, k).sum(axis=1)
     meat = pairs.T @ pairs * (len(score) / max(2 * len(pairs), 1))
-    covariance = len(pairs) / max(len(pairs) - len(free), 1) * bread @ meat @ bread
-    other = np.arange(len(free), len(data.columns))
-    if len(other):
-        lever = bread @ data.A[:, free[:, None], other[None, :]].sum(axis=0) * np.array([problem.slop.sd[data.columns[i]] for i in other])
+    covariance = len(pairs) / max(len(pairs) - k, 1) * bread @ meat @ bread
+    if len(data.columns) > k:
+        lever = bread @ A[:k, k:] * np.array([problem.slop.sd[c] for c in data.columns[k:]])
         covariance = covariance + lever @ lever.T
     return np.asarray(np.sqrt(np.maximum(np.diag(covariance), 0.0)))
+
+
+def significance(problem: Problem, fitted: Confirmed, slots: tuple[int, ...]) -> float:
+    """Largest departure of ``slots`` from where the vehicle stands, in standard errors that include calibration slop. Parameters that only
+    place an effect (an onset, a period) have no null of their own and do not count."""
+    error = errors(problem, fitted)
+    sized = [s for s in slots if problem.plant.slots[s].parameter.name not in PLACING]
+    return max(abs(fitted.beta[s] - problem.origin[s]) / max(error[fitted.slots.index(s)], 1e-12) for s in sized)
 
 
 def interval(value: float, error: float, blocks: int) -> tuple[float, float]:

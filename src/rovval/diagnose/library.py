@@ -18,6 +18,8 @@ from rovval.diagnose.stretches import Stretches
 from rovval.plant import Plant
 
 ONSETS = 9  # starting points for an onset, evenly inside the log
+FAR = ("cg_offset",)
+FAR_SIZES = (-5.0, -2.0, 2.0, 5.0)  # typical sizes
 MOST_STARTS = 12  # of a hypothesis with several such parameters
 PRIOR_WIDTH = 4.0  # wide prior, in typical sizes: keeps a parameter that the log does not see from running away
 
@@ -61,7 +63,8 @@ def _starts(
     """One hypothesis, or one for each starting point of the parameters that linearisation at the null value cannot see."""
     grids = _grids(plant, effect, slots, parts)
     if not grids:
-        return [Hypothesis(name, name, slots, slots, tuple(PRIOR_WIDTH * plant.slots[s].parameter.typical for s in slots))]
+        near = Hypothesis(name, name, slots, slots, tuple(PRIOR_WIDTH * plant.slots[s].parameter.typical for s in slots))
+        return [near, *_far(plant, name, effect, slots, next_id)]
     linear = tuple(s for s in slots if s not in grids)
     points = list(product(*grids.values()))
     chosen = points if len(points) <= MOST_STARTS else [points[i] for i in np.linspace(0, len(points) - 1, MOST_STARTS).astype(int)]
@@ -72,6 +75,24 @@ def _starts(
         directions = tuple(Direction(next_id + number * len(own) + i, at, slot) for i, slot in enumerate(own))
         sd = tuple(PRIOR_WIDTH * (plant.slots[s].parameter.typical if s >= 0 else 0.5) for s in own)
         found.append(Hypothesis(name, f"{name}@{number}", slots, tuple(d.id for d in directions), sd, at, directions))
+    return found
+
+
+def _far(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], next_id: int) -> list[Hypothesis]:
+    """Starting points well away from the null value, for trim: a vehicle that tumbles in simulation has no useful slope there."""
+    if effect.name not in FAR:
+        return []
+    found = []
+    for slot in slots:
+        p = plant.slots[slot].parameter
+        for size in FAR_SIZES:
+            value = p.null + size * p.typical
+            if p.low <= value <= p.high:
+                number = len(found)
+                at = ((slot, value),)
+                found.append(
+                    Hypothesis(name, f"{name}@far{number}", slots, (next_id + number,), (0.5 * PRIOR_WIDTH,), at, (Direction(next_id + number, at, -1),))
+                )
     return found
 
 

@@ -17,14 +17,12 @@ from rovval.diagnose.library import Hypothesis
 from rovval.diagnose.linearise import Direction, Linear, linearise, state_spread
 from rovval.diagnose.parity import Parity, parity
 from rovval.diagnose.products import Products, joined, products, start_corrected
-from rovval.diagnose.stretches import Stretches
+from rovval.diagnose.stretches import BELIEVED, Stretches
 from rovval.diagnose.tolerance import slop_prior
 from rovval.plant import Plant, parse_settings
 from rovval.simulate import carried_effects
 
 SMOOTH = 11  # samples over which the unexplained variance is smoothed along the window (1 s at 10 Hz)
-DRIFT = {"u": 1e-3, "v": 1e-3, "w": 1e-3, "p": 1e-3, "q": 1e-3, "r": 1e-3, "phi": 1e-3, "theta": 1e-3, "psi": 2e-3, "x": 5e-3, "y": 5e-3, "z": 5e-3}
-# m/s, rad/s, rad, m: below these no ROV sensor is believed (chosen; keeps a noise-free log from dividing by zero)
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +118,7 @@ def _joined(parts: Sequence[Stretches], linear: Sequence[Linear], variance: Arra
 
 def _variance(parts: Sequence[Stretches], linear: Sequence[Linear], slop: Prior) -> Array:
     """Noise and slop of each channel at each time in the window (n, c)."""
-    least = np.array([DRIFT[c] for c in parts[0].channels])
+    least = np.array([BELIEVED[c] for c in parts[0].channels])
     noise = np.maximum(np.mean([part.noise for part in parts], axis=0), least)
     total = np.tile(noise**2, (parts[0].steps + 1, 1))
     windows = sum(part.count for part in parts)

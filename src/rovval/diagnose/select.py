@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rovval.data import Array
-from rovval.diagnose.confirm import NAMING_SLOP, Confirmed, confirm
+from rovval.diagnose.confirm import NAMING_SLOP, Confirmed, confirm, significance
 from rovval.diagnose.contest import Fit, Prior, Ring, contest, fit
 from rovval.diagnose.detect import Detection, detect
 from rovval.diagnose.library import PRIOR_WIDTH, Hypothesis
@@ -29,6 +29,7 @@ HALF_REVERSED = 0.55  # 0.5 is a dead thruster; the margin is chosen
 LEAST_GAIN = 0.04  # of the gap, on held-out windows: less is not worth a name
 LATER_GAIN = 0.08  # the same for a second and third effect: the forms of equations alone leave structure of this size
 LEAST_EVIDENCE = 16.0  # over slop: well past "very strong" (10; Kass & Raftery 1995), since null logs reach 10 now and then
+LEAST_SIGMA = 2.2  # standard errors, slop included, by which an effect departs from nothing (tuning set: healthy logs reach 2.0)
 SERIOUS = 0.5  # share of the best evidence from which a rival's gain counts
 LEAST_OF_BEST = 0.5  # of the gain of the best serious rival
 
@@ -80,7 +81,7 @@ def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Cal
         progress("re-simulating the finalists", 0.4 + 0.2 * round_number)
         fitted = _finalists(problem, data, names, detection, beta, chosen)
         ground = confirm(problem, beta, chosen)
-        able = admissible(fitted, ground, float(problem.data.c.sum()))
+        able = admissible(problem, fitted, ground)
         rounds.append(tuple((r.hypothesis.name, r.evidence, r.gain) for r in able or _weighed(fitted, ground, float(problem.data.c.sum()))))
         if not able or able[0].gain < (LATER_GAIN if named else LEAST_GAIN) or able[0].evidence < LEAST_EVIDENCE:
             break
@@ -167,18 +168,28 @@ def _weighed(fitted: list[tuple[Hypothesis, Confirmed]], ground: Confirmed, gap:
     return sorted(rivals, key=lambda r: -r.evidence)
 
 
-def admissible(fitted: list[tuple[Hypothesis, Confirmed]], ground: Confirmed, gap: float) -> list[Rival]:
+def admissible(problem: Problem, fitted: list[tuple[Hypothesis, Confirmed]], ground: Confirmed) -> list[Rival]:
     """Finalists that could be the cause, best evidence first.
 
     Evidence alone is not enough: what a hypothesis achieves only with slop's help leaves the gap itself open. It must close, by itself
-    and on held-out windows, at least half of what the best of its serious rivals closes. A thruster counts as reversed only where
-    it pushes the other way: up to half-reversed it is a degraded one.
+    and on held-out windows, at least half of what the best of its serious rivals closes, and its size must be beyond what slop of
+    all other coefficients could feign. A thruster counts as reversed only where it pushes the other way (up to half-reversed it is
+    a degraded one), and what begins before the log does has no onset in it.
     """
-    rivals = [r for r in _weighed(fitted, ground, gap) if not _half_reversed(r)]
-    if not rivals:
+    rivals = [r for r in _weighed(fitted, ground, float(problem.data.c.sum())) if not _half_reversed(r) and not _from_the_start(problem, r)]
+    if not rivals or rivals[0].evidence <= 0:
         return []
     serious = max(r.gain for r in rivals if r.evidence >= SERIOUS * rivals[0].evidence)
-    return [r for r in rivals if r.gain >= LEAST_OF_BEST * serious and r.gain > 0]
+    return [
+        r for r in rivals
+        if r.gain >= LEAST_OF_BEST * serious and r.gain > 0 and significance(problem, r.fitted, r.hypothesis.slots) >= LEAST_SIGMA
+    ]  # fmt: skip
+
+
+def _from_the_start(problem: Problem, rival: Rival) -> bool:
+    first = min(float(part.start[0] + part.steps) * part.run.dt for part in problem.parts)
+    slots = problem.plant.slots
+    return any(slots[s].parameter.name == "onset" and rival.fitted.beta[s] < first for s in rival.hypothesis.slots)
 
 
 def _half_reversed(rival: Rival) -> bool:

@@ -25,14 +25,21 @@ ATTITUDE_CHANNELS = ("phi", "theta")
 AXIS_OF = dict(zip((*VELOCITY_CHANNELS, "x", "y", "z", "phi", "theta", "psi"), (*AXES, *AXES), strict=True))
 POSE_OF = dict(zip(VELOCITY_CHANNELS, ("x", "y", "z", "phi", "theta", "psi"), strict=True))
 ANGLES = ("phi", "theta", "psi")
+FEWEST_WINDOWS = 3  # one to hold out, two to fit on
+MANY_WINDOWS = 6  # fewer, and shorter windows are tried (chosen)
 SHORTEST_SHARE = 0.6  # chosen: a window with fewer of its samples measured is left out
+STILL_S, STILL_M = 3.0, 0.03  # chosen: at rest for 3 s within the noise of a depth sensor
+DEPTH_COVERED, AT_END = 0.3, 0.08  # m, chosen: contact is looked for only in logs that dive, near their ends of depth
+BELIEVED = {"u": 1e-3, "v": 1e-3, "w": 1e-3, "p": 1e-3, "q": 1e-3, "r": 1e-3, "phi": 1e-3, "theta": 1e-3, "psi": 2e-3, "x": 5e-3, "y": 5e-3, "z": 5e-3}
+# m/s, rad/s, rad, m: below these no ROV sensor is believed (chosen; keeps a noise-free log from dividing by zero)
 OUTLIER_SIGMA = 8.0  # chosen: a sample this far from its neighbours' line is an outlier of the sensor
 
 
 @dataclass(frozen=True, slots=True)
 class Stretches:
     """Windows of one run: ``start`` (m,) grid index, ``steps`` per window, measured start states (m, 6), and the measured channels
-    ``y`` (m, steps + 1, c) with ``ok`` where they hold a value. ``noise`` (c,) is the white part of each channel's error."""
+    ``y`` (m, steps + 1, c) with ``ok`` where they hold a value. ``noise`` (c,) is the white part of each channel's error; ``contact_s``
+    seconds left out because the vehicle was held or aground."""
 
     run: Run
     plant: Plant
@@ -46,6 +53,7 @@ class Stretches:
     ok: Flags
     noise: Array
     outliers: int
+    contact_s: float
 
     @property
     def count(self) -> int:
@@ -61,29 +69,57 @@ class Stretches:
         return np.asarray((self.start[:, None] + np.arange(self.steps + 1)[None, :]) * self.run.dt)
 
 
-def cut(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Stretches:
-    """Cut a run into windows.
+def cut_all(runs: Sequence[Run], vehicle: Vehicle, model: str, window_s: float) -> tuple[Stretches, ...]:
+    """Every run cut into windows of one length: the longest of ``window_s``, its half and its quarter that suits them all.
 
     Raises:
-        BadInput: fewer than four windows can be simulated; says how many and why.
+        BadInput: runs differ in the channels that they hold, or one is too short; see `cut`.
     """
+    parts = tuple(cut(run, vehicle, model, window_s) for run in runs)
+    shortest = min(part.steps + 1 for part in parts) * parts[0].run.dt
+    parts = tuple(p if (p.steps + 1) * p.run.dt == shortest else cut(p.run, vehicle, model, shortest) for p in parts)
+    if len({part.channels for part in parts}) > 1:
+        held = "; ".join(f"{part.run.id}: {', '.join(part.channels)}" for part in parts)
+        raise BadInput(f"the logs hold different channels and cannot be diagnosed together ({held})", "diagnose them one by one")
+    return parts
+
+
+def cut(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Stretches:
+    """Cut a run into windows of ``window_s``, or of half or a quarter of it where a short log gives too few.
+
+    Raises:
+        BadInput: fewer than `FEWEST_WINDOWS` windows can be simulated; says how many and why.
+    """
+    for share in (1.0, 0.5):
+        try:
+            stretches = _cut(run, vehicle, model, share * window_s)
+        except BadInput:
+            continue
+        if stretches.count >= MANY_WINDOWS:
+            return stretches
+    return _cut(run, vehicle, model, 0.25 * window_s)
+
+
+def _cut(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Stretches:
     plant, driven = Plant(vehicle, model), drive(run, vehicle)
     channels = residual_channels(run)
     steps = round(window_s / run.dt) - 1
-    values, good, outliers = _cleaned(run, channels)
-    start = _starts(driven.known & np.ones(len(run), dtype=bool), startable(run), steps)
+    touching = in_contact(run, driven)
+    values, good, noise, outliers = _cleaned(run, channels)
+    start = _starts(driven.known & ~touching, startable(run), steps)
     inside = start[:, None] + np.arange(steps + 1)[None, :]
-    enough = good[inside].mean(axis=(1, 2)) >= SHORTEST_SHARE if len(start) else np.zeros(0, dtype=bool)
+    possible = np.mean([1.0 / stride for stride in strides(run, channels)])
+    enough = good[inside].mean(axis=(1, 2)) >= SHORTEST_SHARE * possible if len(start) else np.zeros(0, dtype=bool)
     start = start[enough]
-    if len(start) < 4:
+    if len(start) < FEWEST_WINDOWS:
         raise BadInput(
-            f"run {run.id}: {len(start)} windows of {window_s:g} s hold inputs and measurements throughout, at least 4 are needed",
+            f"run {run.id}: {len(start)} windows of {window_s:g} s hold inputs and measurements throughout, at least {FEWEST_WINDOWS} are needed",
             "use a longer log, a shorter --window, or look at the gaps with `rovval compare`",
         )
     inside = start[:, None] + np.arange(steps + 1)[None, :]
     nu0, eta0, _ = start_states(run, start)
     return Stretches(
-        run, plant, driven, channels, start, steps, nu0, eta0, values[inside], good[inside], _noise(values, good), outliers
+        run, plant, driven, channels, start, steps, nu0, eta0, values[inside], good[inside], noise, outliers, float(touching.sum() * run.dt)
     )
 
 
@@ -92,6 +128,26 @@ def residual_channels(run: Run) -> tuple[str, ...]:
     chosen = [c if run.measured(c) else POSE_OF[c] for c in VELOCITY_CHANNELS]
     chosen += [c for c in ATTITUDE_CHANNELS if c not in chosen]
     return tuple(c for c in chosen if run.measured(c))
+
+
+def in_contact(run: Run, driven: Drive) -> Flags:
+    """Where the vehicle is held, at the surface or aground (n,): thrusters idle and depth still, at an end of the depth that the log covers.
+
+    No free body rests there with a force on it; the simulator knows neither hand nor floor. Nothing is found in a log without depth
+    or that hardly changes depth.
+    """
+    still = np.zeros(len(run), dtype=bool)
+    depth = run.get("z")
+    if not run.measured("z") or np.nanmax(depth) - np.nanmin(depth) < DEPTH_COVERED:
+        return still
+    span = round(STILL_S / run.dt)
+    idle = (np.abs(driven.inputs.speed) < 1e-9).all(axis=1)
+    ends = (depth > np.nanmax(depth) - AT_END) | (depth < np.nanmin(depth) + AT_END)
+    for at in range(0, len(run) - span, span // 5):
+        part = depth[at : at + span]
+        if idle[at : at + span].all() and ends[at : at + span].all() and np.ptp(part) < STILL_M:
+            still[at : at + span] = True
+    return still
 
 
 def predicted(stretches: Stretches, nu: Array, eta: Array) -> Array:
@@ -123,37 +179,48 @@ def _starts(known: Flags, ready: Flags, steps: int) -> NDArray[np.int64]:
     return np.array(starts, dtype=np.int64)
 
 
-def _cleaned(run: Run, channels: Sequence[str]) -> tuple[Array, Flags, int]:
-    """Channel values (n, c), where they can be used, and how many isolated outliers were set aside."""
+def strides(run: Run, channels: Sequence[str]) -> tuple[int, ...]:
+    """Grid points per real sample of each channel: 1 at the grid's rate, 3 for a depth logged at 3 Hz. What alignment drew between two
+    samples is not evidence of its own."""
+    periods = [run.resampled[c].period_s if c in run.resampled else run.dt for c in channels]
+    return tuple(max(1, round(period / run.dt)) for period in periods)
+
+
+def _cleaned(run: Run, channels: Sequence[str]) -> tuple[Array, Flags, Array, int]:
+    """Channel values (n, c), where they count, white noise of each (c,), and how many isolated outliers were set aside."""
     values = run.stack(tuple(channels))
     good = np.isfinite(values)
-    wild = np.zeros_like(good)
-    for i in range(len(channels)):
-        bend = _bend(values[:, i], channels[i] in ANGLES)
-        spread = 1.4826 * np.nanmedian(np.abs(bend)) if np.isfinite(bend).any() else 0.0
-        if spread > 0:
-            with np.errstate(invalid="ignore"):
-                wild[1:-1, i] = np.abs(bend) > OUTLIER_SIGMA * spread
-    lone = wild & good
-    return np.where(good, values, 0.0), good & ~lone, int(lone.sum())
+    noise, outliers = np.zeros(len(channels)), 0
+    for i, (name, stride) in enumerate(zip(channels, strides(run, channels), strict=True)):
+        real = np.arange(0, len(run), stride)
+        keep = np.zeros(len(run), dtype=bool)
+        keep[real] = good[real, i]
+        series = values[real, i]
+        wild = _wild(series, name)
+        outliers += int((wild & keep[real]).sum())
+        keep[real] &= ~wild
+        noise[i] = _noise(series, keep[real])
+        good[:, i] = keep
+    return np.where(good, values, 0.0), good, noise, outliers
 
 
-def _bend(values: Array, angle: bool) -> Array:
-    """Second difference, sample minus the mean of its neighbours (n - 2,)."""
-    before, after = values[:-2] - values[1:-1], values[2:] - values[1:-1]
-    return np.asarray(-0.5 * (wrap(before) + wrap(after)) if angle else -0.5 * (before + after))
+def _wild(series: Array, name: str) -> Flags:
+    """Isolated samples far from the mean of their neighbours (n,)."""
+    wild = np.zeros(len(series), dtype=bool)
+    before, after = series[:-2] - series[1:-1], series[2:] - series[1:-1]
+    bend = 0.5 * (wrap(before) + wrap(after)) if name in ANGLES else 0.5 * (before + after)
+    finite = bend[np.isfinite(bend)]
+    spread = 1.4826 * float(np.median(np.abs(finite))) if len(finite) else 0.0
+    with np.errstate(invalid="ignore"):
+        wild[1:-1] = np.abs(bend) > OUTLIER_SIGMA * max(spread, 2 * BELIEVED[name])
+    return wild
 
 
-def _noise(values: Array, good: Flags) -> Array:
-    """White noise of each channel (c,) from third differences (median absolute, so that manoeuvres do not count).
+def _noise(series: Array, good: Flags) -> float:
+    """White noise of a channel from third differences (median absolute, so that manoeuvres do not count).
 
     A third difference of white noise has variance 20 sigma^2 (binomial coefficients 1 3 3 1).
     """
-    third = np.diff(values, n=3, axis=0)
+    third = np.diff(series, n=3)
     usable = good[3:] & good[2:-1] & good[1:-2] & good[:-3]
-    return np.array(
-        [
-            1.4826 * np.median(np.abs(third[usable[:, i], i])) / np.sqrt(20.0) if usable[:, i].any() else 0.0
-            for i in range(values.shape[1])
-        ]
-    )
+    return float(1.4826 * np.median(np.abs(third[usable])) / np.sqrt(20.0)) if usable.any() else 0.0
