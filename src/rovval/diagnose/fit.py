@@ -16,7 +16,7 @@ import numpy as np
 
 from rovval import __version__, effects
 from rovval.data import Array
-from rovval.diagnose.confirm import Confirmed, confirm, errors, interval
+from rovval.diagnose.confirm import Confirmed, confirm, interval
 from rovval.diagnose.gap import axis_squares, noise_loss
 from rovval.diagnose.library import PRIOR_WIDTH, hypotheses
 from rovval.diagnose.problem import Problem, corrected_residuals, pose
@@ -72,14 +72,15 @@ def fit(
     """
     say = progress or (lambda text, share: None)
     wanted = chosen(Plant(vehicle, model), parameters)
-    parts = cut_all(runs, vehicle, model, window_s)
+    parts, left_out = cut_all(runs, vehicle, model, window_s)
     library, missing = hypotheses(parts)
     plant = parts[0].plant
     out = {s: _undetermined(missing[plant.slots[s].hypothesis]) for s in wanted if plant.slots[s].hypothesis in missing}
     able = tuple(s for s in wanted if s not in out)
     say(f"simulating {len(able)} parameters on {sum(p.count for p in parts)} windows", 0.1)
     names = {plant.slots[s].hypothesis for s in able}
-    problem = pose(parts, [h for h in library if h.name in names and not h.directions], calibration_slop)
+    kept = [h for h in library if not h.directions and (h.name in names or effects.load(h.name.partition("[")[0]).place == "sensor")]
+    problem = pose(parts, kept, calibration_slop)
     able, blind = determinable(problem, able)
     out |= blind
     say(f"tuning {len(able)} parameters by re-simulation", 0.4)
@@ -87,6 +88,7 @@ def fit(
     out |= vague
     say("asking how far the gap shrinks on held-out windows", 0.9)
     document = _document(problem, fitted, low, high, {s: out[s] for s in wanted if s in out}, calibration_slop, seed)
+    document["left_out"] = list(left_out)
     settings = document["settings"]
     return FitResult(with_effects(vehicle, settings) if settings else to_toml(vehicle), document, text(document))
 
@@ -153,10 +155,16 @@ def determinable(problem: Problem, wanted: Sequence[int]) -> tuple[tuple[int, ..
         if shown.min() >= TOLD_APART:
             break
         worst = left.pop(int(shown.argmin()))
-        beside = sorted(((problem.plant.slots[s].key, coherence(problem.data, (worst,), (s,))) for s in (*left, *slop)), key=lambda x: -x[1])[:2]
-        named = " and ".join(f"{name} ({value:.2f})" for name, value in beside)
-        out[worst] = _undetermined(f"not told apart from the others: {shown.min():.1f} standard errors while they move; coherence with {named}", beside)
+        why = f"not told apart: a typical size shows with {shown.min():.1f} standard errors while the others move"
+        out[worst] = _confused(problem, worst, (*left, *slop), why)
     return tuple(left), out
+
+
+def _confused(problem: Problem, slot: int, others: Sequence[int], why: str) -> dict[str, Any]:
+    """What a slot that is excited is confused with: tuned ones and coefficients within slop, by coherence."""
+    beside = sorted(((problem.plant.slots[s].key, coherence(problem.data, (slot,), (s,))) for s in others if s != slot), key=lambda x: -x[1])
+    named = " and ".join(f"{name} ({value:.2f})" for name, value in beside[:2])
+    return _undetermined(f"{why}; most like {named}" if named else why, beside[:2])
 
 
 def _tuned(problem: Problem, slots: tuple[int, ...]) -> tuple[Confirmed | None, Array, Array, dict[int, dict[str, Any]]]:
@@ -164,15 +172,35 @@ def _tuned(problem: Problem, slots: tuple[int, ...]) -> tuple[Confirmed | None, 
     out = dict[int, dict[str, Any]]()
     while slots:
         fitted = confirm(problem, problem.origin, slots)
-        bounds = [interval(float(fitted.beta[s]), float(e), problem.blocks) for s, e in zip(slots, errors(problem, fitted), strict=True)]
+        bounds = [interval(float(fitted.beta[s]), float(e), problem.blocks) for s, e in zip(slots, joint_errors(problem, fitted), strict=True)]
         low, high = np.array(bounds).T
         half = 0.5 * (high - low) / [problem.plant.slots[s].parameter.typical for s in slots]
         if half.max() <= WIDEST:
             return fitted, low, high, out
         worst = slots[int(half.argmax())]
-        out[worst] = _undetermined(f"its 90 % interval at the fitted point is +-{half.max():.1f} typical sizes")
+        why = f"not told apart: its 90 % interval with slop of the others is +-{half.max():.1f} typical sizes"
+        out[worst] = _confused(problem, worst, tuple(dict.fromkeys((*slots, *problem.slop.sd))), why)
         slots = tuple(s for s in slots if s != worst)
     return None, np.zeros(0), np.zeros(0), out
+
+
+def joint_errors(problem: Problem, fitted: Confirmed) -> Array:
+    """Standard errors (k,) of the tuned slots: the sandwich of the estimator that `confirm` is, which lets slop move beside them.
+
+    Residuals may be autocorrelated (scores are summed over pairs of windows; never less than the inflated covariance), and the other
+    coefficients are off by the declared slop, of which the joint fit takes out what the logs show.
+    """
+    k, data, precision = len(fitted.slots), fitted.point.data, fitted.point.precision
+    bread = np.linalg.inv(data.A.sum(axis=0) + np.diag(precision))
+    step = bread @ (data.b.sum(axis=0) - precision * fitted.point.offset)
+    step[:k] = 0.0
+    score = data.b - np.einsum("wij,j->wi", data.A, step)
+    pairs = score[: len(score) // 2 * 2].reshape(-1, 2, len(step)).sum(axis=1)
+    half = bread[:k] @ pairs.T
+    sandwich = (half**2).sum(axis=1) * (len(score) / max(2 * len(pairs), 1)) * len(pairs) / max(len(pairs) - k, 1)
+    white = problem.inflation * np.einsum("ij,jk,ik->i", bread[:k], data.A.sum(axis=0), bread[:k])
+    slop = bread[:k, k:] * precision[k:] * [problem.slop.sd[c] for c in data.columns[k:]]
+    return np.asarray(np.sqrt(np.maximum(sandwich, white) + (slop**2).sum(axis=1)))
 
 
 def _document(
@@ -180,7 +208,7 @@ def _document(
 ) -> dict[str, Any]:
     plant, rows = problem.plant, dict[str, Any]()
     for i, slot in enumerate(fitted.slots if fitted else ()):
-        assert fitted is not None  # noqa: S101  for the type checker
+        assert fitted is not None
         p, value, was = plant.slots[slot].parameter, float(fitted.beta[slot]), float(problem.origin[slot])
         bottom, top = max(float(low[i]), p.low), min(float(high[i]), p.high)
         rows[plant.slots[slot].key] = {
@@ -246,6 +274,7 @@ def text(document: dict[str, Any]) -> str:
         lines += ["", "These logs cannot determine (left as they were):", *(f"  {u['parameter']}: {u['why']}" for u in document["undetermined"])]
     if document["harm"]:
         lines += ["", "Worse with it: " + ", ".join(f"{h['axis']} by {100 * h['change']:.0f} %" for h in document["harm"]) + "."]
+    lines += [f"Left out: {why}" for why in document["left_out"]]
     if not rows:
         lines += ["", "Nothing was tuned. Next: a log that moves on the axes, or turns the thrusters, that these parameters act on."]
     return "\n".join([*lines, ""])
