@@ -1,4 +1,4 @@
-"""`rovval blind`: the withheld-effect check, on logs of an independent plant whose labels lie apart."""
+"""`rovval blind`: the withheld-effect check, on logs of an independent plant whose labels are sealed."""
 
 from __future__ import annotations
 
@@ -7,63 +7,111 @@ from typing import Annotated
 
 import typer
 
-from rovval.cli import complete, output
-from rovval.errors import UsageProblem
+from rovval.cli import complete, options, output
 
-app = typer.Typer(no_args_is_help=True, help="The withheld-effect check: cases from an independent plant, answered and scored.")
+app = typer.Typer(
+    no_args_is_help=True,
+    help="The withheld-effect check: make sealed logs with hidden effects, answer them, open the seal and score.",
+    epilog="All of it: `rovval blind make sets/a --size full && rovval blind answer sets/a && rovval blind score sets/a`.",
+)
+Set = Annotated[Path, typer.Argument(metavar="DIR", help="Folder of the sealed set.")]
+Key = Annotated[
+    Path | None, typer.Option("--key", metavar="FILE", help="Where the key lies. Default: DIR.key, beside the folder.")
+]
+Workers = Annotated[int, typer.Option("--workers", metavar="N", min=1, help="Processes, one thread each.")]
 
 
 @app.command()
 def make(
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the logs are written, under random names.")],
-    labels: Annotated[
-        Path | None, typer.Option("--labels", metavar="DIR", help="Where the answers are kept. Default: DIR-labels.")
-    ] = None,
+    folder: Set,
     vehicle: Annotated[str, typer.Option("--vehicle", metavar="V", autocompletion=complete.vehicles)] = "merlin",
-    seed: Annotated[int, typer.Option("--seed", help="Equal seeds make equal logs.")] = 0,
-    cases: Annotated[
-        Path | None, typer.Option("--cases", metavar="FILE", help="JSON list of missions and effects. Default: the whole grid.")
+    seed: Annotated[
+        int | None, typer.Option("--seed", help="Equal seeds make equal logs. Default: drawn, and sealed too.")
     ] = None,
-    limit: Annotated[int | None, typer.Option("--limit", min=1, help="Only the first so many cases.")] = None,
-    workers: Annotated[int, typer.Option("--workers", metavar="N", min=1)] = 2,
+    size: Annotated[
+        str, typer.Option("--size", metavar="full|small|COUNT", help="Several hundred logs, 24, or so many.")
+    ] = "full",
+    cases: Annotated[
+        Path | None, typer.Option("--cases", metavar="FILE", help="JSON list of missions and effects, instead of --size.")
+    ] = None,
+    key: Key = None,
+    workers: Workers = 2,
+    quiet: options.QuietOption = False,
 ) -> None:
-    """Make logs with hidden effects by a plant that shares no code with rovval's own.
+    """Make logs with hidden effects by a plant that shares no code with rovval's own, and seal their labels.
 
     \b
     Example:
-      rovval blind make --out cases --labels sealed --seed 7 --limit 24
+      rovval blind make sets/small --seed 7 --size small
     """
     from rovval import vehicle as vehicles
-    from rovval.blind.generate import generate, read_cases
-    from rovval.blind.grid import grid
+    from rovval.blind import make as maker
+    from rovval.blind.generate import read_cases
+    from rovval.blind.plan import Question
 
     vehicles.load(vehicle)
     path = Path(vehicle) if vehicle.endswith(".toml") else vehicles.LIBRARY / f"{vehicle}.toml"
-    chosen = read_cases(cases, seed) if cases else grid(path, seed, 1)
-    made = generate(path, chosen[:limit], out, labels or out.with_name(f"{out.name}-labels"), seed, workers)
-    failed = sum("failed" in label for label in made.values())
-    output.result(f"{len(made) - failed} logs in {out}" + (f", {failed} flights failed" if failed else ""))
+    asked = [Question(case) for case in read_cases(cases, seed or 0)] if cases else None
+    made = maker.make(folder, path, seed, size, asked=asked, key=key, workers=workers, say=_steps(quiet))
+    manifest = made.manifest()
+    output.result(f"{manifest['count']} logs in {made.logs}; labels sealed, SHA-256 {manifest['labels_sha256']}")
+    output.say(f"key: {key or made.key}; next: rovval blind answer {folder}", quiet)
 
 
 @app.command()
-def answer() -> None:
-    """Diagnose every log of a set (not in this version).
+def answer(
+    folder: Set,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Throw away answers that are there and begin again.")] = False,
+    floors: Annotated[bool, typer.Option(help="Also ask the simple methods that the score is compared with.")] = True,
+    workers: Workers = 2,
+    quiet: options.QuietOption = False,
+) -> None:
+    """Diagnose every log of a set and commit the answers by digest; goes on where it was stopped.
 
     \b
     Example:
-      rovval blind answer cases
+      rovval blind answer sets/small
     """
-    raise UsageProblem(
-        "`rovval blind answer` is not in this version", "diagnose the logs one by one: `rovval diagnose LOG --json FILE`"
-    )
+    from rovval.blind import answer as answerer
+
+    done = answerer.answer(folder, workers=workers, floors=floors, fresh=fresh, say=_steps(quiet))
+    output.result(f"answers of engine {done['engine']} committed at {done['committed']}, SHA-256 {done['sha256']}")
+    output.say(f"next: rovval blind score {folder}", quiet)
 
 
 @app.command()
-def score() -> None:
-    """Open the seal and score the answers (not in this version).
+def score(
+    folder: Set,
+    key: Key = None,
+    history: Annotated[
+        Path | None, typer.Option("--history", metavar="FILE", help="JSON lines of unsealings. Default: the repository's.")
+    ] = None,
+    json_: options.JsonFlag = False,
+    workers: Workers = 2,
+    quiet: options.QuietOption = False,
+) -> None:
+    """Open the seal, check all digests and score. After this no answer to the set is accepted any more.
 
     \b
     Example:
-      rovval blind score cases
+      rovval blind score sets/small
     """
-    raise UsageProblem("`rovval blind score` is not in this version", "compare the diagnoses with labels.json")
+    from rovval.blind import page
+    from rovval.blind import score as scorer
+
+    result = scorer.score(folder, key=key, kept=history, workers=workers, say=_steps(quiet))
+    (folder / "score.html").write_text(page.html(result), encoding="utf-8")
+    if json_:
+        output.result_json(result)
+    else:
+        output.result(page.text(result))
+        output.say(output.places({"html": folder / "score.html", "json": folder / "score.json"}), quiet)
+
+
+def _steps(quiet: bool) -> output.Progress:
+    """One line a step on a terminal, else a line for each log: a long run in a batch system is to be followed too."""
+    import sys
+
+    if quiet or sys.stderr.isatty():
+        return output.progress(quiet)
+    return lambda step, share: output.say(step)
