@@ -187,7 +187,7 @@ def _tuned(problem: Problem, slots: tuple[int, ...]) -> tuple[Confirmed | None, 
 def joint_errors(problem: Problem, fitted: Confirmed) -> Array:
     """Standard errors (k,) of the tuned slots: the sandwich of the estimator that `confirm` is, which lets slop move beside them.
 
-    Residuals may be autocorrelated (scores are summed over pairs of windows; never less than the inflated covariance), and the other
+    Residuals may be autocorrelated (scores are summed over pairs of windows; where these are few, never less than the inflated covariance), and the other
     coefficients are off by the declared slop, of which the joint fit takes out what the logs show.
     """
     k, data, precision = len(fitted.slots), fitted.point.data, fitted.point.precision
@@ -200,7 +200,8 @@ def joint_errors(problem: Problem, fitted: Confirmed) -> Array:
     sandwich = (half**2).sum(axis=1) * (len(score) / max(2 * len(pairs), 1)) * len(pairs) / max(len(pairs) - k, 1)
     white = problem.inflation * np.einsum("ij,jk,ik->i", bread[:k], data.A.sum(axis=0), bread[:k])
     slop = bread[:k, k:] * precision[k:] * [problem.slop.sd[c] for c in data.columns[k:]]
-    return np.asarray(np.sqrt(np.maximum(sandwich, white) + (slop**2).sum(axis=1)))
+    spread = sandwich if len(pairs) > 2 * k else np.maximum(sandwich, white)
+    return np.asarray(np.sqrt(spread + (slop**2).sum(axis=1)))
 
 
 def _document(
