@@ -25,11 +25,11 @@ MOST_GROUP = 3  # names printed of a confusion group
 
 
 def answer(
-    problem: Problem, library: list[Hypothesis], untestable: dict[str, str], selection: Selection, slop: float, seed: int
+    problem: Problem, untestable: dict[str, str], left_out: tuple[str, ...], selection: Selection, slop: float, seed: int
 ) -> Diagnosis:
     """Put everything that was found into one document."""
     before = corrected_residuals(problem)
-    judgement = judge(problem, selection)
+    judgement = judge(problem, selection, axis_rows(problem, before))
     final = judgement.final
     after = corrected_residuals(problem, final.beta) if final else before
     axes = axis_rows(problem, before)
@@ -56,7 +56,7 @@ def answer(
         "causes": [_cause(problem, judgement, named, before, seed) for named in judgement.named],
         "shrinkage": _shrinkage(problem, final, before, after, seed),
         "ranking": [{"effect": name, "score": score} for name, score in selection.ranking],
-        "not_testable": _not_testable(problem, library, untestable),
+        "not_testable": [{"effect": name, "why": why} for name, why in sorted(untestable.items())],
         "next_experiment": _experiment(advice),
         "detection": {"p_value": selection.last_p if not selection.named else selection.named[0].p_value, "last_p": selection.last_p, "last_evidence": selection.last_evidence, "null_evidence": selection.null_evidence,
                       "slop": judgement.slop_share, "ceiling": judgement.ceiling_share, "cause_and_slop": judgement.cause_share},
@@ -68,6 +68,7 @@ def answer(
         "traces": traces(problem, final, before, after),
         "coherence": coherence_matrix(problem, selection, judgement),
         "inputs": problem.parts[0].driven.source,
+        "runs_left_out": list(left_out),
         "left_out_s": sum(part.contact_s for part in problem.parts),
         "outliers": sum(part.outliers for part in problem.parts),
     }  # fmt: skip
@@ -145,20 +146,6 @@ def _harm(problem: Problem, before: list[Array], after: list[Array]) -> list[dic
     """Axes that get more than 5 % worse with the effects added."""
     nominal, now = axis_squares(problem, before), axis_squares(problem, after)
     return [{"axis": a, "change": float(now[a].sum() / nominal[a].sum() - 1)} for a in nominal if nominal[a].sum() > 0 and now[a].sum() > 1.05 * nominal[a].sum()]
-
-
-def _not_testable(problem: Problem, library: list[Hypothesis], untestable: dict[str, str]) -> list[dict[str, str]]:
-    """Hypotheses that this log cannot show: a channel is missing, or a typical size of the effect stays below the noise."""
-    rows = [{"effect": name, "why": why} for name, why in sorted(untestable.items())]
-    place = {c: i for i, c in enumerate(problem.data.columns)}
-    information = np.einsum("wii->i", problem.data.A) / problem.inflation
-    for h in library:
-        if h.directions:
-            continue
-        seen = sum(information[place[s]] * problem.plant.slots[s].parameter.typical ** 2 for s in h.columns)
-        if seen < 9.0:  # detectability below 3 standard errors (research E.6)
-            rows.append({"effect": h.name, "why": f"not excited: a typical size would show with {np.sqrt(seen):.1f} standard errors in this log, 3 are needed"})
-    return rows
 
 
 def _advice(problem: Problem, judgement: Judgement) -> Advice | None:

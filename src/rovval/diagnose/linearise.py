@@ -18,7 +18,7 @@ POSE_INDEX = {6: 3, 7: 4, 8: 2, 9: 5}  # start states after the six velocities: 
 LANES = 20_000  # lanes a call, to bound memory (about 200 MB)
 STEP = 0.25  # finite-difference step as a share of a parameter's typical size
 UNLOGGED = 0.3  # m/s, rad/s, rad: start of what was neither logged nor follows from the pose: anything slow is possible (chosen)
-FROM_SLOPE = 0.05  # m/s, rad/s: start taken as the slope of the logged pose over a second (chosen: 1 to 2 cm of depth noise)
+FROM_SLOPE = 0.01  # m/s, rad/s: least error of a start taken as the slope of the logged pose over a second (chosen)
 POSE_SLOPE = {"u": "x", "v": "y", "w": "z", "p": "phi", "q": "theta", "r": "psi"}
 ATTITUDE_DRIFT = 0.004  # rad: slow error of an AHRS within a window, 0.2 degrees (MTi class data sheets)
 STATE_STEP = (0.02, 0.02, 0.02, 0.01, 0.01, 0.01, 0.01, 0.01, 0.02)  # m/s, rad/s, rad, m: about twice the noise of good sensors
@@ -177,5 +177,6 @@ def state_spread(stretches: Stretches) -> Array:
             least = 0.01 if name in ANGLES else 0.005
             spread.append(max(noise.get(name, 0.0), least))
         else:
-            spread.append(UNLOGGED if POSE_SLOPE.get(name, "") not in run.values else FROM_SLOPE)
+            pose = POSE_SLOPE.get(name, "")
+            spread.append(max(3.0 * noise.get(pose, 0.0), FROM_SLOPE) if run.measured(pose) else UNLOGGED)
     return np.array([*spread, *[ATTITUDE_DRIFT] * len(_drifting(stretches))])

@@ -31,6 +31,7 @@ LATER_GAIN = 0.08  # the same for a second and third effect: the forms of equati
 LEAST_EVIDENCE = 16.0  # over slop: well past "very strong" (10; Kass & Raftery 1995), since null logs reach 10 now and then
 LEAST_SIGMA = 2.2  # standard errors, slop included, by which an effect departs from nothing (tuning set: healthy logs reach 2.0)
 SERIOUS = 0.5  # share of the best evidence from which a rival's gain counts
+NEARLY = 0.9  # of the best's gain
 LEAST_OF_BEST = 0.5  # of the gain of the best serious rival
 
 
@@ -85,8 +86,9 @@ def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Cal
         rounds.append(tuple((r.hypothesis.name, r.evidence, r.gain) for r in able or _weighed(fitted, ground, float(problem.data.c.sum()))))
         if not able or able[0].gain < (LATER_GAIN if named else LEAST_GAIN) or able[0].evidence < LEAST_EVIDENCE:
             break
-        best = able[0]
-        members = group(problem, able, ground, seed)
+        members = group(problem, able, seed)
+        best = simplest(able, members)
+        members = tuple(sorted(members, key=lambda member: member[0] != best.hypothesis.name))
         named.append(Named(best.hypothesis, members, best.fitted, detection.p_value(best.hypothesis.label), best.evidence))
         named = _pruned(problem, named)
         beta, chosen = named[-1].fitted.beta, named[-1].fitted.slots
@@ -137,7 +139,7 @@ def _name(problem: Problem, data: Products, library: list[Hypothesis], chosen: t
     """Held-out contest of names with only a trace of slop: label -> hypothesis, fit, share of the loss that it takes away."""
     tight = problem.slop.scaled(NAMING_SLOP).widened(_free(problem, chosen))
     _, fits = contest(Ring.of(data, problem.folds), tight, {h.label: _prior(h) for h in library}, problem.inflation)
-    return {h.label: (h, fits[h.label], float(1.0 - fits[h.label].loss / data.c.sum())) for h in library}
+    return {h.label: (h, fits[h.label], 1.0 - fits[h.label].loss / max(float(data.c.sum()), 1e-300)) for h in library}
 
 
 def _ranking(contest: dict[str, tuple[Hypothesis, Fit, float]]) -> tuple[tuple[str, float], ...]:
@@ -184,6 +186,12 @@ def admissible(problem: Problem, fitted: list[tuple[Hypothesis, Confirmed]], gro
         r for r in rivals
         if r.gain >= LEAST_OF_BEST * serious and r.gain > 0 and significance(problem, r.fitted, r.hypothesis.slots) >= LEAST_SIGMA
     ]  # fmt: skip
+
+
+def simplest(rivals: list[Rival], members: tuple[tuple[str, float], ...]) -> Rival:
+    """Of the rivals that the log does not tell apart, the one with the fewest parameters, if it closes nearly as much as the best does."""
+    tied = [r for r in rivals if r.hypothesis.name in dict(members) and r.gain >= NEARLY * rivals[0].gain]
+    return min(tied, key=lambda r: (len(r.hypothesis.slots), -r.evidence))
 
 
 def _from_the_start(problem: Problem, rival: Rival) -> bool:

@@ -29,7 +29,7 @@ class Rival:
     gain: float
 
 
-def group(problem: Problem, rivals: list[Rival], ground: Confirmed, seed: int, block: int = 2) -> tuple[tuple[str, float], ...]:
+def group(problem: Problem, rivals: list[Rival], seed: int, block: int = 2) -> tuple[tuple[str, float], ...]:
     """The best rival and every other that this log does not tell from it, with probabilities, best first.
 
     A rival stays in the group if its evidence is as good in more than `LEVEL` of a paired block bootstrap over windows, or falls

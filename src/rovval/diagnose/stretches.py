@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from rovval.channels import AXES
 from rovval.data import Array, Flags, Run
 from rovval.drive import Drive, drive, start_states, startable
-from rovval.errors import BadInput
+from rovval.errors import BadInput, all_at_once
 from rovval.frames import wrap
 from rovval.plant import Plant
 from rovval.vehicle.model import Vehicle
@@ -69,19 +69,29 @@ class Stretches:
         return np.asarray((self.start[:, None] + np.arange(self.steps + 1)[None, :]) * self.run.dt)
 
 
-def cut_all(runs: Sequence[Run], vehicle: Vehicle, model: str, window_s: float) -> tuple[Stretches, ...]:
-    """Every run cut into windows of one length: the longest of ``window_s``, its half and its quarter that suits them all.
+def cut_all(runs: Sequence[Run], vehicle: Vehicle, model: str, window_s: float) -> tuple[tuple[Stretches, ...], tuple[str, ...]]:
+    """Every run cut into windows of one length: the longest of ``window_s``, its half and its quarter that suits them all; and which runs
+    were too short and left out, with the reason.
 
     Raises:
-        BadInput: runs differ in the channels that they hold, or one is too short; see `cut`.
+        BadInput: no run can be cut, or the runs differ in the channels that they hold.
     """
-    parts = tuple(cut(run, vehicle, model, window_s) for run in runs)
-    shortest = min(part.steps + 1 for part in parts) * parts[0].run.dt
-    parts = tuple(p if (p.steps + 1) * p.run.dt == shortest else cut(p.run, vehicle, model, shortest) for p in parts)
-    if len({part.channels for part in parts}) > 1:
-        held = "; ".join(f"{part.run.id}: {', '.join(part.channels)}" for part in parts)
+    parts, left_out = list[Stretches](), list[str]()
+    for run in runs:
+        try:
+            parts.append(cut(run, vehicle, model, window_s))
+        except BadInput as error:
+            if len(runs) == 1:
+                raise
+            left_out.append(error.message)
+    if not parts:
+        raise BadInput(all_at_once(left_out, "no log can be diagnosed"), "use longer logs")
+    shortest = min(part.steps + 1 for part in parts)
+    same = tuple(p if p.steps + 1 == shortest else _cut(p.run, vehicle, model, shortest * p.run.dt) for p in parts)
+    if len({part.channels for part in same}) > 1:
+        held = "; ".join(f"{part.run.id}: {', '.join(part.channels)}" for part in same)
         raise BadInput(f"the logs hold different channels and cannot be diagnosed together ({held})", "diagnose them one by one")
-    return parts
+    return same, tuple(left_out)
 
 
 def cut(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Stretches:
@@ -131,10 +141,10 @@ def residual_channels(run: Run) -> tuple[str, ...]:
 
 
 def in_contact(run: Run, driven: Drive) -> Flags:
-    """Where the vehicle is held, at the surface or aground (n,): thrusters idle and depth still, at an end of the depth that the log covers.
+    """Where the vehicle is at the surface, held or aground (n,): thrusters idle at the shallow end of the depth that the log covers, or
+    idle and still at the deep end.
 
-    No free body rests there with a force on it; the simulator knows neither hand nor floor. Nothing is found in a log without depth
-    or that hardly changes depth.
+    The simulator knows neither surface, hand nor floor. Nothing is found in a log without depth or that hardly changes depth.
     """
     still = np.zeros(len(run), dtype=bool)
     depth = run.get("z")
@@ -142,12 +152,11 @@ def in_contact(run: Run, driven: Drive) -> Flags:
         return still
     span = round(STILL_S / run.dt)
     idle = (np.abs(driven.inputs.speed) < 1e-9).all(axis=1)
-    ends = (depth > np.nanmax(depth) - AT_END) | (depth < np.nanmin(depth) + AT_END)
+    deep = depth > np.nanmax(depth) - AT_END
     for at in range(0, len(run) - span, span // 5):
-        part = depth[at : at + span]
-        if idle[at : at + span].all() and ends[at : at + span].all() and np.ptp(part) < STILL_M:
+        if idle[at : at + span].all() and deep[at : at + span].all() and np.ptp(depth[at : at + span]) < STILL_M:
             still[at : at + span] = True
-    return still
+    return still | (idle & (depth < np.nanmin(depth) + AT_END))
 
 
 def predicted(stretches: Stretches, nu: Array, eta: Array) -> Array:

@@ -10,10 +10,11 @@ import numpy as np
 from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed, slop_loss
 from rovval.diagnose.problem import Problem
-from rovval.diagnose.select import FALSE_ALARM, Named, Selection
+from rovval.diagnose.select import FALSE_ALARM, LEAST_EVIDENCE, Named, Selection
 from rovval.diagnose.unknown import Ceiling, ceiling
 
 LEAST_OF_CEILING = 0.5  # a cause takes at least half of the systematic gap that slop leaves (research E.9)
+BEYOND, FAR_ABOVE_NOISE = 2.0, 20.0  # times the null's evidence, times the sensors' noise (chosen; healthy logs of the tuning set do not pass)
 STRUCTURED = 0.15  # of the gap: a generic force must close this much more before something unknown is claimed (research E.9)
 
 
@@ -33,7 +34,7 @@ class Judgement:
     left: dict[str, object] | None
 
 
-def judge(problem: Problem, selection: Selection) -> Judgement:
+def judge(problem: Problem, selection: Selection, axes: dict[str, dict[str, object]]) -> Judgement:
     """Weigh what was found against what could have been found."""
     gap = float(problem.dynamic.c.sum())
     by_slop = slop_loss(problem, problem.origin)
@@ -50,10 +51,28 @@ def judge(problem: Problem, selection: Selection) -> Judgement:
     real = remains / gap > STRUCTURED and _most_windows(with_cause if final else by_slop, rest.loss)
     left = _left(rest, remains / gap) if real else None
     if not named:
-        return Judgement("unknown" if real else "no_gap", (), None, {}, {}, *shares, left)
+        if not real and shares[0] < LEAST_OF_CEILING and _plain_to_see(selection, axes):
+            left = _formless(axes)
+        return Judgement("unknown" if left else "no_gap", (), None, {}, {}, *shares, left)
     groups = {n.hypothesis.name: n.group for n in named}
     probability = {n.hypothesis.name: _probability(n) for n in named}
     return Judgement("partly_explained" if real else "explained", named, final, groups, probability, *shares, left)
+
+
+def _plain_to_see(selection: Selection, axes: dict[str, dict[str, object]]) -> bool:
+    """Whether a gap that nothing explains is still no healthy log's: beyond slop by evidence, and far above the sensors' noise."""
+    times = [float(str(row["rms"])) / max(float(str(row["floor_rms"])), 1e-12) for row in axes.values()]
+    beyond = selection.last_p <= FALSE_ALARM and selection.last_evidence > BEYOND * max(selection.null_evidence, LEAST_EVIDENCE)
+    return beyond and max(times, default=0.0) > FAR_ABOVE_NOISE
+
+
+def _formless(axes: dict[str, dict[str, object]]) -> dict[str, object]:
+    ordered = sorted(axes, key=lambda axis: -float(str(axes[axis]["share"])))[:2]
+    text = (
+        f"the gap in {' and '.join(ordered)} is far beyond noise and slop, but no effect of the library and no smooth force closes it; "
+        "the simulated motion may diverge within a window (shorten --window), or the cause acts in events"
+    )
+    return {"axes": ordered, "depends_on": [], "share": 0.0, "text": text}
 
 
 def _beyond(base: Array, top: Ceiling) -> float:

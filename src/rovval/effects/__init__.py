@@ -83,6 +83,7 @@ def names() -> tuple[str, ...]:
     return tuple(sorted(p.stem for p in FOLDER.glob("*.py") if not p.stem.startswith("_")))
 
 
+@cache
 def module(name: str) -> ModuleType:
     """The file of an effect, imported; refuses a name that is not in the library."""
     if name not in names():

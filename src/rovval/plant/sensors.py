@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,7 @@ class Log:
     nu0: Array
 
 
+@cache
 def order() -> tuple[str, ...]:
     """Effects that act on the log, in the order in which they act; those of new files come last."""
     acting = [n for n in effects.names() if hasattr(effects.module(n), "observe")]

@@ -1,0 +1,27 @@
+"""Which hypotheses a log can show at all: the others neither compete nor are called absent."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rovval.diagnose.library import PRIOR_WIDTH, Hypothesis
+from rovval.diagnose.problem import Problem
+
+LEAST_SIGMA = 3.0  # standard errors by which an effect of typical size must show (research E.6: detectability below 3 says nothing)
+
+
+def excited(problem: Problem, library: list[Hypothesis]) -> tuple[list[Hypothesis], dict[str, str]]:
+    """Hypotheses of which a typical size would show in this log, and the others with the reason."""
+    information = np.einsum("wii->i", problem.data.A) / problem.inflation
+    place = {column: i for i, column in enumerate(problem.data.columns)}
+    seen: dict[str, float] = {}
+    for h in library:
+        typical = [sd / PRIOR_WIDTH for sd in h.sd]
+        strength = sum(information[place[c]] * t**2 for c, t in zip(h.columns, typical, strict=True))
+        seen[h.name] = max(seen.get(h.name, 0.0), float(np.sqrt(strength)))
+    silent = {
+        name: f"not excited: a typical size would show with {sigma:.1f} standard errors in this log, {LEAST_SIGMA:g} are needed"
+        for name, sigma in seen.items()
+        if sigma < LEAST_SIGMA
+    }
+    return [h for h in library if h.name not in silent], silent
