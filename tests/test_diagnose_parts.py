@@ -98,7 +98,7 @@ def test_coherence_knows_the_same_and_the_foreign():
     S = np.concatenate([x, x[:, :1] * 2], axis=1)[None]
     data = Products(np.einsum("wni,wnj->wij", S, S), np.zeros((1, 4)), np.zeros(1), (0, 1, 2, 3))
     assert coherence(data, (0,), (3,)) == pytest.approx(1.0)
-    assert coherence(data, (0,), (1,)) == pytest.approx(abs(np.corrcoef(x.T)[0, 1]), abs=0.05)
+    assert coherence(data, (0,), (1,)) == pytest.approx(abs(float(np.asarray(np.corrcoef(x.T))[0, 1])), abs=0.05)
     assert coherence(data, (0, 1), (1, 2)) == pytest.approx(1.0)
 
 
@@ -134,14 +134,14 @@ def kinematic(seed: int, seconds: float = 300.0) -> dict[str, Array]:
     t = np.arange(n * fine) * 0.1 / fine
     size = np.array([0.6, 0.3, 0.15, 0.02, 0.02, 0.15])
     waves = [(rng.uniform(0.05, 0.6, 6), rng.uniform(0, 6.28, 6)) for _ in size]
-    nu = np.stack([a * np.sin(np.outer(t, f) + p).sum(axis=1) / 2 for a, (f, p) in zip(size, waves, strict=True)], axis=1)
+    nu: Array = np.stack([a * np.sin(np.outer(t, f) + p).sum(axis=1) / 2 for a, (f, p) in zip(size, waves, strict=True)], axis=1)
     eta = np.empty((n, 6))
     state: Array = np.array([0, 0, 30.0, 0, 0, 0.5])
     for i in range(len(t)):
         if i % fine == 0:
             eta[i // fine] = state
         if i % 10 == 0:  # Euler steps of 10 ms are ample for pose over a window of 10 s
-            middle = nu[min(i + 5, len(t) - 1)]
+            middle = np.asarray(nu[min(i + 5, len(t) - 1)])
             world = np.einsum("ij,j->i", rotation_from_euler(state[None, 3:])[0], middle[:3])
             state = np.asarray(state + 0.1 / fine * 10 * np.concatenate([world, euler_rates(state[None, 3:], middle[None, 3:]).ravel()]))
     return dict(zip((*"uvwpqr", "x", "y", "z", "phi", "theta", "psi"), np.concatenate([nu[::fine], eta], axis=1).T, strict=True))

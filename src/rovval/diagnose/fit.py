@@ -275,6 +275,8 @@ def text(document: dict[str, Any]) -> str:
         lines += ["", "These logs cannot determine (left as they were):", *(f"  {u['parameter']}: {u['why']}" for u in document["undetermined"])]
     if document["harm"]:
         lines += ["", "Worse with it: " + ", ".join(f"{h['axis']} by {100 * h['change']:.0f} %" for h in document["harm"]) + "."]
+    if rows and shrunk["low"] <= 0:
+        lines += ["", "Not shown to be better on held-out windows: use fewer parameters, shorter windows or more logs before using this vehicle."]
     lines += [f"Left out: {why}" for why in document["left_out"]]
     if not rows:
         lines += ["", "Nothing was tuned. Next: a log that moves on the axes, or turns the thrusters, that these parameters act on."]
