@@ -90,4 +90,4 @@ def run(plant: Plant, speed=None, *, seconds=1.0, dt=0.1, nu=None, eta=None, bet
     speeds = np.tile(np.zeros(k) if speed is None else speed, (steps + 1, 1))
     first = [np.zeros((1, 6)) if x is None else np.atleast_2d(np.asarray(x, float)) for x in (nu, eta)]
     b = plant.null if beta is None else beta
-    return plant.simulate(Inputs(dt, speeds, hold), np.zeros(1, int), steps, *first, b[None])
+    return plant.simulate(Inputs(dt, speeds, hold), np.zeros(1, int), steps, first[0], first[1], b[None])

@@ -36,7 +36,7 @@ density_gradient ground_effect wall_suction tether_drag tether_tension tether_sn
 inertia_error thruster_degraded thruster_fault_onset thruster_deadband thruster_reversed reverse_asymmetry thrust_lag
 inflow_loss crossflow_loss hull_interaction thruster_interaction thruster_misaligned propeller_torque rpm_scale voltage_sag
 time_offset clock_drift dvl_scale dvl_misalignment dvl_lever_arm gyro_bias compass_deviation attitude_bias
-velocity_filter_lag""".split()  # noqa: SIM905
+velocity_filter_lag""".split()
 )
 
 

@@ -102,14 +102,14 @@ def _speeds(values: Array, vehicle: Vehicle) -> tuple[Array, tuple[str, ...]]:
 
 def _pulses(values: Array, vehicle: Vehicle) -> tuple[Array, tuple[str, ...]]:
     table = vehicle.pulse_table
-    assert table is not None  # noqa: S101  _wanted offers pulse widths only where the vehicle has a table
+    assert table is not None
     return _equivalent_speed(values, vehicle, table), (f"thrust from pulse width by the table at {table.voltage:g} V",)
 
 
 def _sticks(values: Array, vehicle: Vehicle) -> tuple[Array, tuple[str, ...]]:
     mixer, table = vehicle.mixer, vehicle.pulse_table
-    assert mixer is not None  # noqa: S101  as above
-    assert table is not None  # noqa: S101
+    assert mixer is not None
+    assert table is not None
     said = f"pulse widths from the pilot's sticks by the vehicle's mixer (manual mode), thrust by the table at {table.voltage:g} V"
     return _equivalent_speed(mix(values, mixer), vehicle, table), (said,)
 

@@ -15,6 +15,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -49,7 +50,7 @@ def best(call, repeats=7, clock=time.thread_time):
 
 def ours(plant: Plant, beta) -> tuple[str, float]:
     """Name of the kernel and steps/s of one core, the kernel alone."""
-    kept = {}
+    kept: dict[str, Any] = {}
 
     def spy(spec, blocks, arguments):
         kept.update(spec=spec, blocks=blocks, arguments=arguments)
@@ -102,7 +103,7 @@ def c_rate(plant: Plant, folder: Path) -> float:
     zero = np.zeros((LANES, 6))
     motion = plant.simulate(log, start, STEPS, zero, zero, np.tile(plant.null, (LANES, 1)))
     assert np.abs(motion.nu[:, 1:] - out[..., 7:]).max() < 1e-12
-    return LANES * STEPS * plant.substeps / best(call)
+    return float(LANES * STEPS * plant.substeps / best(call))
 
 
 def flops_per_step() -> int:
@@ -123,7 +124,7 @@ def flop_rate(folder: Path) -> float:
     source.write_text(FLOP, encoding="utf-8")
     library = built(source, folder / "peak.so")
     library.peak.restype = ctypes.c_double
-    return 96 * 2 * 4_000_000 / best(lambda: library.peak(ctypes.c_long(4_000_000)))
+    return float(96 * 2 * 4_000_000 / best(lambda: library.peak(ctypes.c_long(4_000_000))))
 
 
 def mujoco_rate() -> float | None:
@@ -148,13 +149,14 @@ def mujoco_rate() -> float | None:
     mujoco.mj_getState(one, data, state[0], mujoco.mjtState.mjSTATE_FULLPHYSICS)
     state[1:] = state[0]
     control = np.random.default_rng(0).normal(size=(lanes, steps, 7))
-    return lanes * steps / best(lambda: rollout.rollout(one, [data], state, control), 5)
+    return float(lanes * steps / best(lambda: rollout.rollout(one, [data], state, control), 5))
 
 
 def numpy_rate(plant: Plant) -> float:
     lanes, steps = 1000, 5
     zero = np.zeros((lanes, 6))
-    return lanes * steps / best(lambda: oracle.simulate(plant, inputs(plant), np.zeros(lanes, int), steps, zero, zero, np.tile(plant.null, (lanes, 1))), 2)
+    null = np.tile(plant.null, (lanes, 1))
+    return float(lanes * steps / best(lambda: oracle.simulate(plant, inputs(plant), np.zeros(lanes, int), steps, zero, zero, null), 2))
 
 
 def test_the_kernel_beside_c_mujoco_numpy_and_the_limit(tmp_path):

@@ -47,8 +47,8 @@ def diagnose(
         BadInput: too little of a log can be simulated, or thruster inputs are missing.
     """
     from rovval.diagnose.answer import answer
-    from rovval.diagnose.library import hypotheses
     from rovval.diagnose.excited import excited
+    from rovval.diagnose.library import hypotheses
     from rovval.diagnose.problem import pose
     from rovval.diagnose.select import select
     from rovval.diagnose.stretches import cut_all

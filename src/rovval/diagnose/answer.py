@@ -21,6 +21,7 @@ from rovval.diagnose.verdict import Judgement, judge
 from rovval.diagnose.words import sentence
 from rovval.vehicle.write import with_effects
 
+HARM = 0.05  # an axis that gets this much worse is named (research E.7)
 MOST_GROUP = 3  # names printed of a confusion group
 
 
@@ -50,7 +51,10 @@ def answer(
         "verdict": judgement.verdict,
         "gap": {
             "axes": axes,
-            "where": [{"axis": s.axis, "regime": s.regime, "share": s.share, "time_share": s.time_share, "lift": s.lift, "low": s.low, "high": s.high} for s in where],
+            "where": [
+                {"axis": s.axis, "regime": s.regime, "share": s.share, "time_share": s.time_share, "lift": s.lift, "low": s.low, "high": s.high}
+                for s in where
+            ],
             "change_points_s": _changes(problem, before, seed),
         },
         "causes": [_cause(problem, judgement, named, before, seed) for named in judgement.named],
@@ -58,8 +62,7 @@ def answer(
         "ranking": [{"effect": name, "score": score} for name, score in selection.ranking],
         "not_testable": [{"effect": name, "why": why} for name, why in sorted(untestable.items())],
         "next_experiment": _experiment(advice),
-        "detection": {"p_value": selection.last_p if not selection.named else selection.named[0].p_value, "last_p": selection.last_p, "last_evidence": selection.last_evidence, "null_evidence": selection.null_evidence,
-                      "slop": judgement.slop_share, "ceiling": judgement.ceiling_share, "cause_and_slop": judgement.cause_share},
+        "detection": _detection(selection, judgement),
         "finalists": [[{"effect": n, "evidence": e, "gain": g} for n, e, g in one] for one in selection.rounds],
         "left": judgement.left,
         "harm": _harm(problem, before, after),
@@ -79,9 +82,23 @@ def answer(
     return Diagnosis(document, settings, with_effects(problem.plant.vehicle, settings) if settings else "")
 
 
+def _detection(selection: Selection, judgement: Judgement) -> dict[str, float]:
+    """What the verdict rests on: p-values, evidence beside that of healthy logs, and the shares of the gap that slop alone, any systematic
+    force, and the causes with slop beside them close on held-out windows."""
+    return {
+        "p_value": selection.named[0].p_value if selection.named else selection.last_p,
+        "last_p": selection.last_p,
+        "last_evidence": selection.last_evidence,
+        "null_evidence": selection.null_evidence,
+        "slop": judgement.slop_share,
+        "ceiling": judgement.ceiling_share,
+        "cause_and_slop": judgement.cause_share,
+    }
+
+
 def _cause(problem: Problem, judgement: Judgement, named: Named, before: list[Array], seed: int) -> dict[str, object]:
     """One cause: its group, probability, onset, parameters with intervals, and the shrinkage it gives by itself."""
-    assert judgement.final is not None  # noqa: S101  a cause is only named with a fit
+    assert judgement.final is not None
     h, final = named.hypothesis, judgement.final
     alone = final if len(judgement.named) == 1 else confirm(problem, _only(problem, final, h), h.slots)
     value, low, high = shrink_interval(problem.dynamic.c, alone.dynamic_loss, seed)
@@ -145,7 +162,8 @@ def _changes(problem: Problem, before: list[Array], seed: int) -> list[float]:
 def _harm(problem: Problem, before: list[Array], after: list[Array]) -> list[dict[str, object]]:
     """Axes that get more than 5 % worse with the effects added."""
     nominal, now = axis_squares(problem, before), axis_squares(problem, after)
-    return [{"axis": a, "change": float(now[a].sum() / nominal[a].sum() - 1)} for a in nominal if nominal[a].sum() > 0 and now[a].sum() > 1.05 * nominal[a].sum()]
+    change = {a: float(now[a].sum() / nominal[a].sum() - 1) for a in nominal if nominal[a].sum() > 0}
+    return [{"axis": a, "change": value} for a, value in change.items() if value > HARM]
 
 
 def _advice(problem: Problem, judgement: Judgement) -> Advice | None:

@@ -148,7 +148,7 @@ def significance(problem: Problem, fitted: Confirmed, slots: tuple[int, ...]) ->
     place an effect (an onset, a period) have no null of their own and do not count."""
     error = errors(problem, fitted)
     sized = [s for s in slots if problem.plant.slots[s].parameter.name not in PLACING]
-    return max(abs(fitted.beta[s] - problem.origin[s]) / max(error[fitted.slots.index(s)], 1e-12) for s in sized)
+    return max(float(abs(fitted.beta[s] - problem.origin[s]) / max(error[fitted.slots.index(s)], 1e-12)) for s in sized)
 
 
 def interval(value: float, error: float, blocks: int) -> tuple[float, float]:

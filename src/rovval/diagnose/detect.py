@@ -34,6 +34,7 @@ class Detection:
 
     @property
     def best(self) -> str:
+        """Label of the hypothesis with the largest evidence."""
         return max(self.evidence, key=lambda name: self.evidence[name])
 
 

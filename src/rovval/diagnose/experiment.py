@@ -152,7 +152,7 @@ def _flown(problem: Problem, beta: Array, manoeuvre: Manoeuvre) -> Run | None:
     vehicle = problem.plant.vehicle
     speed = np.concatenate([np.tile(leg.speed, (round(leg.seconds / DT), 1)) for leg in manoeuvre.legs])
     n = len(speed)
-    t = np.arange(n) * DT
+    t = np.arange(n, dtype=np.float64) * DT
     side = {
         name: np.full(n, float(np.nanmedian(problem.parts[0].run.get(name))))
         for name in ("altitude", "wall_distance", "voltage", "tether_length")

@@ -82,7 +82,7 @@ def _far(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...]
     """Starting points well away from the null value, for trim: a vehicle that tumbles in simulation has no useful slope there."""
     if effect.name not in FAR:
         return []
-    found = []
+    found = list[Hypothesis]()
     for slot in slots:
         p = plant.slots[slot].parameter
         for size in FAR_SIZES:

@@ -82,7 +82,7 @@ def linearise(stretches: Stretches, beta: Array, columns: tuple[int, ...], direc
         elif lane.column >= 0 and lane.step:
             S[..., place[lane.column]] = difference(stretches, out[i], out[lane.against]) / lane.step
     r = np.where(stretches.ok, difference(stretches, stretches.y, nominal), 0.0)
-    return Linear(r, S, J, ids, fine.reshape(len(lanes), windows).all(axis=0))
+    return Linear(r, S, J, ids, np.asarray(fine.reshape(len(lanes), windows).all(axis=0)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -114,12 +114,11 @@ def worst(found: list[Slice], axis_share: dict[str, float], most: int = 5) -> li
 def change_points(stretches: Stretches, score: Array, seed: int, level: float = 0.01) -> list[float]:
     """Times (s) at which the residual force changes level. ``score`` (m, d): per-window signed signals; binary segmentation with a
     CUSUM whose threshold comes from permuted windows."""
-    scale = 1.4826 * np.median(np.abs(score - np.median(score, axis=0)), axis=0)
+    scale = 1.4826 * np.median(np.abs(np.diff(score, axis=0)), axis=0) / np.sqrt(2.0)  # from differences: a step does not inflate it
     usable = scale > 0
     signal = np.clip((score[:, usable] - np.median(score[:, usable], axis=0)) / scale[usable], -6, 6)
     rng = np.random.default_rng(seed)
-    times = [float(stretches.start[k] * stretches.run.dt) for k in sorted(_segment(signal, 0, rng, level))]
-    return times
+    return [float(stretches.start[k] * stretches.run.dt) for k in sorted(_segment(signal, 0, rng, level))]
 
 
 def _segment(signal: Array, offset: int, rng: np.random.Generator, level: float) -> Iterator[int]:

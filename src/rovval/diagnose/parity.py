@@ -84,7 +84,7 @@ def faults(parity_rows: Parity, stretches: Stretches) -> list[dict[str, object]]
         if np.abs(parity_rows.traces[..., i]).max(initial=0.0) > 0:
             by_effect.setdefault(stretches.plant.slots[column].hypothesis, []).append(i)
     total = float((parity_rows.rows**2).sum())
-    for effect, places in by_effect.items():
+    for places in by_effect.values():
         trace = parity_rows.traces[..., places]
         H = np.einsum("wqi,wqj->ij", trace, trace) + 1e-12 * np.eye(len(places))
         g = np.einsum("wqi,wq->wi", trace, parity_rows.rows)
@@ -175,7 +175,7 @@ def _weighted(stretches: Stretches, nominal: Array, traces: Array, columns: tupl
     sigma = np.array([max(1.4826 * float(np.median(np.abs(nominal[..., i]))), LEAST_SIGMA[i]) for i in keep])
     notes: list[str] = []
     left = nominal[..., keep]
-    for _ in range(2):  # noise from what the joint fit leaves, the fit weighted by that noise
+    for _ in range(2 if len(free) else 0):  # noise from what the joint fit leaves, the fit weighted by that noise
         G = traces[..., keep, :][..., free] / sigma[:, None]
         X = G.reshape(-1, len(free))
         y = (nominal[..., keep] / sigma).reshape(-1)
@@ -207,6 +207,8 @@ def _independent(stretches: Stretches, keep: list[int], sigma: Array, notes: lis
 
 
 def _inflation(rows: Array, traces: Array, free: np.ndarray) -> float:
+    if not len(free):
+        return 1.0
     G = traces[..., free]
     H = np.einsum("wqi,wqj->ij", G, G)
     step = np.linalg.lstsq(H + 1e-9 * np.eye(len(free)) * max(np.trace(H), 1e-12), np.einsum("wqi,wq->i", G, rows), rcond=None)[0]

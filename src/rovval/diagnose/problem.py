@@ -44,10 +44,12 @@ class Problem:
 
     @property
     def plant(self) -> Plant:
+        """The plant that all runs share."""
         return self.parts[0].plant
 
     @property
     def blocks(self) -> int:
+        """Number of windows of all runs."""
         return len(self.run_of_window)
 
 

@@ -30,6 +30,7 @@ LEAST_GAIN = 0.04  # of the gap, on held-out windows: less is not worth a name
 LATER_GAIN = 0.08  # the same for a second and third effect: the forms of equations alone leave structure of this size
 LEAST_EVIDENCE = 16.0  # over slop: well past "very strong" (10; Kass & Raftery 1995), since null logs reach 10 now and then
 LEAST_SIGMA = 2.2  # standard errors, slop included, by which an effect departs from nothing (tuning set: healthy logs reach 2.0)
+TOLERANCES = 3.0  # times the tolerance of calibration slop within which a coefficient is not worth a name
 SERIOUS = 0.5  # share of the best evidence from which a rival's gain counts
 NEARLY = 0.9  # of the best's gain
 LEAST_OF_BEST = 0.5  # of the gain of the best serious rival
@@ -184,8 +185,18 @@ def admissible(problem: Problem, fitted: list[tuple[Hypothesis, Confirmed]], gro
     serious = max(r.gain for r in rivals if r.evidence >= SERIOUS * rivals[0].evidence)
     return [
         r for r in rivals
-        if r.gain >= LEAST_OF_BEST * serious and r.gain > 0 and significance(problem, r.fitted, r.hypothesis.slots) >= LEAST_SIGMA
+        if r.gain >= LEAST_OF_BEST * serious
+        and r.gain > 0
+        and significance(problem, r.fitted, r.hypothesis.slots) >= LEAST_SIGMA
+        and _beyond_tolerance(problem, r)
     ]  # fmt: skip
+
+
+def _beyond_tolerance(problem: Problem, rival: Rival) -> bool:
+    """Whether some parameter that healthy vehicles and sensors vary in is further off than they are; True where none has a tolerance."""
+    slots = [s for s in rival.hypothesis.slots if s in problem.slop.sd]
+    off = [abs(rival.fitted.beta[s] - problem.origin[s]) / problem.slop.sd[s] for s in slots]
+    return not off or max(off) >= TOLERANCES
 
 
 def simplest(rivals: list[Rival], members: tuple[tuple[str, float], ...]) -> Rival:

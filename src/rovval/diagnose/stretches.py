@@ -57,6 +57,7 @@ class Stretches:
 
     @property
     def count(self) -> int:
+        """Number of windows."""
         return len(self.start)
 
     @property
@@ -151,8 +152,8 @@ def in_contact(run: Run, driven: Drive) -> Flags:
     if not run.measured("z") or np.nanmax(depth) - np.nanmin(depth) < DEPTH_COVERED:
         return still
     span = round(STILL_S / run.dt)
-    idle = (np.abs(driven.inputs.speed) < 1e-9).all(axis=1)
-    deep = depth > np.nanmax(depth) - AT_END
+    idle: Flags = np.asarray((np.abs(driven.inputs.speed) < 1e-9).all(axis=1))
+    deep: Flags = np.asarray(depth > np.nanmax(depth) - AT_END)
     for at in range(0, len(run) - span, span // 5):
         if idle[at : at + span].all() and deep[at : at + span].all() and np.ptp(depth[at : at + span]) < STILL_M:
             still[at : at + span] = True

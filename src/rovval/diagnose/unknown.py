@@ -36,8 +36,8 @@ def ceiling(problem: Problem, beta: Array) -> Ceiling:
     """The best that a generic force (features x axes) achieves about ``beta``, on held-out windows."""
     data, names = _products(problem, beta)
     ring, free = Ring.of(data, problem.folds), range(len(names))
-    best = min(SHARES, key=lambda s: fit(ring, Prior(dict.fromkeys(free, s)), problem.inflation).loss)
-    loss = heldout(data, problem.folds, Prior(dict.fromkeys(free, best)), problem.inflation)
+    best = min(SHARES, key=lambda s: fit(ring, _even(free, s), problem.inflation).loss)
+    loss = heldout(data, problem.folds, _even(free, best), problem.inflation)
     by_axis = [(axis, _gain(ring, problem, [i for i, (a, _) in enumerate(names) if a == axis], best)) for axis in AXES]
     by_axis.sort(key=lambda item: -item[1])
     leading = by_axis[0][0]
@@ -126,4 +126,10 @@ def _typical_wrench(parts: Sequence[Stretches]) -> Array:
 
 def _gain(ring: Ring, problem: Problem, free: Sequence[int], sd: float) -> float:
     """Held-out share of the loss that forces of these columns take away alone."""
-    return 1.0 - fit(ring, Prior(dict.fromkeys(free, sd)), problem.inflation).loss / float(ring.c.sum())
+    return 1.0 - fit(ring, _even(free, sd), problem.inflation).loss / float(ring.c.sum())
+
+
+def _even(free: Sequence[int], sd: float) -> Prior:
+    """The same prior on every column."""
+    each: dict[int, float] = dict.fromkeys(free, sd)
+    return Prior(each)

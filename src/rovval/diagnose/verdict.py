@@ -43,7 +43,7 @@ def judge(problem: Problem, selection: Selection, axes: dict[str, dict[str, obje
     with_cause = slop_loss(problem, final.beta) if final else by_slop
     rest = ceiling(problem, final.beta) if final else top
     structure, remains = _beyond(by_slop, top), _beyond(with_cause, rest)
-    shares = tuple(1.0 - float(x.sum()) / gap for x in (by_slop, np.minimum(top.loss, by_slop), with_cause))
+    slop_share, ceiling_share, cause_share = (1.0 - float(x.sum()) / gap for x in (by_slop, np.minimum(top.loss, by_slop), with_cause))
     parity_led = bool(named) and float((problem.data.c - problem.dynamic.c).sum()) > gap
     insufficient = remains / gap > STRUCTURED and remains > (1 - LEAST_OF_CEILING) * max(structure, 1e-12)
     if named and final and not parity_led and insufficient:
@@ -51,12 +51,12 @@ def judge(problem: Problem, selection: Selection, axes: dict[str, dict[str, obje
     real = remains / gap > STRUCTURED and _most_windows(with_cause if final else by_slop, rest.loss)
     left = _left(rest, remains / gap) if real else None
     if not named:
-        if not real and shares[0] < LEAST_OF_CEILING and _plain_to_see(selection, axes):
+        if not real and slop_share < LEAST_OF_CEILING and _plain_to_see(selection, axes):
             left = _formless(axes)
-        return Judgement("unknown" if left else "no_gap", (), None, {}, {}, *shares, left)
+        return Judgement("unknown" if left else "no_gap", (), None, {}, {}, slop_share, ceiling_share, cause_share, left)
     groups = {n.hypothesis.name: n.group for n in named}
     probability = {n.hypothesis.name: _probability(n) for n in named}
-    return Judgement("partly_explained" if real else "explained", named, final, groups, probability, *shares, left)
+    return Judgement("partly_explained" if real else "explained", named, final, groups, probability, slop_share, ceiling_share, cause_share, left)
 
 
 def _plain_to_see(selection: Selection, axes: dict[str, dict[str, object]]) -> bool:

@@ -29,7 +29,7 @@ def unsourced(vehicle: Vehicle) -> tuple[str, ...]:
 def uncontrolled_axes(vehicle: Vehicle) -> tuple[str, ...]:
     """Axes that no combination of thrusters can push alone (rank of the allocation, axis by axis)."""
     left = np.linalg.svd(allocation(vehicle), full_matrices=True)
-    rank = int((left.S > 1e-9 * left.S[0]).sum())
+    rank = int((1e-9 * left.S[0] < left.S).sum())
     reach = (left.U[:, :rank] ** 2).sum(axis=1)
     return tuple(axis for axis, part in zip(AXES, reach, strict=True) if part < 1 - 1e-6)
 
@@ -42,7 +42,8 @@ def _mass(vehicle: Vehicle) -> list[str]:
         problems.append(f"inertia tensor is not positive definite (smallest principal moment {moments[0]:.4g} kg m2, limit > 0)")
     elif moments[2] > (moments[0] + moments[1]) * (1 + 1e-9):
         problems.append(
-            f"inertia tensor breaks the triangle rule: principal moments {np.round(moments, 4).tolist()} kg m2, the largest may not exceed the sum of the others"
+            f"inertia tensor breaks the triangle rule: principal moments {np.round(moments, 4).tolist()} kg m2, "
+            "the largest may not exceed the sum of the others"
         )
     added = square(body.added_mass)
     if not np.allclose(added, added.T, rtol=1e-6, atol=1e-9):
