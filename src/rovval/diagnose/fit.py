@@ -200,7 +200,7 @@ def joint_errors(problem: Problem, fitted: Confirmed) -> Array:
     sandwich = (half**2).sum(axis=1) * (len(score) / max(2 * len(pairs), 1)) * len(pairs) / max(len(pairs) - k, 1)
     white = problem.inflation * np.einsum("ij,jk,ik->i", bread[:k], data.A.sum(axis=0), bread[:k])
     slop = bread[:k, k:] * precision[k:] * [problem.slop.sd[c] for c in data.columns[k:]]
-    spread = sandwich if len(pairs) > 2 * k else np.maximum(sandwich, white)
+    spread = sandwich if len(pairs) > k + 1 else np.maximum(sandwich, white)
     return np.asarray(np.sqrt(spread + (slop**2).sum(axis=1)))
 
 
