@@ -55,17 +55,18 @@ def compare(
             if row is not None:
                 table[axis] = row
     absent = tuple(a for a, n in zip(AXES, VELOCITIES, strict=True) if not run.measured(n))
-    if not free and not windowed:
+    pose = _pose(run, sim)
+    if not free and not windowed and not pose:
         if sim.stops and len(absent) < 6:
             raise SimulationStopped(f"run {run.id}: no row to compare: {sim.stops[0]}", "look at the run's first samples")
-        raise BadInput(f"run {run.id}: no velocity was both measured and simulated", f"not measured: {', '.join(absent)}")
+        raise BadInput(f"run {run.id}: neither a velocity nor a pose was both measured and simulated", f"not measured: {', '.join(absent)}")
     nu = None if other is None else _velocities(other, len(run), other_name)
     return Comparison(
         run=run,
         sim=sim,
         free=free,
         windowed=windowed,
-        pose=_pose(run, sim),
+        pose=pose,
         not_measured=absent,
         other={} if nu is None else _other(run, sim, nu),
         other_name=other_name or ("other" if nu is not None else ""),

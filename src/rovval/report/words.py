@@ -82,6 +82,8 @@ def sentences(comparison: Comparison) -> list[str]:
     table, where = comparison.windowed, f"over windows of {comparison.sim.window_s:g} s"
     if not table:
         table, where = comparison.free, "over the free run"
+    if not table:
+        return [_pose_only(comparison)]
     lines, turns = [a for a in table if a in LINEAR], [a for a in table if a not in LINEAR]
     worst = [max(group, key=lambda a: table[a].rmse) for group in (lines, turns) if group]
     gaps = " and, turning, in ".join(_gap(a, table[a]) for a in worst)
@@ -91,6 +93,15 @@ def sentences(comparison: Comparison) -> list[str]:
     if comparison.not_measured:
         said.append(f"Not measured in this log: {listed(comparison.not_measured)}.")
     return said
+
+
+def _pose_only(comparison: Comparison) -> str:
+    """For a log without velocities: the pose channels that it has."""
+    gaps = listed([f"{name} ({quantity(row.rmse, row.unit)} rms)" for name, row in comparison.pose.items()])
+    return (
+        f"No velocity was measured in this log. In windows of {comparison.sim.window_s:g} s, each started from the measured pose, "
+        f"the simulator differs from the vehicle in {gaps}."
+    )
 
 
 def _gap(axis: str, row: ChannelError) -> str:
