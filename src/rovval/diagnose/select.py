@@ -19,10 +19,11 @@ from rovval.diagnose.detect import Detection, detect
 from rovval.diagnose.library import PRIOR_WIDTH, Hypothesis
 from rovval.diagnose.problem import Problem, at, columns_of
 from rovval.diagnose.products import Products
-from rovval.diagnose.separate import Rival, group
+from rovval.diagnose.separate import Rival, coherence, group
 
 MOST = 3  # effects at once
-FINALISTS = 8  # hypotheses that are re-simulated in a round
+FINALISTS = 10  # hypotheses that are re-simulated in a round
+TWIN, MOST_TWINS = 0.85, 4  # coherence from which a hypothesis is re-simulated beside the best finalist whatever the screen said
 FALSE_ALARM = 0.05  # family-wise, over the whole library
 NEEDLESS = 6.0  # twice the log Bayes factor below which an effect is dropped again (Kass & Raftery 1995: positive evidence)
 HALF_REVERSED = 0.55  # 0.5 is a dead thruster; the margin is chosen
@@ -155,15 +156,22 @@ def _finalists(
 ) -> list[tuple[Hypothesis, Confirmed]]:
     """The best starting point of each of the best hypotheses, refitted by re-simulation jointly with what was chosen before."""
     ordered = sorted(names.values(), key=lambda item: -detection.evidence[item[0].label])
-    seen: set[str] = set()
-    fitted = []
-    for h, one, _ in ordered:
-        if h.name in seen or len(seen) >= FINALISTS or detection.evidence[h.label] <= 0:
-            continue
-        seen.add(h.name)
+    fitted: dict[str, tuple[Hypothesis, Confirmed]] = {}
+
+    def refit(h: Hypothesis, one: Fit) -> None:
         start = _start(problem, data, h, one, beta)
-        fitted.append((h, confirm(problem, start, tuple(dict.fromkeys((*chosen, *h.slots))))))
-    return fitted
+        fitted[h.name] = h, confirm(problem, start, tuple(dict.fromkeys((*chosen, *h.slots))))
+
+    for h, one, _ in ordered:
+        if h.name not in fitted and len(fitted) < FINALISTS and detection.evidence[h.label] > 0:
+            refit(h, one)
+    if fitted:
+        best = max(fitted.values(), key=lambda item: item[1].evidence)[0]
+        twins = [v for v in ordered if v[0].name not in fitted and coherence(data, best.columns, v[0].columns) > TWIN]
+        for h, one, _ in twins[:MOST_TWINS]:
+            if h.name not in fitted:
+                refit(h, one)
+    return list(fitted.values())
 
 
 def _weighed(fitted: list[tuple[Hypothesis, Confirmed]], ground: Confirmed, gap: float) -> list[Rival]:

@@ -14,7 +14,7 @@ from rovval.diagnose.products import Products
 
 RESAMPLES = 500
 GROUP_RESAMPLES = 200
-FORM = 0.25  # chosen on the tuning set: share of the evidence that may be owed to the form of an equation
+FORM = 0.35  # chosen on the tuning set: share of the evidence that may be owed to the form of an equation
 TEMPER = 4.0  # twice the log Bayes factor that counts as a nat of belief, beside the form's share (chosen on the tuning set)
 LEVEL = 0.05  # one-sided: a member of the group must be this plausible to be as good as the winner
 
