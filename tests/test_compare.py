@@ -120,9 +120,16 @@ def test_a_simulation_of_another_length_is_refused() -> None:
         compare(make_run(400), make_sim(make_run(300)))
 
 
-def test_a_run_without_velocities_is_refused() -> None:
+def test_a_run_without_velocities_is_compared_by_its_pose() -> None:
     run = make_run(200, absent=VELOCITIES)
-    with pytest.raises(BadInput, match="no velocity was both"):
+    comparison = compare(run, make_sim(run))
+    assert not comparison.free and not comparison.windowed and set(comparison.pose) >= {"z", "phi", "theta"}
+    assert len(comparison.not_measured) == 6
+
+
+def test_a_run_without_velocities_and_pose_is_refused() -> None:
+    run = make_run(200, absent=(*VELOCITIES, "z", "phi", "theta", "psi"))
+    with pytest.raises(BadInput, match="neither a velocity nor a pose"):
         compare(run, make_sim(run))
 
 
