@@ -19,7 +19,7 @@ from rovval.diagnose.detect import Detection, detect
 from rovval.diagnose.library import PRIOR_WIDTH, Hypothesis
 from rovval.diagnose.problem import Problem, at, columns_of
 from rovval.diagnose.products import Products
-from rovval.diagnose.separate import Rival, coherence, group
+from rovval.diagnose.separate import PER_PARAMETER, Rival, coherence, group
 
 MOST = 3  # effects at once
 FINALISTS = 10  # hypotheses that are re-simulated in a round
@@ -209,7 +209,11 @@ def _beyond_tolerance(problem: Problem, rival: Rival) -> bool:
 
 def simplest(rivals: list[Rival], members: tuple[tuple[str, float], ...]) -> Rival:
     """Of the rivals that the log does not tell apart, the one with the fewest parameters, if it closes nearly as much as the best does."""
-    tied = [r for r in rivals if r.hypothesis.name in dict(members) and r.gain >= NEARLY * rivals[0].gain]
+    most = len(rivals[0].hypothesis.slots)
+    tied = [
+        r for r in rivals
+        if r.hypothesis.name in dict(members) and r.gain >= (NEARLY - PER_PARAMETER * max(most - len(r.hypothesis.slots), 0)) * rivals[0].gain
+    ]  # fmt: skip
     return min(tied, key=lambda r: (len(r.hypothesis.slots), -r.evidence))
 
 

@@ -15,6 +15,7 @@ from rovval.diagnose.products import Products
 RESAMPLES = 500
 GROUP_RESAMPLES = 200
 FORM = 0.35  # chosen on the tuning set: share of the evidence that may be owed to the form of an equation
+PER_PARAMETER = 0.05  # chosen: what each parameter that the best has more may add to it
 TEMPER = 4.0  # twice the log Bayes factor that counts as a nat of belief, beside the form's share (chosen on the tuning set)
 LEVEL = 0.05  # one-sided: a member of the group must be this plausible to be as good as the winner
 
@@ -39,13 +40,24 @@ def group(problem: Problem, rivals: list[Rival], seed: int, block: int = 2) -> t
     best = rivals[0]
     draws = _blocks(problem.blocks, block, np.random.default_rng(seed))[:GROUP_RESAMPLES]
     counts = np.stack([np.bincount(draw, minlength=problem.blocks) for draw in draws]).astype(float)
-    near = [r for r in rivals if r.evidence > (1 - 2 * FORM) * best.evidence]
+    near = [r for r in rivals if r.evidence > (1 - 2 * FORM) * best.evidence or _near(r, best)]
     total = {r.hypothesis.name: evidence_of(problem, r.fitted.point, len(r.fitted.slots), counts) for r in near}
     lead = total[best.hypothesis.name]
-    kept = [r for r in near if r is best or r.evidence > (1 - FORM) * best.evidence or float((total[r.hypothesis.name] >= lead).mean()) > LEVEL]
-    weight = np.exp([(r.evidence - best.evidence) / (TEMPER + 0.5 * FORM * best.evidence) for r in rivals])
+    kept = [r for r in near if r is best or _near(r, best) or float((total[r.hypothesis.name] >= lead).mean()) > LEVEL]
+    short = [best.evidence * (1 - PER_PARAMETER * _saved(r, best)) - r.evidence for r in rivals]
+    weight = np.exp(-np.maximum(short, 0.0) / (TEMPER + 0.5 * FORM * best.evidence))
     probability = {r.hypothesis.name: float(w) for r, w in zip(rivals, weight / weight.sum(), strict=True)}
     return tuple((r.hypothesis.name, probability[r.hypothesis.name]) for r in kept)
+
+
+def _near(rival: Rival, best: Rival) -> bool:
+    """Whether a rival's shortfall in evidence may be owed to the form of its equation, the more so the fewer parameters it has."""
+    return rival.evidence > (1 - FORM - PER_PARAMETER * _saved(rival, best)) * best.evidence
+
+
+def _saved(rival: Rival, best: Rival) -> int:
+    """How many parameters fewer a rival has than the best."""
+    return max(len(best.hypothesis.slots) - len(rival.hypothesis.slots), 0)
 
 
 def coherence(data: Products, a: tuple[int, ...], b: tuple[int, ...]) -> float:
