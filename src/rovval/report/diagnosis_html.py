@@ -89,7 +89,7 @@ def _axes(d: dw.Document) -> str:
         floors = "–" if floor is None else quantity(floor, unit)
         iae = "–" if row.get("iae") is None else quantity(row["iae"], unit.removesuffix("/s"))
         rows.append([escape(axis), quantity(row["rms"], unit), floors, iae, parts.axis_bar(row.get("share"))])
-    return page.table(["axis", "gap, rms", "noise and slop", "IAE", "share of the gap"], rows, left=(0, 4)) if rows else ""
+    return page.table(["axis", "gap, rms", "sensor noise", "IAE", "share of the gap"], rows, left=(0, 4)) if rows else ""
 
 
 def _cause(cause: dw.Document) -> str:
