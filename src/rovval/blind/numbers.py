@@ -1,6 +1,8 @@
 """The true value of a library parameter, where the plant's number maps onto it; everything else is not scored.
 
-Where the plant's form differs from the library's, a row stands only if one number means the same in both (a total delay, a mean).
+Where the plant's form differs from the library's, a row stands only if one number means the same in both (a total delay, a mean); a slow
+test fits each on a vehicle without slop. Left out for failing it: ``thrust_lag`` (three stages: 0.73 s in all fits best as one of
+0.47 s) and ``thruster_reversed`` (the plant turns the thrust round, the library the shaft: not the same where k_pos and k_neg differ).
 """
 
 from __future__ import annotations
@@ -9,6 +11,7 @@ from collections.abc import Callable, Mapping
 from math import cos, radians, sin
 from typing import Any
 
+from rovval import effects
 from rovval.blind.spec import AXES
 from rovval.effects._lanes import reference_added_mass, reference_drag
 from rovval.vehicle.model import Vehicle
@@ -42,10 +45,8 @@ TABLE: Mapping[str, Callable[[Values, str, Vehicle], dict[str, float]]] = {
     "payload_change": lambda v, t, _: {"mass": v["mass"], "weight": v["wet_weight"]},
     "thruster_degraded": lambda v, t, _: {"loss": v["loss"]},
     "thruster_fault_onset": lambda v, t, _: {"loss": v["loss"]},
-    "thruster_reversed": lambda v, t, _: {"fraction": v["loss"] / 2.0},
     "reverse_asymmetry": lambda v, t, _: {"scale": -v["loss"]},
     "rpm_scale": lambda v, t, _: {"scale": 1.0 / (1.0 + v["relative"]) - 1.0},
-    "thrust_lag": lambda v, t, _: {"tau": v["lag_s"]},  # three stages against one: the same mean delay
     "velocity_filter_lag": lambda v, t, _: {"tau": v["delay_s"]},  # two poles against one: the same mean delay
     "time_offset": lambda v, t, _: {"tau": -v["delay_s"]} if t == "thruster_feedback" else {},
     "dvl_scale": lambda v, t, _: {"scale": v["relative"]},
@@ -59,6 +60,10 @@ TABLE: Mapping[str, Callable[[Values, str, Vehicle], dict[str, float]]] = {
 
 
 def true_values(effect: Mapping[str, Any], vehicle: Vehicle) -> dict[str, float]:
-    """Library parameter -> true value, for the rows of the table."""
+    """Library parameter -> true value, for the rows of the table; a value that the library's bounds shut out is not scored."""
     row = TABLE.get(effect["name"])
-    return {k: float(x) for k, x in row(effect["values"], str(effect["target"]), vehicle).items()} if row else {}
+    if row is None:
+        return {}
+    bounds = {p.name: (p.low, p.high) for p in effects.load(effect["name"]).parameters if not p.sized}
+    found = {k: float(x) for k, x in row(effect["values"], str(effect["target"]), vehicle).items()}
+    return {k: x for k, x in found.items() if bounds.get(k, (x, x))[0] <= x <= bounds.get(k, (x, x))[1]}
