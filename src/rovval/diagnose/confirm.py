@@ -99,9 +99,11 @@ def _onset_tuned(problem: Problem, point: Point, slots: tuple[int, ...]) -> Poin
 
 def _scored(problem: Problem, point: Point, slots: tuple[int, ...]) -> Confirmed:
     own = np.arange(len(slots))
+    fixed = np.array([problem.plant.slots[s].parameter.name == "onset" for s in slots], dtype=bool)  # no fold extrapolates an onset
     loss, dynamic_loss = np.empty(problem.blocks), np.empty(problem.blocks)
     for fold in problem.folds:
         step = _step(point, fold.train)
+        step[own] = np.where(fixed, 0.0, step[own])
         loss[fold.test] = losses(point.data, own, step[own], fold.test)
         dynamic_loss[fold.test] = losses(point.dynamic, own, step[own], fold.test)
     bounds = [(problem.plant.slots[s].parameter.low, problem.plant.slots[s].parameter.high) for s in slots]
