@@ -14,7 +14,6 @@ from rovval.plant import Plant, parse_settings
 from rovval.vehicle.model import Vehicle
 
 WINDOW_S = 10.0  # about three to five time constants of surge of an observation-class ROV
-LONGEST_STEP_S = 0.1  # chosen: RK4 at the log's rate; the plant takes substeps below it
 
 
 def simulate(

@@ -17,7 +17,7 @@ from rovval.diagnose.contest import Prior, Ring, fit, heldout
 from rovval.diagnose.linearise import Linear, linearise, simulate_windows, state_spread
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import Products, joined, products
-from rovval.diagnose.stretches import Stretches, difference
+from rovval.diagnose.stretches import Stretches, difference, predicted
 from rovval.vehicle.model import allocation
 
 SHARES = (0.01, 0.1, 1.0)  # prior sizes tried for a generic force, as a share of the thrusters' own rms on that axis
@@ -107,8 +107,6 @@ def _forced(part: Stretches, beta: Array, forces: Sequence[tuple[str, Array]]) -
             forced.driven.inputs, np.tile(part.start, len(chosen)), part.steps, np.tile(part.nu0, (len(chosen), 1)),
             np.tile(part.eta0, (len(chosen), 1)), np.tile(beta, (lanes, 1)), np.repeat(chosen, m), np.full(lanes, step),
         )
-        from rovval.diagnose.stretches import predicted
-
         out = predicted(part, motion.nu, motion.eta).reshape(len(chosen), *base.shape)
         S[..., chosen] = np.moveaxis(difference(part, out, base[None]) / step, 0, -1)
     return S
