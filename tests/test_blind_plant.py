@@ -218,6 +218,19 @@ def test_an_onset_leaves_what_was_before_it_alone(merlin: Path, healthy: Flight)
     assert not np.array_equal(late.true["u"], healthy.true["u"])
 
 
+def test_a_reversed_thruster_turns_the_other_way(merlin: Path) -> None:
+    """Not minus its thrust: its gains ahead and astern differ."""
+    hull = read_hull(merlin)
+    reversed_ = build(Planted("thruster_reversed", "HFP"), hull, scales(hull), draw_setting(hull, scales(hull), 1, 60.0))
+    body = Plant(nominal(hull), [reversed_], scales(hull), Given(np.zeros(7)), 1e6)
+    at = hull.thrusters.index("HFP")
+    y = np.zeros(body.size)
+    y[3], y[BASE + at] = 1.0, 50.0
+    assert body.see(0.0, y).thrust[at] == pytest.approx(-hull.k_neg[at] * 50.0**2)
+    y[BASE + at] = -50.0
+    assert body.see(0.0, y).thrust[at] == pytest.approx(hull.k_pos[at] * 50.0**2)
+
+
 def test_wrong_names_targets_and_severities_are_refused(merlin: Path) -> None:
     for item in (Planted("gremlin"), Planted("thruster_degraded", "T9"), Planted("tether_drag", severity=-1.0)):
         with pytest.raises(ValueError, match=r"gremlin|T9|tether_drag"):

@@ -213,3 +213,14 @@ def test_the_kernel_gives_an_attitude_back(phi, theta, psi):
     """Euler angles in, quaternion inside, the kernel's own arc tangents out."""
     out = cases.run(Plant(cases.merlin()), seconds=0.1, eta=[0, 0, 0, phi, theta, psi])
     assert np.abs(wrap(out.eta[0, 0, 3:] - [phi, theta, psi])).max() < 1e-9
+
+
+def test_a_reversed_thruster_is_one_whose_shaft_turns_the_other_way():
+    """T(-n), with the gain of that direction."""
+    plant = Plant(cases.merlin())
+    speed = np.linspace(-1.0, 1.0, 7)
+    at = plant.vehicle.thrusters.index("HFS")
+    beta = plant.null.copy()
+    beta[plant.index["thruster_reversed[HFS].fraction"]] = 1.0
+    turned = np.where(np.arange(7) == at, -speed, speed)
+    assert np.allclose(cases.run(plant, speed, beta=beta).nu, cases.run(plant, turned).nu, rtol=0, atol=1e-12)

@@ -12,8 +12,8 @@ EFFECT = Effect(
     name="thruster_reversed",
     title="Thruster reversed",
     place="input",
-    equation="T_i(n) <- (1 - fraction) T_i(n) + fraction T_i(-n): 1 is a reversed thruster, and nothing between 0 and 1 is physical "
-    "(diagnosis.md A10).",
+    equation="T_i(n) <- (1 - fraction) T_i(n) + fraction T_i(-n) at rest in the water: 1 is a shaft that turns the other way (not -T_i: the gains "
+    "differ), and nothing between 0 and 1 is physical (diagnosis.md A10).",
     parameters=(Parameter("fraction", "1", 0.0, 1.0, 0.0, 1.0, "discrete: 0 or 1"),),
     per="thruster",
     signature="twice that thruster's wrench, the wrong way",

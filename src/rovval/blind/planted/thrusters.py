@@ -46,14 +46,26 @@ class FaultOnset(_OneUnit):
     unit = "0.8 of the unit's thrust lost from the onset on"
 
 
-class Reversed(_OneUnit):
-    """One unit pushes the other way than its logged speed says (phase swap with the sign of the feedback uncorrected)."""
+class Reversed(Effect):
+    """One shaft turns the other way than its log says (phase swap with the sign of the feedback uncorrected): thrust T(-n), not -T(n)."""
 
     name = "thruster_reversed"
     form = "equal"
-    share = 2.0
-    most = 2.0
-    unit = "fully reversed; 0.5 is dead"
+    place = "input"
+    targets = ("thruster",)
+    unit = "fully reversed; 0.5 stands still"
+
+    def setup(self, plan: Planting) -> None:
+        """True over logged speed at full level."""
+        self.turn = 1.0 - 2.0 * min(1.0, self.s)
+        self.at = self.unit_index
+        self.values = {"turn": self.turn}
+
+    def speed(self, n: Array, k: Kin) -> Array:
+        """Turn one shaft round."""
+        out = n.copy()
+        out[self.at] *= 1.0 + self.level(k.t) * (self.turn - 1.0)
+        return out
 
 
 class Deadband(Effect):
