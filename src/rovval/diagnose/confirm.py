@@ -12,7 +12,7 @@ import numpy as np
 from scipy import stats
 
 from rovval.data import Array
-from rovval.diagnose.contest import heldout, losses
+from rovval.diagnose.contest import Fold, heldout, losses
 from rovval.diagnose.library import PRIOR_WIDTH
 from rovval.diagnose.problem import Problem, beside_slop
 from rovval.diagnose.products import Products
@@ -190,3 +190,8 @@ def _clipped(problem: Problem, beta: Array, slots: tuple[int, ...], step: Array)
     return trial
 
 
+def held_steps(problem: Problem, fitted: Confirmed) -> list[tuple[Fold, Array]]:
+    """Each fold with the step (k,) of the fitted slots that its training windows give, as its held-out losses are scored with."""
+    slots = [problem.plant.slots[s].parameter.name for s in fitted.slots]
+    moves = np.array([name != "onset" for name in slots])  # no fold extrapolates an onset
+    return [(fold, np.where(moves, _step(fitted.point, fold.train)[: len(slots)], 0.0)) for fold in problem.folds]

@@ -33,7 +33,7 @@ def heat_map(part: Stretches, error: Array, seed: int) -> dict[str, Any]:
     return {"axes": axes, "regimes": regimes, "share": share.round(4).tolist(), "lift": lift.round(3).tolist()}
 
 
-def traces(problem: Problem, final: Confirmed | None, before: list[Array], after: list[Array]) -> list[dict[str, Any]]:
+def traces(problem: Problem, final: Confirmed | None, before: list[Array]) -> list[dict[str, Any]]:
     """Measured, nominal and corrected curves of the windows with the largest gap, at most one an axis."""
     found = []
     beta = problem.origin if final is None else final.beta
