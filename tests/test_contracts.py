@@ -127,8 +127,8 @@ def test_effect_is_documented(name):
 def test_effect_at_its_null_value_changes_nothing_to_the_last_bit(name, stretch, nominal):
     effect = effects.load(name)
     target = {"axis": f"[{(effect.axes or ('surge',))[0]}]", "thruster": "[HFP]", "": ""}[effect.per]
-    setting = f"{name}{target}:" + ",".join(f"{p.name}={p.null!r}" for p in effect.parameters)
-    same = simulate(stretch, vehicle.load("merlin"), effects=(setting,))
+    settings = tuple(f"{name}{f'[{p.target}]' if p.target else target}:{p.name}={p.null!r}" for p in effect.parameters)
+    same = simulate(stretch, vehicle.load("merlin"), effects=settings)
     assert np.array_equal(same.free.nu, nominal.free.nu, equal_nan=True)
     assert np.array_equal(same.windowed.eta, nominal.windowed.eta, equal_nan=True)
 

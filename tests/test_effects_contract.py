@@ -72,13 +72,14 @@ def test_a_sensor_s_log_starts_where_it_was_measured(name):
 
 
 def test_a_window_reproduces_the_log_that_its_own_effects_made():
-    """Shooting from a logged state with the true effects gives the log back (velocity filter: to second order in its lag)."""
+    """Shooting from a logged state with the true effects gives the log back (velocity filter and delay: to second order in their time)."""
     plant = Plant(cases.merlin())
     rng = np.random.default_rng(1)
     inputs = cases.random_inputs(rng, plant)
     for key, value, tolerance in (
         ("dvl_misalignment.yaw", 0.2, 1e-9), ("dvl_lever_arm.x", 0.5, 1e-9), ("compass_deviation.sine", 0.2, 1e-9), ("attitude_bias.phi", 0.05, 1e-9),
         ("time_offset.tau", 0.25, 1e-9), ("thrust_lag.tau", 0.3, 1e-9), ("gyro_bias.r", 0.02, 1e-9), ("velocity_filter_lag.tau", 0.3, 0.05),
+        ("time_offset[velocity].delay", 0.3, 0.05),
     ):  # fmt: skip
         beta = plant.null.copy()
         beta[plant.index[key]] = value
@@ -86,6 +87,25 @@ def test_a_window_reproduces_the_log_that_its_own_effects_made():
         log = plant.simulate(inputs, np.zeros(1, int), 150, zero, zero, beta[None])
         window = plant.simulate(inputs, np.array([80]), 60, log.nu[:, 80], log.eta[:, 80], beta[None])
         assert np.abs(window.nu - log.nu[:, 80:141]).max() < tolerance, key
+
+
+def test_a_delay_of_the_velocities_leaves_all_else_and_is_a_hypothesis_of_its_own():
+    """From a steady start (no acceleration to begin with) the log is the true motion, u v w that much later; early ones too."""
+    plant = Plant(cases.merlin())
+    assert len(plant.hypotheses["time_offset"]) == len(plant.hypotheses["time_offset[velocity]"]) == 1
+    still = cases.changed(plant.vehicle, volume=plant.vehicle.body.mass / plant.vehicle.water.density)
+    plant = Plant(still)
+    speed = np.where(np.arange(100)[:, None] < 20, 0.0, np.linspace(-3.0, 3.0, 7))
+    inputs, first, zero = Inputs(0.1, speed, False), np.zeros(1, int), np.zeros((1, 6))
+    true = plant.simulate(inputs, first, 90, zero, zero, plant.null[None])
+    for delay in (0.25, -0.25):
+        beta = plant.null.copy()
+        beta[plant.index["time_offset[velocity].delay"]] = delay
+        seen = plant.simulate(inputs, first, 90, zero, zero, beta[None])
+        late = np.arange(5, 85) - delay / 0.1
+        for i in range(3):
+            assert np.allclose(seen.nu[0, 5:85, i], np.interp(late, np.arange(91), true.nu[0, :, i]), rtol=0, atol=1e-12)
+        assert np.allclose(seen.nu[..., 3:], true.nu[..., 3:], rtol=0, atol=1e-12) and np.allclose(seen.eta, true.eta, rtol=0, atol=1e-12)
 
 
 def test_sized_parameters_grow_with_the_vehicle():

@@ -38,7 +38,8 @@ Kind = Literal["", "weight", "drag", "speed"]
 class Parameter:
     """One number of an effect. ``typical`` is the 1-sigma prior size of its departure from ``null``; ``low`` and ``high`` are
     refused beyond, never clipped. ``sized`` says that low, high and typical are for a BlueROV2 and grow with the vehicle's
-    weight, surge drag or thruster speed (`plant.slots`)."""
+    weight, surge drag or thruster speed (`plant.slots`). ``target`` sets a parameter of an effect that is neither per axis nor per
+    thruster apart, as a hypothesis of its own: ``time_offset[velocity]``."""
 
     name: str
     unit: str
@@ -48,6 +49,7 @@ class Parameter:
     typical: float
     source: str
     sized: Kind = ""
+    target: str = ""
 
     def __post_init__(self) -> None:
         if not self.low <= self.null <= self.high or not self.low < self.high or not self.typical > 0:

@@ -15,9 +15,10 @@ from rovval.vehicle.model import Vehicle
 
 Array = NDArray[np.float64]
 
-# In the order in which they act on the true motion: where the sensor sits, how it is turned, its scale, then bias and filter.
+# In the order in which they act on the true motion: where the sensor sits, how it is turned, its scale, then bias, filter and delay.
 ORDER = (
     "dvl_lever_arm", "dvl_misalignment", "dvl_scale", "gyro_bias", "attitude_bias", "compass_deviation", "velocity_filter_lag",
+    "time_offset",
 )
 
 
@@ -65,7 +66,7 @@ def settling(active: frozenset[str]) -> bool:
 
 
 def settle(vehicle: Vehicle, index: Mapping[str, int], null: Array, beta: Array, nu0: Array, acceleration: Array) -> Array:
-    """First true velocities behind a filter that has run for long: u v w plus its time constant times the acceleration (B, 6)."""
+    """First true velocities behind a filter that has run for long, or a delay: u v w plus its time times the acceleration (B, 6)."""
     nu = nu0
     for name, lanes in _acting(order(), index, null, beta):
         if tau := getattr(effects.module(name), "SETTLES", ""):

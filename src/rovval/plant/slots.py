@@ -59,14 +59,18 @@ def slots(vehicle: Vehicle, model: str) -> tuple[Slot, ...]:
     for name in effects.names():
         effect = effects.load(name)
         for target in targets(effect, vehicle):
-            hypothesis = f"{name}[{target}]" if target else name
             for parameter in effect.parameters:
+                hypothesis = _hypothesis(name, target or parameter.target)
                 f = factor[parameter.sized]
                 sized = replace(parameter, low=parameter.low * f, high=parameter.high * f, null=parameter.null * f, typical=parameter.typical * f)
                 if model == "freefloating" and name in ("added_mass", "linear_drag"):
                     sized = replace(sized, low=0.0)  # the model has none: there is nothing to take away
-                found.append(Slot(f"{hypothesis}.{parameter.name}", hypothesis, name, target, sized))
+                found.append(Slot(f"{hypothesis}.{parameter.name}", hypothesis, name, target or parameter.target, sized))
     return tuple(found)
+
+
+def _hypothesis(name: str, target: str) -> str:
+    return f"{name}[{target}]" if target else name
 
 
 def gather(vehicle: Vehicle, index: Mapping[str, int], name: str, beta: Array) -> dict[str, Array]:
@@ -75,7 +79,7 @@ def gather(vehicle: Vehicle, index: Mapping[str, int], name: str, beta: Array) -
     values: dict[str, Array] = {}
     for parameter in effect.parameters:
         if effect.per == "":
-            values[parameter.name] = beta[:, index[f"{name}.{parameter.name}"]]
+            values[parameter.name] = beta[:, index[f"{_hypothesis(name, parameter.target)}.{parameter.name}"]]
         elif effect.per == "thruster":
             values[parameter.name] = beta[:, [index[f"{name}[{t}].{parameter.name}"] for t in vehicle.thrusters]]
         else:
