@@ -78,6 +78,21 @@ def test_several_runs_several_causes_an_onset_and_holes_in_a_trace() -> None:
     assert "dive-1, dive-2" in page and "thruster_fault_onset[HFP] from 412 s on" in plain and "begins at 412 s" in text
 
 
+def test_what_a_log_cannot_show_is_one_row_a_family_and_reason() -> None:
+    silent = "not excited: a typical size would show with {} standard errors, 3 are needed"
+    rows = [("linear_drag[roll]", "1.8"), ("linear_drag[yaw]", "2.75"), ("linear_drag[surge]", "0.4"), ("waves", "2.0")]
+    d = make_diagnosis() | {"not_testable": [{"effect": e, "why": silent.format(s)} for e, s in rows]}
+    d["not_testable"] += [{"effect": "linear_drag[heave]", "why": "needs w"}, {"effect": "wall_suction", "why": "needs wall_distance"}]
+    assert diagnosis_words.not_testable(d) == [
+        ("linear_drag[roll], [yaw], [surge]", silent.format("0.4 to 2.75")),
+        ("waves", silent.format("2.0")),
+        ("linear_drag[heave]", "needs w"),
+        ("wall_suction", "needs wall_distance"),
+    ]
+    for text in formats(d):
+        assert "linear_drag[roll], [yaw], [surge]" in text
+
+
 def test_brackets_join_only_the_members_of_a_group() -> None:
     d = make_diagnosis()
     d["causes"][0]["group"] = ["inflow_loss", "tether_drag"]

@@ -151,7 +151,7 @@ def _harm(d: dw.Document) -> list[str]:
 
 
 def _not_testable(d: dw.Document) -> str:
-    rows = [[f"<code>{escape(str(n['effect']))}</code>", escape(str(n.get("why", "")))] for n in d.get("not_testable") or ()]
+    rows = [[f"<code>{escape(names)}</code>", escape(why)] for names, why in dw.not_testable(d)]
     return page.table(["effect", "why"], rows, left=(0, 1), css="plain") if rows else ""
 
 

@@ -25,7 +25,7 @@ def text(document: dw.Document) -> str:
     parts += _under("## What gets worse", bullets(harm))
     flight = d.get("manoeuvre") or {}
     parts += _under("## What to fly next", dw.next_flight(d), flight.get("text", ""), _schedule(flight))
-    why = [f"`{n['effect']}`: {n.get('why', '')}" for n in d.get("not_testable") or ()]
+    why = [f"`{names}`: {why}" for names, why in dw.not_testable(d)]
     parts += _under("## Not testable in this log", bullets(why))
     return "\n\n".join(p for p in [*parts, f"*{dw.SCOPE}*"] if p) + "\n"
 

@@ -23,7 +23,7 @@ def text(document: dw.Document) -> str:
     parts += _block("harm", [f"{h.get('axis')}: {per_cent(h.get('change'))}" for h in d.get("harm") or ()])
     ranking = d.get("ranking") or ()
     parts += _block("ranking", [f"{number(r.get('score')):>7}  {r['effect']}" for r in ranking[:8]])
-    parts += _block("not testable in this log", [f"{n['effect']}: {n.get('why', '')}" for n in d.get("not_testable") or ()])
+    parts += _block("not testable in this log", [f"{names}: {why}" for names, why in dw.not_testable(d)])
     return "\n".join([*parts, "", dw.SCOPE]) + "\n"
 
 

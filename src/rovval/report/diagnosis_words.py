@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -14,6 +15,7 @@ VERDICTS = {
     "partly_explained": "partly explained",
     "unknown": "unknown effect",
 }
+_NUMBER = re.compile(r"\d+(?:\.\d+)?")
 SCOPE = "Every number is about this simulator, this log and this library of effects."
 
 
@@ -83,6 +85,18 @@ def where(document: Document, most: int = 5) -> list[str]:
     return [_slice(s) for s in slices[:most]]
 
 
+def not_testable(document: Document) -> list[tuple[str, str]]:
+    """What this log cannot show, and why: a family that is silent for the same reason is one row, its numbers a range.
+
+    ``linear_drag[roll], [yaw]`` beside ``would show with 1.8 to 2.8 standard errors``.
+    """
+    rows: dict[tuple[str, str], list[tuple[str, str]]] = {}
+    for n in document.get("not_testable") or ():
+        name, why = str(n["effect"]), str(n.get("why", ""))
+        rows.setdefault((name.partition("[")[0], _NUMBER.sub("#", why)), []).append((name, why))
+    return [(_family([n for n, _ in group]), _ranges([w for _, w in group])) for group in rows.values()]
+
+
 def run(document: Document) -> str:
     """The run or the runs that it is about."""
     about = document.get("run", "")
@@ -99,6 +113,18 @@ def facts(document: Document) -> dict[str, Any]:
         "windows": "" if window is None else f"{window:g} s",
         "calibration slop": "" if slop is None else per_cent(slop),
     }
+
+
+def _family(members: Sequence[str]) -> str:
+    """The first name whole, of the others only the axis or thruster."""
+    return ", ".join([members[0], *(f"[{name.partition('[')[2]}" for name in members[1:])])
+
+
+def _ranges(reasons: Sequence[str]) -> str:
+    """Reasons that differ only in their numbers as one, with the lowest and the highest where they differ."""
+    columns = [sorted(set(column), key=float) for column in zip(*(_NUMBER.findall(why) for why in reasons), strict=True)]
+    spans = iter([values[0] if len(values) == 1 else f"{values[0]} to {values[-1]}" for values in columns])
+    return _NUMBER.sub(lambda _: next(spans), reasons[0])
 
 
 def _slice(s: Mapping[str, Any], with_lift: bool = True) -> str:
