@@ -10,9 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import plant_cases as cases
+from rovval import vehicle as vehicles
 from rovval.effects._lanes import reference_speed
 from rovval.frames import euler_from_quaternion, quaternion_from_euler, rotation_from_euler, rotation_from_quaternion, wrap
-from rovval.plant import Inputs, Plant, parse_settings
+from rovval.plant import Inputs, Plant, geometry, parse_settings
 from rovval.vehicle.model import rigid_body_mass, square
 
 ZERO6 = (0.0,) * 6
@@ -224,3 +225,34 @@ def test_a_reversed_thruster_is_one_whose_shaft_turns_the_other_way():
     beta[plant.index["thruster_reversed[HFS].fraction"]] = 1.0
     turned = np.where(np.arange(7) == at, -speed, speed)
     assert np.allclose(cases.run(plant, speed, beta=beta).nu, cases.run(plant, turned).nu, rtol=0, atol=1e-12)
+
+
+def test_a_thruster_loses_its_share_only_while_its_neighbour_runs():
+    """Law of the tandem pair: nothing alone, half of the share at half the neighbour's speed, never more than the share."""
+    plant = Plant(cases.merlin())
+    names = plant.vehicle.thrusters
+    at, other = names.index("HFP"), names.index("VFP")
+    beta, weaker = plant.null.copy(), plant.null.copy()
+    beta[plant.index["thruster_interaction[HFP].loss"]] = 0.4
+    for neighbour, lost in ((0.0, 0.0), (-0.5, 0.2), (1.0, 0.4), (3.0, 0.4)):
+        speed = np.zeros(7)
+        speed[at], speed[other] = 1.0, neighbour
+        weaker[plant.index["thruster_degraded[HFP].loss"]] = lost
+        assert np.allclose(cases.run(plant, speed, beta=beta).nu, cases.run(plant, speed, beta=weaker).nu, rtol=0, atol=1e-12), neighbour
+
+
+@pytest.mark.parametrize(
+    ("name", "pairs"),
+    [
+        ("merlin", {"VFP": {"HFP"}, "VFS": {"HFS"}, "VAC": {"HAP", "HAS"}, "HFP": {"VFP"}, "HAP": {"VAC"}}),  # no free jet meets a thruster
+        ("minerva", {"VP": {"LAT", "HS"}, "HP": {"LAT"}, "LAT": {"VP", "VS"}}),
+        ("bluerov2_heavy", {"T5": {"T1", "T3"}, "T1": {"T5"}}),
+    ],
+)
+def test_every_thruster_stands_in_the_jet_that_reaches_it_or_beside_its_nearest(name, pairs):
+    vehicle_ = vehicles.load(name)
+    jets = geometry.jets(vehicle_)
+    for downstream, upstream in pairs.items():
+        rows = np.flatnonzero(jets.pairs[:, 1] == vehicle_.thrusters.index(downstream))
+        assert {vehicle_.thrusters[j] for j in jets.pairs[rows, 0]} == upstream
+    assert set(jets.pairs[:, 1]) == set(range(len(vehicle_.thruster)))

@@ -20,8 +20,8 @@ class Lanes:
 
     ``inertia`` (B, 3, 3) about the origin; ``added_mass``, ``linear_drag``, ``quadratic_drag`` (B, 6, 6), positive; ``direction``
     (B, k, 3); ``torque_arm`` (B,) m of propeller torque per newton of thrust; ``k_pos``, ``k_neg`` (B, k) N s2; ``lag`` (B,) s;
-    ``shift`` (B,) s and ``drift`` (B,) s/s by which thrusters are stamped early; ``wake`` (B,) share of thrust lost in another
-    thruster's jet; ``side`` (B,) side force per newton of thrust; payload: mass kg, place m, onset s since the run's start.
+    ``shift`` (B,) s and ``drift`` (B,) s/s by which thrusters are stamped early; ``wake`` (B, k) share of thrust lost in
+    another thruster's jet; ``side`` (B,) side force per newton of thrust; payload: mass kg, place m, onset s since the run's start.
     """
 
     vehicle: Vehicle
@@ -86,7 +86,7 @@ def nominal(vehicle: Vehicle, model: str, size: int) -> Lanes:
         lag=zero,
         shift=zero,
         drift=zero,
-        wake=zero,
+        wake=each(np.zeros(len(vehicle.thruster))),
         side=zero,
         payload_mass=zero,
         payload_position=each(np.zeros(3)),

@@ -106,7 +106,7 @@ def layout(spec: Spec) -> Layout:
         "quadratic": matrix,
         "lag": 4,  # tau, what is left of the past at the start, middle and end of a step
         "shift": 2,  # samples, samples per s
-        "jet": 2,  # wake, side
+        "jet": spec.thrusters + 1,  # wake of each thruster, side
     }
     thruster, stride = {}, 8  # k_pos, k_neg, direction, moment
     for effect in dict.fromkeys(h.effect for h in hooks(spec.full)):

@@ -13,39 +13,50 @@ Array = NDArray[np.float64]
 
 JET_SPREAD = 0.1  # tan of the half-angle of a jet's core (Brix, Manoeuvring Technical Manual 1993: 10 % of the way travelled)
 TANDEM = 0.75  # loss of a thruster in line behind another: 1 - t = 0.75^((x/D)^(2/3)), ABS DP guide; t is the share left
-PAIRS = 8  # strongest pairs kept
+REACHED = 0.01  # of thrust: a jet that takes less passes by (chosen)
+FAINT = 0.05  # of the strongest jet's share: left out (chosen)
+NEAREST = 1.01  # times the distance of the nearest neighbour: as near (chosen)
 SMALLEST_DIAMETER = 0.05  # share of the hull's longest side taken for a propeller whose diameter the vehicle file does not give
 
 
 @dataclass(frozen=True, slots=True)
 class Jets:
-    """Pairs (upstream, downstream) (m, 2) and the share of effect with the upstream thruster turning ahead and astern (m, 2),
-    the strongest being 1."""
+    """Pairs (upstream, downstream) (m, 2) and the share of effect with the upstream thruster turning ahead and astern (m, 2), the
+    strongest on each thruster being 1."""
 
     pairs: NDArray[np.int64]
     weights: Array
 
 
 def jets(vehicle: Vehicle) -> Jets:
-    """Pairs of thrusters of which one stands in the other's jet. A jet leaves against the thrust, spreads, and weakens as the
-    tandem rule says; beyond the core it falls off as a Gaussian. Scaled so that the strongest pair has 1."""
+    """Whose jet every thruster stands in. A jet leaves against the thrust, spreads, and weakens as the tandem rule says; beyond the
+    core it falls off as a Gaussian. Where no free jet reaches a thruster, its nearest neighbour is taken whichever way it turns
+    (jets bend along the hull, and the tandem rule knows distance alone); of several as near, each has its part."""
     position = np.array([t.position for t in vehicle.thruster])
-    direction = allocation(vehicle)[:3].T
-    size = max(vehicle.body.size)
-    found: list[tuple[int, int, float, float]] = []
-    for j, (place, way) in enumerate(zip(position, direction, strict=True)):
-        diameter = vehicle.thruster[j].diameter or SMALLEST_DIAMETER * size
-        for i in range(len(position)):
-            if i != j:
-                share = [_share(position[i] - place, -sign * way, diameter) for sign in (1.0, -1.0)]
-                found.append((j, i, share[0], share[1]))
-    found.sort(key=lambda f: -max(f[2], f[3]))
-    kept = [f for f in found[:PAIRS] if max(f[2], f[3]) > 0]
-    strongest = max((max(f[2], f[3]) for f in kept), default=1.0)
-    return Jets(
-        np.array([f[:2] for f in kept], dtype=np.int64).reshape(-1, 2),
-        np.array([f[2:] for f in kept], dtype=float).reshape(-1, 2) / strongest,
-    )
+    pairs: list[tuple[int, int]] = []
+    weights: list[Array] = []
+    for i, place in enumerate(position):
+        weight = _reaching(vehicle, position, i)
+        if weight.max(initial=0.0) < REACHED:
+            distance = np.where(np.arange(len(position)) == i, np.inf, np.linalg.norm(position - place, axis=1))
+            near = np.isfinite(distance) & (distance <= NEAREST * distance.min())
+            weight = np.repeat(near[:, None] / max(near.sum(), 1), 2, axis=1)
+        else:
+            weight = weight / weight.max()
+        upstream = np.flatnonzero(weight.max(axis=1) > FAINT)
+        pairs += [(int(j), i) for j in upstream]
+        weights += list(weight[upstream])
+    return Jets(np.array(pairs, dtype=np.int64).reshape(-1, 2), np.array(weights, dtype=float).reshape(-1, 2))
+
+
+def _reaching(vehicle: Vehicle, position: Array, i: int) -> Array:
+    """Share (k, 2) of the thrust of thruster ``i`` that the free jet of each other takes, turning ahead and astern."""
+    share = np.zeros((len(position), 2))
+    for j, way in enumerate(allocation(vehicle)[:3].T):
+        diameter = vehicle.thruster[j].diameter or SMALLEST_DIAMETER * max(vehicle.body.size)
+        if j != i:
+            share[j] = [_share(position[i] - position[j], -sign * way, diameter) for sign in (1.0, -1.0)]
+    return share
 
 
 def _share(offset: Array, jet: Array, diameter: float) -> float:

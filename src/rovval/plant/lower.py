@@ -119,7 +119,7 @@ def pack(lowered: Lowered, spec: compose.Spec, dt: float, substeps: int) -> Arra
         put(where.first[name], matrix.reshape(size, 36) if spec.dense else np.diagonal(matrix, axis1=1, axis2=2))
     put(where.first["lag"], _lag(lanes.lag, dt / substeps))
     put(where.first["shift"], np.stack([lanes.shift / dt, lanes.drift / dt], axis=1))
-    put(where.first["jet"], np.stack([lanes.wake, lanes.side], axis=1))
+    put(where.first["jet"], np.concatenate([lanes.wake, lanes.side[:, None]], axis=1))
     position = np.array([t.position for t in lanes.vehicle.thruster])
     hand = np.array([t.handedness for t in lanes.vehicle.thruster], dtype=float)
     moment = np.cross(position, lanes.direction) + (lanes.torque_arm[:, None] * hand)[..., None] * lanes.direction

@@ -191,9 +191,9 @@ def _thrust_at_rest(run: _Run, n: Array, names: Mapping[str, Array]) -> Array:
     thrust = np.where(n > 0, lanes.k_pos, lanes.k_neg) * n * np.abs(n)
     thrust = _chain(run, "static", thrust, names)
     for (j, i), (ahead, astern) in zip(run.jets.pairs, run.jets.weights, strict=True):
-        jet = np.where(n[:, j] > 0, ahead, astern) * np.abs(n[:, j])
+        jet = np.where(n[:, j] > 0, ahead, astern) * np.minimum(np.abs(n[:, j]), np.abs(n[:, i]))
         gain = np.where(n[:, i] > 0, lanes.k_pos[:, i], lanes.k_neg[:, i])
-        thrust[:, i] -= lanes.wake * jet * gain * n[:, i]
+        thrust[:, i] -= lanes.wake[:, i] * jet * gain * n[:, i]
     return thrust
 
 

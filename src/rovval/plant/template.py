@@ -143,7 +143,7 @@ def _side(spec: Spec) -> list[str]:
         return []
     lines = [f"{name} = 0.0" for name in FORCE]
     for i in range(spec.thrusters):
-        lines += [f"S = abs(tv[{3 * i} * W + l]) * m[(JET + 1) * W + l]", *(f"{name} += S * g_{16 * i + 9 + c}" for c, name in enumerate(FORCE))]
+        lines += [f"S = abs(tv[{3 * i} * W + l]) * m[(JET + THRUSTERS) * W + l]", *(f"{name} += S * g_{16 * i + 9 + c}" for c, name in enumerate(FORCE))]
     return lines + [f"tv[{3 * spec.thrusters + c} * W + l] = {name}" for c, name in enumerate(FORCE)]
 
 
@@ -337,8 +337,9 @@ def run(first, last, numbers, late, onset, states, start, limit, which, gain, sp
             m[ALIVE * W + l] = 1.0
             least = min(least, limit[b, l])
             use_extra = use_extra or which[b, l] >= 0
-            use_wake = use_wake or m[JET * W + l] != 0.0
-            use_side = use_side or m[(JET + 1) * W + l] != 0.0
+            for i in range(THRUSTERS):
+                use_wake = use_wake or m[(JET + i) * W + l] != 0.0
+            use_side = use_side or m[(JET + THRUSTERS) * W + l] != 0.0
             pending = pending or onset[b, l] < math.inf
         for c in range(2 * LOGS * W):
             la[c] = 0.0
@@ -381,12 +382,12 @@ def run(first, last, numbers, late, onset, states, start, limit, which, gain, sp
                     if use_wake:  #full
                         for c in range(pairs.shape[0]):  #full
                             row, other, first_row = 3 * pairs[c, 1] * W, 3 * pairs[c, 0] * W, (BODY + pairs[c, 1] * STRIDE) * W  #full
-                            wa, ws = 0.5 * weights[c, 0], 0.5 * weights[c, 1]  #full
+                            wa, ws, wake = weights[c, 0], weights[c, 1], (JET + pairs[c, 1]) * W  #full
                             for l in range(W):  #full
                                 n, up = tv[row + W + l], tv[other + W + l]  #full
-                                jet = wa * (abs(up) + up) + ws * (abs(up) - up)  #full
+                                jet = (wa if up > 0.0 else ws) * min(abs(up), abs(n))  #full
                                 own = 0.5 * (m[first_row + l] * (n + abs(n)) + m[first_row + W + l] * (n - abs(n)))  #full
-                                tv[row + l] -= m[JET * W + l] * jet * own  #full
+                                tv[row + l] -= m[wake + l] * jet * own  #full
                     if use_side:  #full
                         for l in range(W):  #full
                             <<side>>
