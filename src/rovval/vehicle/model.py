@@ -159,8 +159,6 @@ def rigid_body_mass(body: Body) -> Array:
 
 def allocation(vehicle: Vehicle) -> Array:
     """T of tau = T U (thesis 3.15): column j is the wrench of 1 N of thruster j, (6, k)."""
-    columns = []
-    for thruster in vehicle.thruster:
-        direction = np.array(thruster.direction) / np.linalg.norm(thruster.direction)
-        columns.append(np.concatenate([direction, np.cross(thruster.position, direction)]))
-    return np.stack(columns, axis=1)
+    direction = np.array([t.direction for t in vehicle.thruster])
+    direction = direction / np.linalg.norm(direction, axis=1, keepdims=True)
+    return np.concatenate([direction, np.cross([t.position for t in vehicle.thruster], direction)], axis=1).T

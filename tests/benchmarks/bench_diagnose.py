@@ -1,0 +1,64 @@
+"""What a diagnosis costs, and how it grows with the log and with the library:  pytest -m benchmark -s tests/benchmarks/bench_diagnose.py
+
+CPU seconds of the whole process (all threads), kernels compiled before, on logs of the independent plant with one effect planted. BLAS
+has one thread, as it has in batch and in the blind check: its matrices here are small, and threads of its own mostly wait for one another.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from math import log2
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+HERE = Path(__file__).parent
+MINUTES = (2.5, 5.0, 10.0, 20.0)
+LIMIT_CPU_S = 20.0  # target for a log of 10 minutes against the whole library
+MOST_GROWTH = 1.2  # chosen: exponent of the cost in the length; 1 is linear, 2 would say that some step compares all windows
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+
+pytestmark = pytest.mark.benchmark
+
+
+def measured(folder: str, minutes: list[float]) -> list[dict[str, Any]]:
+    """A row a diagnosis: minutes, windows, hypotheses, CPU and wall seconds, what was named. Runs in a process of its own."""
+    from time import perf_counter, process_time
+
+    from diagnose_case import foreign, merlin
+    from rovval import effects
+    from rovval.diagnose import diagnose
+
+    logs = {m: foreign(Path(folder), (("inflow_loss", "", 1.5),), 5, 60.0 * m, 0.03) for m in minutes}
+    diagnose([logs[minutes[0]]], merlin())
+    half = tuple(name for name in effects.names()[::2] if name != "inflow_loss")
+    rows = []
+    for m, without in [*((m, ()) for m in minutes), (10.0, half)]:
+        cpu, wall = process_time(), perf_counter()
+        document = diagnose([logs[m]], merlin(), without=without).document
+        rows.append({
+            "minutes": m, "windows": document["windows"], "hypotheses": len(document["ranking"]), "cpu_s": process_time() - cpu,
+            "wall_s": perf_counter() - wall, "rounds": len(document["finalists"]), "named": [c["effect"] for c in document["causes"]],
+        })  # fmt: skip
+    return rows
+
+
+def test_ten_minutes_against_the_whole_library(tmp_path):
+    code = f"import json, bench_diagnose as b; print(json.dumps(b.measured({str(tmp_path)!r}, {list(MINUTES)})))"
+    environment = {**os.environ, **ONE_THREAD, "PYTHONPATH": f"{HERE}{os.pathsep}{HERE.parent}"}
+    done = subprocess.run([sys.executable, "-c", code], env=environment, check=True, capture_output=True, text=True)
+    rows = json.loads(done.stdout.splitlines()[-1])
+    print(f"\n{'log':>8}{'windows':>9}{'hypotheses':>12}{'rounds':>8}{'CPU s':>8}{'wall s':>8}  named")
+    for r in rows:
+        print(f"{r['minutes']:>4g} min{r['windows']:>9}{r['hypotheses']:>12}{r['rounds']:>8}{r['cpu_s']:>8.1f}{r['wall_s']:>8.1f}  {', '.join(r['named'])}")
+    *whole, half = rows
+    cost = {r["minutes"]: r["cpu_s"] for r in whole}
+    growth = log2(cost[20.0] / cost[10.0])
+    print(f"from 10 to 20 minutes it grows with the power {growth:.2f} of the length; half the library takes {half['cpu_s'] / cost[10.0]:.0%}")
+    assert half["hypotheses"] < 0.7 * whole[2]["hypotheses"]
+    assert growth < MOST_GROWTH
+    assert cost[10.0] < LIMIT_CPU_S
