@@ -1,7 +1,7 @@
-"""Which kernel a plant needs, where each number of a lane stands in it, and its text, put together from `template` and the effects.
+"""Which kernel a plant needs, which functions of the effects are in it, and where each number of a lane stands in it.
 
-A lane's numbers stand in one block ``p`` of ROWS x W doubles, W lanes side by side, so that one loop over lanes is one vector
-instruction per operation. Layout and text follow from a `Spec` alone; `plant.kernel` writes the text to a file and compiles it.
+A lane's numbers stand in one block of ROWS x W doubles, W lanes side by side, so that one loop over lanes is one vector
+instruction per operation. Layout and text (`plant.template`) follow from a `Spec` alone; `plant.kernel` writes and compiles the text.
 """
 
 from __future__ import annotations
@@ -10,25 +10,28 @@ import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
+from types import MappingProxyType
 from typing import Any
 
 from rovval import effects
-from rovval.plant.inline import inline
 
 W = 16  # lanes of a block: fewer than 16 trips and LLVM leaves the loop scalar; with 32 every effect's numbers leave a 32 kB L1 (measured)
 HOOKS = ("speed", "acting", "static", "thrust", "water", "wrench")
 PER_THRUSTER = ("speed", "acting", "static", "thrust")
+SWITCHED = ("acting", "static", "thrust", "water", "wrench")  # worked out only in blocks where some lane has the effect
 SYMMETRIC = tuple((i, j) for i in range(6) for j in range(i, 6))
 MASS_ROWS = 10 + 21  # m, m r_G, inertia; M^-1
+GROUPS = ("mass", "restoring", "displaced", "added", "linear", "quadratic", "lag", "shift", "jet")  # of rows, beside the effects' own
 LOG = ("altitude", "wall_distance", "voltage", "tether_length", "t")
 LOG_ROWS = len(LOG) + 6  # and the extra wrench
 
 # What a function of the state may ask for by the name of its argument, and what it is called in the kernel.
 AT_STAGE: Mapping[str, str] = {name: f"lv[{i} * W + l]" for i, name in enumerate(LOG)}
 BODY_NAMES: Mapping[str, str] = {
-    **{n: n for n in ("u", "v", "w", "ur", "vr", "wr", "vn", "ve", "vd", "cn", "ce", "cd")},
+    **{n: n for n in ("u", "v", "w", "ur", "vr", "wr", "vn", "ve", "vd")},
+    **{n: f"m[(WATER + {i}) * W + l]" for i, n in enumerate(("cn", "ce", "cd"))},
     **{n: f"r_{n}" for n in "pqr"},
-    **{n: f"m[(XS + {i}) * W + l]" for i, n in enumerate("xyz")},
+    **{n: f"m[xs + {i} * W + l]" for i, n in enumerate("xyz")},
     **{f"r{i}{j}": f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)},
     **AT_STAGE,
 }
@@ -57,6 +60,11 @@ class Spec:
     full: bool
 
     @property
+    def state(self) -> bool:
+        """Whether thrust depends on the motion."""
+        return self.full or self.advance
+
+    @property
     def name(self) -> str:
         """Short name, part of the file's name."""
         return f"{'full' if self.full else 'nominal'}_{self.thrusters}{'_dense' if self.dense else ''}{'_advance' if self.advance else ''}"
@@ -83,6 +91,12 @@ def hooks(full: bool) -> tuple[Hook, ...]:
             if function := getattr(module, kind, None):
                 found.append(Hook(name, kind, function, tuple(inspect.signature(function).parameters)))
     return tuple(found)
+
+
+@cache
+def switches() -> Mapping[str, int]:
+    """Effects that a block can go without, and the column of each in the kernel's argument ``acts``."""
+    return MappingProxyType({name: i for i, name in enumerate(dict.fromkeys(h.effect for h in hooks(True) if h.kind in SWITCHED))})
 
 
 @cache
@@ -122,34 +136,3 @@ def layout(spec: Spec) -> Layout:
         first[name] = place
         place += size
     return Layout(first, place, stride, thruster, place + stride * spec.thrusters)
-
-
-def row_of(where: Layout, hook: Hook, argument: str, thruster: str) -> str:
-    """Text of one of the effect's own rows; ``thruster`` is the text of the thruster's first row."""
-    key = f"{hook.effect}.{argument}"
-    if key in where.thruster_first:
-        return f"m[({thruster} + {where.thruster_first[key]}) * W + l]"
-    return f"m[{where.first[key]} * W + l]"
-
-
-def calls(spec: Spec, kind: str, into: tuple[str, ...], add: bool, thruster: str = "") -> list[str]:
-    """Lines of every effect of a kind: what each returns is added to ``into``, or replaces it."""
-    where, lines = layout(spec), []
-    names = THRUSTER_NAMES if kind in PER_THRUSTER else BODY_NAMES
-    for number, hook in enumerate(h for h in hooks(spec.full) if h.kind == kind):
-        own = effect_rows(hook.effect)[0]
-        unknown = [a for a in hook.arguments if a not in own and a not in names]
-        if unknown:
-            raise ValueError(f"effects/{hook.effect}.py: {kind}() asks for {', '.join(unknown)}, known: {', '.join((*own, *names))}")
-        texts = {a: row_of(where, hook, a, thruster) if a in own else names[a] for a in hook.arguments}
-        before, values = inline(hook.function, f"{kind[0]}{number}", texts)
-        lines += [f"# {hook.effect}", *before]
-        lines += [f"{n} = {n} + {v}" if add else f"{n} = {v}" for n, v in zip(into, values, strict=True) if not (add and v == "0.0")]
-    return lines
-
-
-def text(spec: Spec) -> str:
-    """Source of the kernel's module."""
-    from rovval.plant import template
-
-    return template.render(spec)

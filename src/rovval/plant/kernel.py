@@ -18,7 +18,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from rovval.plant import compose
+from rovval.plant import compose, template
 
 ROOT = Path(__file__).parent
 
@@ -44,7 +44,7 @@ def _fingerprint(spec: compose.Spec) -> str:
     """Hash of all that the kernel's machine code depends on: its text with every effect in it, helpers, versions."""
     import numba
 
-    digest = hashlib.sha256(f"{numba.__version__} {sys.version}\n{compose.text(spec)}".encode())
+    digest = hashlib.sha256(f"{numba.__version__} {sys.version}\n{template.render(spec)}".encode())
     digest.update((ROOT / "compiled.py").read_bytes())
     return digest.hexdigest()[:16]
 
@@ -55,7 +55,7 @@ def module(spec: compose.Spec) -> ModuleType:
     name = f"kernel_{spec.name}_{_fingerprint(spec)}"
     path = cache_folder() / f"{name}.py"
     if not path.exists():
-        _write(path, compose.text(spec))
+        _write(path, template.render(spec))
     return _imported(name, path)
 
 

@@ -23,18 +23,19 @@ BEYOND_NOMINAL = {"thrust_lag", "time_offset", "clock_drift", "thruster_interact
 
 @dataclass(frozen=True, slots=True)
 class Lowered:
-    """Lanes after every active effect, each effect's own rows, (B,) or (B, k) under ``effect.row``, and which lanes (B,) need the full
-    kernel."""
+    """Lanes after every active effect, each effect's own rows, (B,) or (B, k) under ``effect.row``, which lanes (B,) need the full
+    kernel, and which effects of `compose.switches` each has (B, E)."""
 
     lanes: Lanes
     rows: Mapping[str, Array]
     active: frozenset[str]
     full: Flags
+    acts: Flags
 
     def take(self, which: NDArray[np.int64]) -> Lowered:
         """Some of the lanes; rows of an effect that no lane has stand once for all."""
         rows = {name: values[which] if len(values) == len(self.lanes) and len(values) > 1 else values for name, values in self.rows.items()}
-        return Lowered(self.lanes.take(which), rows, self.active, self.full[which])
+        return Lowered(self.lanes.take(which), rows, self.active, self.full[which], self.acts[which])
 
 
 def active_effects(found: tuple[slots.Slot, ...], null: Array, beta: Array) -> frozenset[str]:
@@ -61,7 +62,7 @@ def lower(vehicle: Vehicle, model: str, found: tuple[slots.Slot, ...], index: Ma
         values = effects.module(name).rows(lanes if name in active else nominal(vehicle, model, 1), p)
         for row in own:
             rows[f"{name}.{row}"] = values[row]
-    return Lowered(lanes, rows, active, _full(found, null, beta))
+    return Lowered(lanes, rows, active, _full(found, null, beta), _acts(found, null, beta))
 
 
 def _full(found: tuple[slots.Slot, ...], null: Array, beta: Array) -> Flags:
@@ -69,6 +70,16 @@ def _full(found: tuple[slots.Slot, ...], null: Array, beta: Array) -> Flags:
     beyond = {name for name in effects.names() if any(hasattr(effects.module(name), kind) for kind in compose.HOOKS)} | BEYOND_NOMINAL
     columns = [c for c, slot in enumerate(found) if slot.effect in beyond]
     return np.asarray((beta[:, columns] != null[columns]).any(axis=1))
+
+
+def _acts(found: tuple[slots.Slot, ...], null: Array, beta: Array) -> Flags:
+    """Which of the effects that a kernel can pass over each lane has (B, E)."""
+    away, names = beta != null, compose.switches()
+    out = np.zeros((len(beta), len(names)), dtype=bool)
+    for c, slot in enumerate(found):
+        if slot.effect in names:
+            out[:, names[slot.effect]] |= away[:, c]
+    return out
 
 
 def rigid_body(mass: Array, first_moment: Array, inertia: Array) -> Array:

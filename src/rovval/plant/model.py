@@ -132,7 +132,7 @@ class Plant:
         kernel.run(
             spec, blocks,
             (
-                numbers, late, onset, states, _flat(lanes.start), _flat(limit), _flat(lanes.which, -1), _flat(lanes.gain), prepared.speed,
+                numbers, _some(lowered.acts), late, onset, states, _flat(lanes.start), _flat(limit), _flat(lanes.which, -1), _flat(lanes.gain), prepared.speed,
                 prepared.log, prepared.t, prepared.extra, *self._geometry, inputs.dt, inputs.hold, steps, self.substeps, out, stopped, reason,
             ),
         )  # fmt: skip
@@ -220,3 +220,10 @@ def _flat(values: NDArray[np.generic], fill: float | None = None) -> NDArray[np.
     blocks = -(-len(values) // compose.W)
     rest = np.full(blocks * compose.W - len(values), values[-1] if fill is None else fill, dtype=values.dtype)
     return np.concatenate([values, rest]).reshape(blocks, compose.W)
+
+
+def _some(acts: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """(B, E) -> (blocks, E): what some lane of the block has."""
+    size, count = acts.shape
+    padded = np.concatenate([acts, np.zeros((-size % compose.W, count), dtype=bool)])
+    return np.asarray(padded.reshape(-1, compose.W, count).any(axis=1))
