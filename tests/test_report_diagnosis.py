@@ -10,6 +10,7 @@ from report_cases import make_diagnosis, make_run, make_sim
 from rovval import report, vehicle
 from rovval.compare import compare
 from rovval.report import diagnosis_html, diagnosis_markdown, diagnosis_words, table
+from rovval.report.untestable import not_testable
 from test_report_comparison import check_html
 
 REQUIRED = ("schema", "run", "vehicle", "model", "window_s", "calibration_slop", "verdict", "gap", "causes", "ranking")
@@ -83,7 +84,7 @@ def test_what_a_log_cannot_show_is_one_row_a_family_and_reason() -> None:
     rows = [("linear_drag[roll]", "1.8"), ("linear_drag[yaw]", "2.75"), ("linear_drag[surge]", "0.4"), ("waves", "2.0")]
     d = make_diagnosis() | {"not_testable": [{"effect": e, "why": silent.format(s)} for e, s in rows]}
     d["not_testable"] += [{"effect": "linear_drag[heave]", "why": "needs w"}, {"effect": "wall_suction", "why": "needs wall_distance"}]
-    assert diagnosis_words.not_testable(d) == [
+    assert not_testable(d) == [
         ("linear_drag[roll], [yaw], [surge]", silent.format("0.4 to 2.75")),
         ("waves", silent.format("2.0")),
         ("linear_drag[heave]", "needs w"),

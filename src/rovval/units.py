@@ -51,6 +51,7 @@ SI: dict[str, float] = {
 }
 
 DEGREES = 180.0 / pi
+DEGREE_UNITS = {"rad": "deg", "rad/s": "deg/s"}
 
 
 def to_si(unit: str) -> float:
@@ -59,3 +60,8 @@ def to_si(unit: str) -> float:
         return SI[unit]
     except KeyError:
         raise UsageProblem(f"unknown unit {unit!r}", f"use one of: {', '.join(sorted(SI))}") from None
+
+
+def in_degrees(value: float, unit: str) -> tuple[float, str]:
+    """The value as people read it: radians become degrees, all else stays."""
+    return (value * DEGREES, DEGREE_UNITS[unit]) if unit in DEGREE_UNITS else (value, unit)

@@ -10,7 +10,7 @@ from rovval import __version__
 from rovval.data import Array
 from rovval.diagnose import Diagnosis, next_flight
 from rovval.diagnose.causes import causes, settings
-from rovval.diagnose.gap import axis_rows
+from rovval.diagnose.gap import axis_rows, noise_loss
 from rovval.diagnose.localise import change_points, slices, worst
 from rovval.diagnose.parity import faults
 from rovval.diagnose.pictures import coherence_matrix, heat_map, traces
@@ -18,7 +18,7 @@ from rovval.diagnose.problem import Problem, corrected_residuals
 from rovval.diagnose.select import Selection
 from rovval.diagnose.shrinkage import harm, shrinkage
 from rovval.diagnose.verdict import Judgement, judge
-from rovval.diagnose.words import sentence
+from rovval.diagnose.words import cause, sentence
 from rovval.vehicle.write import with_effects
 
 MOST_SLICES = 5  # named of where the gap lies
@@ -41,7 +41,7 @@ def answer(
         "ranking": [{"effect": name, "score": score} for name, score in selection.ranking],
         "not_testable": [{"effect": name, "why": why} for name, why in sorted(untestable.items())],
         **next_flight.rows(problem, next_flight.advise(problem, judgement)),
-        "detection": _detection(selection, judgement),
+        "detection": _detection(problem, selection, judgement),
         "finalists": [[{"effect": n, "evidence": e, "gain": g} for n, e, g in one] for one in selection.rounds],
         "left": judgement.left,
         "harm": harm(shrunk),
@@ -54,7 +54,7 @@ def answer(
         "left_out_s": sum(part.contact_s for part in problem.parts),
         "outliers": sum(part.outliers for part in problem.parts),
     }
-    document["sentence"] = sentence(document)
+    document |= {"answer": cause(document), "sentence": sentence(document)}
     found = settings(problem, judgement.final)
     return Diagnosis(document, found, with_effects(problem.plant.vehicle, found) if found else "")
 
@@ -75,10 +75,11 @@ def _head(problem: Problem, slop: float) -> dict[str, object]:
     }
 
 
-def _detection(selection: Selection, judgement: Judgement) -> dict[str, float]:
-    """What the verdict rests on: p-values, evidence beside that of healthy logs, and the shares of the gap that slop alone, any systematic
-    force, and the causes with slop beside them close on held-out windows."""
+def _detection(problem: Problem, selection: Selection, judgement: Judgement) -> dict[str, float]:
+    """What the verdict rests on: p-values, evidence beside that of healthy logs, the share of the gap that is sensor noise, and those that
+    slop alone, any systematic force, and the causes with slop beside them close on held-out windows."""
     return {
+        "noise": min(float(noise_loss(problem).sum() / problem.dynamic.c.sum()), 1.0),
         "p_value": selection.named[0].p_value if selection.named else selection.last_p,
         "last_p": selection.last_p,
         "last_evidence": selection.last_evidence,

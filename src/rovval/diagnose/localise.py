@@ -14,9 +14,11 @@ import numpy as np
 from rovval.channels import AXES
 from rovval.data import Array, Flags
 from rovval.diagnose.stretches import POSE_OF, VELOCITY_CHANNELS, Stretches
+from rovval.units import DEGREES
 
 RESAMPLES = 200
 FEWEST_WINDOWS = 4  # a slice that touches fewer windows carries no interval
+MOST_AN_AXIS = 3  # slices named of one axis
 LOWEST_LIFT = 1.3  # chosen: below it a slice holds hardly more than its time would
 
 
@@ -48,9 +50,9 @@ def regimes(stretches: Stretches) -> dict[str, Flags]:
     """Name in words -> where it holds (m, n), from what was measured and commanded."""
     run, found = stretches.run, dict[str, Flags]()
     at = stretches.start[:, None] + np.arange(stretches.steps + 1)[None, :]
-    for name, unit, floor in (("u", "m/s", 0.05), ("v", "m/s", 0.05), ("w", "m/s", 0.05), ("r", "rad/s", 0.02)):
+    for name, unit, factor, floor in (("u", "m/s", 1.0, 0.05), ("v", "m/s", 1.0, 0.05), ("w", "m/s", 1.0, 0.05), ("r", "deg/s", DEGREES, 1.0)):
         if run.measured(name):
-            found.update(_levels(name, run.get(name)[at], unit, floor))
+            found.update(_levels(name, factor * run.get(name)[at], unit, floor))
     if run.measured("u"):
         change = np.abs(np.gradient(np.nan_to_num(run.get("u")), run.dt))[at]
         limit = float(np.quantile(change, 0.8))
@@ -101,14 +103,20 @@ def slices(stretches: Stretches, error: Array, ok: Flags, seed: int) -> list[Sli
 
 
 def worst(found: list[Slice], axis_share: dict[str, float], most: int = 5) -> list[Slice]:
-    """The slices that matter: much of the whole gap in little of the time, with a lift whose interval stays above 1."""
+    """The slices that matter: much of the whole gap in little of the time, with a lift whose interval stays above 1; of one quantity
+    (``u > 0.3 m/s`` and ``|u| > 0.3 m/s``) the first, an axis."""
     able = [s for s in found if s.windows >= FEWEST_WINDOWS and s.lift > LOWEST_LIFT and s.low > 1.0]
     able.sort(key=lambda s: -(s.share - s.time_share) * axis_share.get(s.axis, 0.0))
     chosen: list[Slice] = []
     for one in able:
-        if sum(c.axis == one.axis for c in chosen) < 3 and len(chosen) < most:
+        same = [c for c in chosen if c.axis == one.axis]
+        if len(same) < MOST_AN_AXIS and len(chosen) < most and not any(_quantity(c) == _quantity(one) for c in same):
             chosen.append(one)
     return chosen
+
+
+def _quantity(one: Slice) -> str:
+    return one.regime.replace("|", "").split()[0]
 
 
 def change_points(stretches: Stretches, score: Array, seed: int, level: float = 0.01) -> list[float]:

@@ -2,13 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
+
+from rovval.units import in_degrees
+
+MOST_VALUES = 3  # parameters of a cause that fit a sentence
+
+
+OPEN = 0.5  # chosen: share of a gap that neither noise nor slop accounts for, from which "no gap" would say too much
 
 
 def sentence(document: dict[str, Any]) -> str:
     """Gap, where, cause or group, shrinkage with its interval, what is left and what to fly next."""
-    parts = [_gap(document), _where(document), _cause(document), _harm(document), _left(document), _next(document)]
+    parts = [_gap(document), _where(document), cause(document), _harm(document), _left(document), _next(document)]
     return " ".join(p for p in parts if p)
+
+
+def open_gap(document: Mapping[str, Any]) -> bool:
+    """Whether nothing is named and yet most of the gap is neither noise nor slop: not explained is not the same as not there."""
+    found = document.get("detection") or {}
+    known = "slop" in found and "noise" in found
+    return document.get("verdict") == "no_gap" and known and float(1.0 - found["slop"] - found["noise"]) > OPEN
+
+
+def chance(probability: float) -> str:
+    """A probability that no rounding makes certain."""
+    return "> 0.99" if probability > 0.99 else f"{probability:.2f}"
 
 
 def _gap(document: dict[str, Any]) -> str:
@@ -17,8 +37,9 @@ def _gap(document: dict[str, Any]) -> str:
         return "Nothing was measured on any axis."
     axis, row = max(axes.items(), key=lambda item: item[1]["share"])
     times = row["rms"] / row["floor_rms"] if row["floor_rms"] > 0 else float("inf")
-    size = f"{row['rms']:.3g} {row['unit']} rms in {document['window_s']:g}-s windows"
-    floor = f", {times:.1f} times the sensor noise" if times < 1e4 else ""
+    rms, unit = in_degrees(row["rms"], row["unit"])
+    size = f"{rms:.3g} {unit} rms in {document['window_s']:g}-s windows"
+    floor = f", {times:.{1 if times < 10 else 0}f} times the sensor noise" if times < 1e4 else ""
     return f"Gap: largest in {axis} ({size}{floor}; {100 * row['share']:.0f} % of the weighted gap)."
 
 
@@ -31,31 +52,48 @@ def _where(document: dict[str, Any]) -> str:
     ) + "."
 
 
-def _cause(document: dict[str, Any]) -> str:
+def cause(document: dict[str, Any]) -> str:
+    """The answer itself: the causes, that there is none to name, or that it is none of the library."""
     verdict = document["verdict"]
     if verdict == "no_gap":
-        return (
-            f"No gap beyond noise and a calibration slop of {100 * document['calibration_slop']:g} %: "
-            "no effect of the library explains anything that such slop does not."
-        )
+        return _nothing(document)
     if verdict == "unknown":
         return f"Unknown effect: {document['left']['text']}."
-    words = []
-    for cause in document["causes"]:
-        rivals = [g for g in cause["group"] if g != cause["effect"]]
-        values = ", ".join(
-            f"{name} = {p['value']:.3g} [{p['low']:.3g}, {p['high']:.3g}] {p['unit']}".rstrip(" 1") for name, p in list(cause["parameters"].items())[:3]
-        )
-        s = cause["shrinkage"]
-        onset = f" from {cause['onset_s']:.0f} s on" if cause["onset_s"] is not None else ""
-        other = f" or, indistinguishable in this log, {', '.join(rivals)}" if rivals else ""
-        words.append(
-            f"{cause['effect']}{onset} ({values}; probability {cause['probability']:.2f}){other}; by itself it shrinks the gap by "
-            f"{100 * s['total']:.0f} % [{100 * s['low']:.0f}, {100 * s['high']:.0f}] on held-out windows"
-        )
+    words = [_one(c) for c in document["causes"]]
     together = document["shrinkage"]
-    total = f" Together: {100 * together['total']:.0f} % [{100 * together['low']:.0f}, {100 * together['high']:.0f}]." if len(words) > 1 else ""
-    return f"Cause: {'; and '.join(words)}.{total}"
+    total = f" Together: {_span(together)}." if len(words) > 1 else ""
+    return f"Cause{'s' if len(words) > 1 else ''}: {'; and '.join(words)}.{total}"
+
+
+def _nothing(document: dict[str, Any]) -> str:
+    slop = f"a calibration slop of {100 * document['calibration_slop']:g} %"
+    if not open_gap(document):
+        return f"No gap beyond noise and {slop}: no effect of the library explains anything that such slop does not."
+    accounted = 100 * (document["detection"]["slop"] + document["detection"]["noise"])
+    return (
+        f"No cause is named, though noise and {slop} account for only {accounted:.0f} % of the gap: no effect of the library and no smooth force "
+        "is shown to close the rest. It may be a disturbance, an effect in events, or motion that this log shows too little of."
+    )
+
+
+def _one(cause: dict[str, Any]) -> str:
+    """One cause with its main parameters, its rivals and what it does by itself."""
+    rivals = [g for g in cause["group"] if g != cause["effect"]]
+    values = ", ".join(_value(name, p) for name, p in list(cause["parameters"].items())[:MOST_VALUES])
+    onset = f" from {cause['onset_s']:.0f} s on" if cause["onset_s"] is not None else ""
+    other = f" or, indistinguishable in this log, {', '.join(rivals)}" if rivals else ""
+    alone = f"by itself it shrinks the gap by {_span(cause['shrinkage'])} on held-out windows"
+    return f"{cause['effect']}{onset} ({values}; probability {chance(cause['probability'])}){other}; {alone}"
+
+
+def _value(name: str, p: dict[str, Any]) -> str:
+    factor, unit = in_degrees(1.0, p["unit"])
+    value, low, high = (factor * p[k] for k in ("value", "low", "high"))
+    return f"{name} = {value:.3g} [{low:.3g}, {high:.3g}]{'' if unit == '1' else f' {unit}'}"
+
+
+def _span(s: dict[str, Any]) -> str:
+    return f"{100 * s['total']:.0f} % [{100 * s['low']:.0f}, {100 * s['high']:.0f}]"
 
 
 def _harm(document: dict[str, Any]) -> str:

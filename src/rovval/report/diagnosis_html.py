@@ -7,11 +7,14 @@ from typing import Any
 
 import numpy as np
 
+from rovval.diagnose.words import chance, open_gap
 from rovval.report import diagnosis_parts as parts
 from rovval.report import diagnosis_words as dw
-from rovval.report import page, plots
+from rovval.report import page, plots, tried
 from rovval.report.json import versions
-from rovval.report.words import in_degrees, number, per_cent, quantity
+from rovval.report.untestable import not_testable
+from rovval.report.words import number, per_cent, quantity
+from rovval.units import in_degrees
 
 
 def text(document: dw.Document, recording: bool = False) -> str:
@@ -19,15 +22,16 @@ def text(document: dw.Document, recording: bool = False) -> str:
     d = document
     banner = f"SYNTHETIC DATA: {d['synthetic']}" if d.get("synthetic") else ""
     axes, pictures, places = _traces(d)
-    keys = {"measured": "measured", "nominal": "nominal simulator", "corrected": "with the effects found"}
+    keys = {"measured": "measured", "nominal": "nominal simulator"} | ({"corrected": "with the effects found"} if d.get("causes") else {})
+    worst = "Before and after, on the worst stretches" if d.get("causes") else "The worst stretches"
     body = "".join(
         [
-            page.head("Diagnosis", dw.run(d), banner, dw.sentences(d), dw.facts(d)),
+            page.head("Diagnosis", dw.run(d), banner, dw.headline(d), dw.facts(d)),
             parts.tiles(_answers(d)),
             _where(d),
-            page.section("Before and after, on the worst stretches", page.switches(keys) if places else "", places),
-            page.section("Which effect", *(_cause(c) for c in d.get("causes") or ()), _paragraph(_WHICH.get(d.get("verdict", "")))),
-            page.section("All effects tried", parts.ranking(d), lead="Score: the part of the gap that is gone on held-out stretches."),
+            page.section(worst, page.switches(keys) if places else "", places),
+            page.section("Which effect", *(_cause(c) for c in d.get("causes") or ()), _paragraph(_which(d))),
+            tried.section(d),
             page.section("What this log cannot tell apart", parts.matrix(d.get("coherence") or {}), lead=_COHERENCE),
             page.section("Sensors first, by kinematics alone", _parity(d), lead=_PARITY),
             page.section("What gets worse", page.listing(_harm(d))),
@@ -49,6 +53,11 @@ _WHICH = {
     "unknown": "No effect of the library removes enough of the gap on held-out data to be named. The least bad one is not a cause.",
     "no_gap": "Nothing to blame: what is left is within noise and calibration slop.",
 }
+_OPEN = "None is named. Most of the gap is neither noise nor slop; what it is, this log does not show."
+
+
+def _which(d: dw.Document) -> str:
+    return _OPEN if open_gap(d) else _WHICH.get(d.get("verdict", ""), "")
 
 
 def _answers(d: dw.Document) -> dict[str, tuple[str, str]]:
@@ -78,7 +87,7 @@ def _where(d: dw.Document) -> str:
     points = ", ".join(f"{number(t, 4)} s" for t in (d.get("gap") or {}).get("change_points_s") or ())
     changes = _paragraph(f"The gap changes at {points}." if points else "")
     title = _WHERE.get(d.get("verdict", ""), "Where the gap lies")
-    return page.section(title, _axes(d), parts.heat_map(d.get("heatmap") or {}), page.listing(dw.where(d)), changes)
+    return page.section(title, _axes(d), parts.heat_maps(d), page.listing(dw.where(d)), changes)
 
 
 def _axes(d: dw.Document) -> str:
@@ -96,7 +105,7 @@ def _cause(cause: dw.Document) -> str:
     members, s = dw.group(cause), cause.get("shrinkage") or {}
     alike = " or ".join(f"<code>{escape(m)}</code>" for m in members[1:])
     others = f' <span class="lead">or {alike}</span>' if alike else ""
-    said = [f"probability {number(cause['probability'], 2)}"] if cause.get("probability") is not None else []
+    said = [f"probability {chance(cause['probability'])}"] if cause.get("probability") is not None else []
     said += [f"begins at {number(cause['onset_s'])} s"] if cause.get("onset_s") is not None else []
     said += [f"the gap shrinks by {dw.interval(s)}"] if s.get("total") is not None else []
     rows = []
@@ -106,9 +115,10 @@ def _cause(cause: dw.Document) -> str:
         drawn = parts.whisker(value, low, high, (entry.get("null") or 0.0) * factor)
         span = f"{number(low)} to {number(high)}" if low is not None and high is not None else "–"
         rows.append([f"<code>{escape(name)}</code>", number(value), span, "" if unit == "1" else unit, drawn])
-    axes = [[escape(a), parts.axis_bar(v)] for a, v in (s.get("axes") or {}).items() if v is not None]
+    spans = s.get("axes_interval") or {}
+    axes = [[escape(a), parts.axis_bar(v), dw.span(spans.get(a))] for a, v in (s.get("axes") or {}).items() if v is not None]
     tables = page.table(["parameter", "value", "interval", "unit", ""], rows, left=(0, 3, 4)) if rows else ""
-    gains = page.table(["axis", "gap shrinks by"], axes, left=(0, 1)) if axes else ""
+    gains = page.table(["axis", "gap shrinks by, held out", "interval"], axes, left=(0, 1, 2)) if axes else ""
     title = f"<h3><code>{escape(members[0])}</code>{others}</h3>"
     return f'{title}<p class="lead">{escape(", ".join(said))}</p><div class="two"><div>{tables}</div><div>{gains}</div></div>'
 
@@ -134,7 +144,8 @@ def _traces(d: dw.Document) -> tuple[dict[str, Any], list[dict[str, Any]], str]:
         step = -(-len(t) // plots.MOST_POINTS) or 1
         factor, unit = in_degrees(1.0, trace.get("unit", "1"))
         labels = {"measured": "measured", "nominal": "nominal", "corrected": "corrected"}
-        kept = {key: np.array(trace[key], dtype=float)[::step] * factor for key in labels if trace.get(key) is not None}
+        shown = [key for key in labels if trace.get(key) is not None and (key != "corrected" or d.get("causes"))]
+        kept = {key: np.array(trace[key], dtype=float)[::step] * factor for key in shown}
         axes[f"trace{k}"] = plots.encode(t[::step])
         pictures.append(plots.plot(f"trace-{k}", [plots.series(key, labels[key], v) for key, v in kept.items()], f"trace{k}"))
         places.append(page.canvas(f"trace-{k}", str(trace.get("title") or trace.get("axis", "")), unit))
@@ -151,7 +162,7 @@ def _harm(d: dw.Document) -> list[str]:
 
 
 def _not_testable(d: dw.Document) -> str:
-    rows = [[f"<code>{escape(names)}</code>", escape(why)] for names, why in dw.not_testable(d)]
+    rows = [[f"<code>{escape(names)}</code>", escape(why)] for names, why in not_testable(d)]
     return page.table(["effect", "why"], rows, left=(0, 1), css="plain") if rows else ""
 
 

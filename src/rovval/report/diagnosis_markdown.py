@@ -4,28 +4,37 @@ from __future__ import annotations
 
 from typing import Any
 
+from rovval.diagnose.words import chance
 from rovval.report import diagnosis_words as dw
 from rovval.report.markdown import bullets, grid
-from rovval.report.words import in_degrees, number, per_cent
+from rovval.report.tried import rounds
+from rovval.report.untestable import not_testable
+from rovval.report.words import number, per_cent
+from rovval.units import in_degrees
+
+MOST_RANKED = 16  # of the screen
 
 
 def text(document: dw.Document) -> str:
     """The whole report."""
     d = document
-    said = dw.sentences(d)
     parts = [f"# {dw.run(d)}: diagnosis", f"> **SYNTHETIC DATA: {d['synthetic']}**" if d.get("synthetic") else ""]
+    said = dw.headline(d)
     parts += [f"**{said[0]}**", *said[1:], bullets(f"{k}: {v}" for k, v in dw.facts(d).items() if v)]
     parts += _under("## Where the gap lies", _axes(d), bullets(dw.where(d, 99)), _changes(d))
     for cause in d.get("causes") or ():
         parts += _under(f"## Cause: {' or '.join(f'`{e}`' for e in dw.group(cause))}", *_cause(cause))
-    ranking = [[f"`{r['effect']}`", number(r.get("score"))] for r in d.get("ranking") or ()]
-    parts += _under("## Ranking", grid(["effect", "score"], ranking) if ranking else "")
+    for title, rows in rounds(d):
+        weighed = [[f"`{r['effect']}`", per_cent(r.get("gain")), number(r.get("evidence"), 2)] for r in rows]
+        parts += _under(f"## Weighed by re-simulation: {title[0].lower()}{title[1:]}", grid(["effect", "closes of the gap", "evidence"], weighed))
+    ranking = [[f"`{r['effect']}`", number(r.get("score"))] for r in (d.get("ranking") or ())[:MOST_RANKED]]
+    parts += _under("## Screen of the library", grid(["effect", "score"], ranking) if ranking else "")
     parts += _under("## Sensors, by kinematics alone", _parity(d))
     harm = [f"{h.get('axis')}: error changes by {per_cent(h.get('change'))}" for h in d.get("harm") or ()]
     parts += _under("## What gets worse", bullets(harm))
     flight = d.get("manoeuvre") or {}
     parts += _under("## What to fly next", dw.next_flight(d), flight.get("text", ""), _schedule(flight))
-    why = [f"`{names}`: {why}" for names, why in dw.not_testable(d)]
+    why = [f"`{names}`: {why}" for names, why in not_testable(d)]
     parts += _under("## Not testable in this log", bullets(why))
     return "\n\n".join(p for p in [*parts, f"*{dw.SCOPE}*"] if p) + "\n"
 
@@ -39,8 +48,9 @@ def _axes(d: dw.Document) -> str:
     for axis, row in ((d.get("gap") or {}).get("axes") or {}).items():
         factor, unit = in_degrees(1.0, row.get("unit", "1"))
         values = [f"{number(row[k] * factor)} {unit}" if row.get(k) is not None else "-" for k in ("rms", "floor_rms")]
-        rows.append([axis, *values, number(row.get("iae")), per_cent(row.get("share"))])
-    return grid(["axis", "rms", "floor", "IAE, SI", "share"], rows) if rows else ""
+        iae = f"{number(row['iae'] * factor)} {unit.removesuffix('/s')}" if row.get("iae") is not None else "-"
+        rows.append([axis, *values, iae, per_cent(row.get("share"))])
+    return grid(["axis", "rms", "floor", "IAE", "share"], rows) if rows else ""
 
 
 def _changes(d: dw.Document) -> str:
@@ -52,10 +62,11 @@ def _cause(cause: dw.Document) -> list[str]:
     s = cause.get("shrinkage") or {}
     lines = [dw.parameter(name, entry) for name, entry in (cause.get("parameters") or {}).items()]
     lines += [f"begins at {number(cause['onset_s'])} s"] if cause.get("onset_s") is not None else []
-    lines += [f"probability {number(cause['probability'], 2)}"] if cause.get("probability") is not None else []
+    lines += [f"probability {chance(cause['probability'])}"] if cause.get("probability") is not None else []
     lines += [f"the gap shrinks by {dw.interval(s)}"] if s.get("total") is not None else []
-    axes = [[a, per_cent(v)] for a, v in (s.get("axes") or {}).items() if v is not None]
-    return [bullets(lines), grid(["axis", "shrinks by"], axes) if axes else ""]
+    spans = s.get("axes_interval") or {}
+    axes = [[a, per_cent(v), dw.span(spans.get(a))] for a, v in (s.get("axes") or {}).items() if v is not None]
+    return [bullets(lines), grid(["axis", "shrinks by", "interval"], axes) if axes else ""]
 
 
 def _parity(d: dw.Document) -> str:

@@ -1,4 +1,4 @@
-"""The pictures of a diagnosis as HTML: heat map, ranking with brackets, whiskers, matrix, schedule. No script is needed."""
+"""The pictures of a diagnosis as HTML: heat maps, whiskers, matrix, schedule. No script is needed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,26 @@ from rovval.report import diagnosis_words as dw
 from rovval.report import svg
 from rovval.report.words import number, per_cent
 
-_MOST_RANKED = 16
+_MOST_REGIMES = 10
+
+
+def heat_maps(document: dw.Document) -> str:
+    """The regimes that hold most of the gap beyond their time, and, folded away, all of them."""
+    heat = document.get("heatmap") or {}
+    axes, regimes, share, lift = (heat.get(k) or [] for k in ("axes", "regimes", "share", "lift"))
+    if len(regimes) <= _MOST_REGIMES:
+        return heat_map(heat)
+    rows = (document.get("gap") or {}).get("axes") or {}
+    weight = [(rows.get(a) or {}).get("share") or 0.0 for a in axes]
+
+    def excess(j: int) -> float:
+        return max(w * (s[j] - s[j] / x[j] if x[j] else 0.0) for w, s, x in zip(weight, share, lift, strict=True))
+
+    kept = sorted(sorted(range(len(regimes)), key=excess, reverse=True)[:_MOST_REGIMES])
+    some = {key: [[row[j] for j in kept] for row in values] for key, values in (("share", share), ("lift", lift))}
+    few = heat_map({"axes": axes, "regimes": [regimes[j] for j in kept], **some})
+    note = '<p class="note">Share of the axis\'s gap in each regime; x: how many times its part of the time.</p>'
+    return f"{few}{note}<details><summary>All {len(regimes)} regimes</summary>{heat_map(heat)}</details>"
 
 
 def heat_map(heat: Mapping[str, Any]) -> str:
@@ -41,30 +60,6 @@ def matrix(coherence: Mapping[str, Any]) -> str:
         rows.append(f'<tr><th scope="row"><code>{escape(str(effect))}</code></th>{cells}</tr>')
     head = "".join(f'<th scope="col" class="up"><code>{escape(str(e))}</code></th>' for e in effects)
     return _heat(f"<tr><th></th>{head}</tr>", rows) if rows else ""
-
-
-def ranking(document: dw.Document) -> str:
-    """Every effect's score as a bar; a bracket joins the members of a group that this log cannot tell apart."""
-    ranked = list(document.get("ranking") or ())
-    causes = list(document.get("causes") or ())
-    groups = [m for m in (dw.group(c) for c in causes) if len(m) > 1]
-    chosen = {str(c["effect"]) for c in causes}
-    shown = ranked[:_MOST_RANKED]
-    best = max((r.get("score") or 0.0 for r in shown), default=0.0) or 1.0
-    names = [str(r["effect"]) for r in shown]
-    rows = []
-    for k, r in enumerate(shown):
-        score, name = r.get("score") or 0.0, names[k]
-        width = max(0.0, min(1.0, score / (1.0 if 0.5 < best <= 1.0 else best))) * 100
-        css = "hit" if name in chosen else ""
-        braces = "".join(_brace(k, [names.index(m) for m in g if m in names]) for g in groups)
-        rows.append(
-            f'<tr class="{css}"><th scope="row"><code>{escape(name)}</code></th>'
-            f'<td class="bar"><i style="width:{width:.1f}%"></i></td>'
-            f"<td>{number(r.get('score'), 2)}</td>{braces}</tr>"
-        )
-    rest = f'<p class="note">{len(ranked) - len(shown)} more below.</p>' if len(ranked) > len(shown) else ""
-    return f'<div class="scroll"><table class="rank"><tbody>{"".join(rows)}</tbody></table></div>{rest}' if rows else ""
 
 
 def whisker(value: float | None, low: float | None, high: float | None, null: float = 0.0) -> str:
@@ -137,13 +132,3 @@ def _cell(value: float | None, top: float, content: str) -> str:
 
 def _heat(head: str, rows: Sequence[str]) -> str:
     return f'<div class="scroll"><table class="heat"><thead>{head}</thead><tbody>{"".join(rows)}</tbody></table></div>'
-
-
-def _brace(k: int, members: Sequence[int]) -> str:
-    """One cell of a bracket's column."""
-    if not members or not min(members) <= k <= max(members):
-        return '<td class="brace"></td>'
-    css = " ".join(w for w, is_it in (("on", k in members), ("top", k == min(members)), ("end", k == max(members))) if is_it)
-    label = "cannot be told apart" if k == min(members) and len(members) > 1 else ""
-    return f'<td class="brace in {css}"><span>{label}</span></td>'
-

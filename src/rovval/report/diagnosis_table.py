@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from textwrap import wrap
 
+from rovval.diagnose.words import chance
 from rovval.report import diagnosis_words as dw
-from rovval.report.words import in_degrees, number, per_cent
+from rovval.report.tried import rounds
+from rovval.report.untestable import not_testable
+from rovval.report.words import number, per_cent
+from rovval.units import in_degrees
 
 
 def text(document: dw.Document) -> str:
@@ -21,9 +26,12 @@ def text(document: dw.Document) -> str:
     checks = [c for c in d.get("parity") or () if c.get("significant")]
     parts += _block("sensors", [f"{c.get('fault') or c.get('check')}: {dw.parameter('value', c)[8:]}" for c in checks])
     parts += _block("harm", [f"{h.get('axis')}: {per_cent(h.get('change'))}" for h in d.get("harm") or ()])
-    ranking = d.get("ranking") or ()
-    parts += _block("ranking", [f"{number(r.get('score')):>7}  {r['effect']}" for r in ranking[:8]])
-    parts += _block("not testable in this log", [f"{names}: {why}" for names, why in dw.not_testable(d)])
+    weighed = rounds(d)
+    for title, rows in weighed:
+        parts += _block(f"weighed by re-simulation: {title[0].lower()}{title[1:]}", _weighed(rows))
+    ranking = () if weighed else d.get("ranking") or ()
+    parts += _block("screen of the library", [f"{number(r.get('score')):>7}  {r['effect']}" for r in ranking[:8]])
+    parts += _block("not testable in this log", [f"{names}: {why}" for names, why in not_testable(d)])
     return "\n".join([*parts, "", dw.SCOPE]) + "\n"
 
 
@@ -46,7 +54,12 @@ def _cause(cause: dw.Document) -> list[str]:
     s = cause.get("shrinkage") or {}
     lines += [f"gap shrinks by {dw.interval(s)}"] if s.get("total") is not None else []
     axes = {a: v for a, v in (s.get("axes") or {}).items() if v is not None}
-    lines += ["by axis: " + ", ".join(f"{a} {per_cent(v)}" for a, v in axes.items())] if axes else []
-    lines += [f"probability {number(cause['probability'], 2)}"] if cause.get("probability") is not None else []
+    lines += ["by axis, held out: " + ", ".join(f"{a} {per_cent(v)}" for a, v in axes.items())] if axes else []
+    lines += [f"probability {chance(cause['probability'])}"] if cause.get("probability") is not None else []
     lines += [f"begins at {number(cause['onset_s'])} s"] if cause.get("onset_s") is not None else []
     return lines
+
+
+def _weighed(rows: Sequence[dw.Document]) -> list[str]:
+    lines = [f"{per_cent(r.get('gain')):>7}  {number(r.get('evidence'), 2):>8}  {r['effect']}" for r in rows]
+    return [f"{'closes':>7}  {'evidence':>8}", *lines]

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rovval.report.words import in_degrees, listed, number, per_cent, quantity
+from rovval.diagnose.words import open_gap
+from rovval.report.words import listed, number, per_cent, quantity
+from rovval.units import in_degrees
 
 Document = Mapping[str, Any]
 VERDICTS = {
-    "no_gap": "no gap beyond noise",
+    "no_gap": "no gap beyond noise and slop",
     "explained": "explained",
     "partly_explained": "partly explained",
     "unknown": "unknown effect",
 }
-_NUMBER = re.compile(r"\d+(?:\.\d+)?")
 SCOPE = "Every number is about this simulator, this log and this library of effects."
 
 
@@ -38,6 +38,11 @@ def interval(entry: Mapping[str, Any] | None) -> str:
     return per_cent(entry["total"]) + (f" ({per_cent(low)} to {per_cent(high)})" if low is not None and high is not None else "")
 
 
+def span(entry: Mapping[str, Any] | None) -> str:
+    """58 % to 72 %."""
+    return f"{per_cent(entry['low'])} to {per_cent(entry['high'])}" if entry else ""
+
+
 def parameter(name: str, entry: Mapping[str, Any]) -> str:
     """loss = 0.31 (0.26 to 0.36)."""
     factor, unit = in_degrees(1.0, entry.get("unit", "1"))
@@ -50,12 +55,29 @@ def parameter(name: str, entry: Mapping[str, Any]) -> str:
 def sentences(document: Document) -> list[str]:
     """The answer, in the order in which it is asked for; the engine's own sentence comes first where it wrote one."""
     own = document.get("sentence")
+    if own and document.get("answer"):
+        return [own]
     said = [own] if own else [s for s in (_gap(document), _which(document), _far(document)) if s]
     if not own and len(said) > 1:
         said = [" ".join(said)]
     said += [f"What is left: {text.rstrip('.')}." for text in [left(document)] if text]
     said += [f"Fly next: {text}" for text in [next_flight(document)] if text]
     return said or [f"Verdict: {VERDICTS.get(document.get('verdict', ''), 'none')}."]
+
+
+def headline(document: Document) -> list[str]:
+    """The same with the answer itself in front, where the engine says which of its sentences that is."""
+    said, answer = sentences(document), str(document.get("answer") or "")
+    rest = " ".join(said).replace(answer, "").replace("  ", " ").strip() if answer else ""
+    return [answer, rest] if answer and rest else said
+
+
+def verdict(document: Document) -> str:
+    """The verdict in a few words."""
+    if open_gap(document):
+        return "no cause named"
+    said = str(document.get("verdict", ""))
+    return VERDICTS.get(said, said)
 
 
 def left(document: Document) -> str:
@@ -85,18 +107,6 @@ def where(document: Document, most: int = 5) -> list[str]:
     return [_slice(s) for s in slices[:most]]
 
 
-def not_testable(document: Document) -> list[tuple[str, str]]:
-    """What this log cannot show, and why: a family that is silent for the same reason is one row, its numbers a range.
-
-    ``linear_drag[roll], [yaw]`` beside ``would show with 1.8 to 2.8 standard errors``.
-    """
-    rows: dict[tuple[str, str], list[tuple[str, str]]] = {}
-    for n in document.get("not_testable") or ():
-        name, why = str(n["effect"]), str(n.get("why", ""))
-        rows.setdefault((name.partition("[")[0], _NUMBER.sub("#", why)), []).append((name, why))
-    return [(_family([n for n, _ in group]), _ranges([w for _, w in group])) for group in rows.values()]
-
-
 def run(document: Document) -> str:
     """The run or the runs that it is about."""
     about = document.get("run", "")
@@ -107,24 +117,12 @@ def facts(document: Document) -> dict[str, Any]:
     """The line under the title."""
     slop, window = document.get("calibration_slop"), document.get("window_s")
     return {
-        "verdict": VERDICTS.get(document.get("verdict", ""), document.get("verdict", "")),
+        "verdict": verdict(document),
         "vehicle": document.get("vehicle", ""),
         "model": document.get("model", ""),
         "windows": "" if window is None else f"{window:g} s",
         "calibration slop": "" if slop is None else per_cent(slop),
     }
-
-
-def _family(members: Sequence[str]) -> str:
-    """The first name whole, of the others only the axis or thruster."""
-    return ", ".join([members[0], *(f"[{name.partition('[')[2]}" for name in members[1:])])
-
-
-def _ranges(reasons: Sequence[str]) -> str:
-    """Reasons that differ only in their numbers as one, with the lowest and the highest where they differ."""
-    columns = [sorted(set(column), key=float) for column in zip(*(_NUMBER.findall(why) for why in reasons), strict=True)]
-    spans = iter([values[0] if len(values) == 1 else f"{values[0]} to {values[-1]}" for values in columns])
-    return _NUMBER.sub(lambda _: next(spans), reasons[0])
 
 
 def _slice(s: Mapping[str, Any], with_lift: bool = True) -> str:

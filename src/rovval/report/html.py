@@ -13,8 +13,8 @@ from rovval.data import Array, Comparison
 from rovval.frames import wrap
 from rovval.report import html_tables, page, plots, svg, words
 from rovval.report.json import versions
-from rovval.report.words import in_degrees, number, quantity
-from rovval.units import DEGREES
+from rovval.report.words import number, quantity
+from rovval.units import DEGREES, in_degrees
 
 
 def text(comparison: Comparison) -> str:

@@ -8,8 +8,8 @@ from rovval import metrics
 from rovval.data import ChannelError, Comparison
 from rovval.report import page, words
 from rovval.report.table import skill
-from rovval.report.words import DEGREE_UNITS, number, per_cent
-from rovval.units import DEGREES
+from rovval.report.words import number, per_cent
+from rovval.units import DEGREE_UNITS, DEGREES
 
 _DASH = "–"
 

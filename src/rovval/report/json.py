@@ -12,7 +12,7 @@ from rovval import metrics
 from rovval.compare import CORE, HORIZONS_S, horizons
 from rovval.data import ChannelError, Comparison
 from rovval.report import words
-from rovval.units import DEGREES
+from rovval.units import DEGREE_UNITS, DEGREES
 
 SCHEMA = "rovval.comparison/1"
 
@@ -86,8 +86,8 @@ def _row(row: ChannelError) -> dict[str, Any]:
         "skill": row.skill,
         **row.extra,
     }
-    if row.unit in words.DEGREE_UNITS:
-        values["unit_deg"] = words.DEGREE_UNITS[row.unit]
+    if row.unit in DEGREE_UNITS:
+        values["unit_deg"] = DEGREE_UNITS[row.unit]
         names = [n for n in (*CORE, "baseline_mae", "baseline_rmse", *row.extra) if _has_unit(n)]
         values |= {f"{n}_deg": values[n] * DEGREES for n in names}
     return values

@@ -8,7 +8,8 @@ from rovval.compare import HORIZONS_S, horizons
 from rovval.data import ChannelError, Comparison
 from rovval.report import words
 from rovval.report.table import skill
-from rovval.report.words import in_degrees, number, per_cent, quantity
+from rovval.report.words import number, per_cent, quantity
+from rovval.units import in_degrees
 
 
 def text(comparison: Comparison) -> str:

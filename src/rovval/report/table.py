@@ -9,8 +9,8 @@ from typing import Any
 from rovval import metrics
 from rovval.data import ChannelError, Comparison
 from rovval.report import words
-from rovval.report.words import DEGREE_UNITS, number, per_cent
-from rovval.units import DEGREES
+from rovval.report.words import number, per_cent
+from rovval.units import DEGREE_UNITS, DEGREES
 
 _HEAD = ("", "unit", "mean err", "MAE", "RMSE", "IAE", "no motion", "skill", "RMS", "IAE", "skill", "rows")
 

@@ -7,9 +7,8 @@ from math import floor, isfinite, log10
 from typing import Any
 
 from rovval.data import ChannelError, Comparison
-from rovval.units import DEGREES
+from rovval.units import in_degrees
 
-DEGREE_UNITS = {"rad": "deg", "rad/s": "deg/s"}
 LINEAR = ("surge", "sway", "heave")
 TITLES = {"z": "depth", "phi": "roll angle", "theta": "pitch angle", "psi": "heading"}
 
@@ -38,11 +37,6 @@ def listed(words: Iterable[str]) -> str:
     """surge, sway and yaw."""
     items = list(words)
     return items[0] if len(items) == 1 else f"{', '.join(items[:-1])} and {items[-1]}" if items else ""
-
-
-def in_degrees(value: float, unit: str) -> tuple[float, str]:
-    """The value as people read it: radians become degrees, all else stays."""
-    return (value * DEGREES, DEGREE_UNITS[unit]) if unit in DEGREE_UNITS else (value, unit)
 
 
 def quantity(value: float, unit: str) -> str:
