@@ -102,7 +102,7 @@ def test_the_batch(tmp_path, monkeypatch):
 
 
 def test_every_command_is_in_the_readme_and_every_one_there_exists():
-    named = set(re.findall(r"^\| `rovval (\w+)", README, re.MULTILINE)) | {"show"}
+    named = set(re.findall(r"^\| `rovval ([\w-]+)", README, re.MULTILINE)) | {"show"}
     assert named == {name for name, _, _ in COMMANDS} | {"blind"}
 
 

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from rovval import __version__
-from rovval.cli import blind, compare, demo, diagnose, fit, ingest, listing, run, scenario, simulate, view
+from rovval.cli import blind, compare, demo, diagnose, fit, import_vehicle, ingest, listing, run, scenario, simulate, view
 
 app = typer.Typer(
     rich_markup_mode=None,
@@ -44,6 +44,7 @@ COMMANDS = (
     ("compare", compare.command, "Per-axis error of the simulator, and the report."),
     ("diagnose", diagnose.command, "Which unmodelled effect causes the gap."),
     ("fit", fit.command, "Tune chosen parameters of a vehicle to logs."),
+    ("import-vehicle", import_vehicle.command, "A vehicle of uuv_simulator as a vehicle file of ours."),
     ("scenario", scenario.command, "The thesis's five test scenarios."),
     ("run", run.command, "A batch over many logs."),
     ("view", view.command, "A run in the rerun viewer."),

@@ -36,6 +36,11 @@ def profiles(incomplete: str) -> list[str]:
     return _starting(known("profile"), incomplete) + _paths(incomplete, ".toml")
 
 
+def yaml_files(incomplete: str) -> list[str]:
+    """YAML files."""
+    return sorted(_paths(incomplete, ".yaml") + _paths(incomplete, ".yml"))
+
+
 def effects(incomplete: str) -> list[str]:
     """Effect names; a parameter follows behind a colon."""
     return _starting(known("effect"), incomplete)
