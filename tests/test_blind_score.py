@@ -231,6 +231,8 @@ def test_page_and_text_hold_every_stratum():
         assert stratum in html
         assert stratum in text
     assert "false alarm" in html
+    assert "The right effect comes first in 100 % (79 to 100) of 10 logs" in html
+    assert "A gap is claimed in 100 % (27 to 100) of 1 healthy logs." in html
     assert [w["kind"] for w in result["wrong"]] == ["false alarm"]
 
 
