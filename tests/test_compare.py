@@ -8,9 +8,10 @@ import pytest
 
 from report_cases import make_run, make_sim, motion
 from rovval.channels import AXES, VELOCITIES
-from rovval.compare import compare, horizons
+from rovval.compare import compare
 from rovval.data import Reason, Run, SimResult, Trajectory
 from rovval.errors import BadInput, SimulationStopped
+from rovval.horizons import horizons
 
 
 def identical(run: Run) -> SimResult:

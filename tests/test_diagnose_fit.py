@@ -10,8 +10,9 @@ import pytest
 from diagnose_case import foreign, merlin, own
 from rovval.compare import compare
 from rovval.data import Run
-from rovval.diagnose.fit import FitResult, chosen, fit
+from rovval.diagnose.fit import FitResult, fit
 from rovval.diagnose.tolerance import slop_prior
+from rovval.diagnose.tunable import chosen
 from rovval.errors import UsageProblem
 from rovval.plant import Plant
 from rovval.simulate import simulate

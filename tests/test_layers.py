@@ -16,7 +16,7 @@ ROOMS = (
     ("report",),
     ("diagnose",),
     ("store",),
-    ("compare",),
+    ("compare", "horizons"),
     ("metrics",),
     ("simulate", "simfile"),
     ("drive",),

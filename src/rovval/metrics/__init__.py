@@ -58,6 +58,14 @@ def kept(error: Array, ok: Flags, measured: Array | None = None) -> tuple[Array,
     return error[ok], truth
 
 
+def theil(name: str, error: Array, ok: Flags, measured: Array | None) -> tuple[float, Array, Array]:
+    """What Theil's decomposition is made of: mean squared error, simulated and measured values; refuses where none was measured."""
+    if measured is None:
+        raise BadInput(f"{name} needs the measured values beside the error")
+    e, m = kept(error, ok, measured)
+    return float(np.mean(np.square(e))), m + e, m
+
+
 @cache
 def names() -> tuple[str, ...]:
     """Names of the metrics of this folder."""

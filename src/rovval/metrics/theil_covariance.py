@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rovval.errors import BadInput
-from rovval.metrics import Array, Flags, UnitRule, kept
+from rovval.metrics import Array, Flags, UnitRule, theil
 
 NAME = "theil_covariance"
 TITLE = "Theil covariance share"
@@ -16,9 +15,6 @@ PERFECT = 0.0
 
 def compute(error: Array, ok: Flags, dt: float, measured: Array | None = None) -> float:
     """Share in 0..1, with bias and variance shares adding to 1; 0 where there is no error to share out."""
-    if measured is None:
-        raise BadInput(f"{NAME} needs the measured values beside the error")
-    e, m = kept(error, ok, measured)
-    mse, s = float(np.mean(np.square(e))), m + e
+    mse, s, m = theil(NAME, error, ok, measured)
     covariance = float(np.mean((s - s.mean()) * (m - m.mean())))
     return max(0.0, 2.0 * (float(np.std(s) * np.std(m)) - covariance) / mse) if mse > 0.0 else PERFECT

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from rovval.channels import AXES, POSE, VELOCITIES
-from rovval.compare import HORIZONS_S, horizons
 from rovval.data import Array, Comparison
 from rovval.frames import wrap
+from rovval.horizons import HORIZONS_S, horizons
 from rovval.report import html_tables, page, plots, svg, words
 from rovval.report.json import versions
 from rovval.report.words import number, quantity

@@ -9,8 +9,9 @@ from functools import cache
 from typing import Any
 
 from rovval import metrics
-from rovval.compare import CORE, HORIZONS_S, horizons
+from rovval.compare import CORE
 from rovval.data import ChannelError, Comparison
+from rovval.horizons import HORIZONS_S, horizons
 from rovval.report import words
 from rovval.units import DEGREE_UNITS, DEGREES
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from rovval.compare import HORIZONS_S, horizons
 from rovval.data import ChannelError, Comparison
+from rovval.horizons import HORIZONS_S, horizons
 from rovval.report import words
 from rovval.report.table import skill
 from rovval.report.words import number, per_cent, quantity

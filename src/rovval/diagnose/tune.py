@@ -1,0 +1,91 @@
+"""Which parameters logs can determine, their joint fit by re-simulation, and intervals that hold under autocorrelated residuals."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from rovval.data import Array
+from rovval.diagnose.confirm import Confirmed, confirm, interval
+from rovval.diagnose.library import PRIOR_WIDTH
+from rovval.diagnose.problem import Problem
+from rovval.diagnose.separate import coherence
+
+EXCITED = 3.0  # a typical size shows with this many standard errors while nothing else moves (research E.6)
+TOLD_APART = 1.5  # the same while everything else that is tuned, and slop, moves with it (chosen: a 90 % interval within a typical size)
+WIDEST = 2.0  # typical sizes: a half interval beyond it, at the fitted point, is no answer
+
+
+def determinable(problem: Problem, wanted: Sequence[int]) -> tuple[tuple[int, ...], dict[int, dict[str, Any]]]:
+    """Which slots these logs can determine, and why not the others; the least determined leaves first."""
+    out, left = dict[int, dict[str, Any]](), list(wanted)
+    information = problem.data.A.sum(axis=0) / problem.inflation
+    typical = {s: problem.plant.slots[s].parameter.typical for s in problem.data.columns}
+    for slot in wanted:
+        at = int(problem.data.place((slot,))[0])
+        if (seen := float(np.sqrt(information[at, at])) * typical[slot]) < EXCITED:
+            left.remove(slot)
+            out[slot] = undetermined(f"not excited: a typical size would show with {seen:.1f} standard errors in these logs, {EXCITED:g} are needed")
+    while left:
+        slop = [c for c in problem.slop.sd if c not in left]
+        free = problem.data.place((*left, *slop))
+        prior = [PRIOR_WIDTH * typical[s] for s in left] + [problem.slop.sd[c] for c in slop]
+        covariance = np.linalg.inv(information[np.ix_(free, free)] + np.diag(1.0 / np.array(prior) ** 2))
+        shown = np.array([typical[s] for s in left]) / np.sqrt(np.diag(covariance)[: len(left)])
+        if shown.min() >= TOLD_APART:
+            break
+        worst = left.pop(int(shown.argmin()))
+        why = f"not told apart: a typical size shows with {shown.min():.1f} standard errors while the others move"
+        out[worst] = _confused(problem, worst, (*left, *slop), why)
+    return tuple(left), out
+
+
+def _confused(problem: Problem, slot: int, others: Sequence[int], why: str) -> dict[str, Any]:
+    """What a slot that is excited is confused with: tuned ones and coefficients within slop, by coherence."""
+    beside = sorted(((problem.plant.slots[s].key, coherence(problem.data, (slot,), (s,))) for s in others if s != slot), key=lambda x: -x[1])
+    named = " and ".join(f"{name} ({value:.2f})" for name, value in beside[:2])
+    return undetermined(f"{why}; most like {named}" if named else why, beside[:2])
+
+
+def tuned(problem: Problem, slots: tuple[int, ...]) -> tuple[Confirmed | None, Array, Array, dict[int, dict[str, Any]]]:
+    """The joint fit with its 90 % intervals; slots whose interval says nothing at the fitted point are put back and the rest refitted."""
+    out = dict[int, dict[str, Any]]()
+    while slots:
+        fitted = confirm(problem, problem.origin, slots)
+        bounds = [interval(float(fitted.beta[s]), float(e), problem.blocks) for s, e in zip(slots, joint_errors(problem, fitted), strict=True)]
+        low, high = np.array(bounds).T
+        half = 0.5 * (high - low) / [problem.plant.slots[s].parameter.typical for s in slots]
+        if half.max() <= WIDEST:
+            return fitted, low, high, out
+        worst = slots[int(half.argmax())]
+        why = f"not told apart: its 90 % interval with slop of the others is +-{half.max():.1f} typical sizes"
+        out[worst] = _confused(problem, worst, tuple(dict.fromkeys((*slots, *problem.slop.sd))), why)
+        slots = tuple(s for s in slots if s != worst)
+    return None, np.zeros(0), np.zeros(0), out
+
+
+def joint_errors(problem: Problem, fitted: Confirmed) -> Array:
+    """Standard errors (k,) of the tuned slots: the sandwich of the estimator that `confirm` is, which lets slop move beside them.
+
+    Residuals may be autocorrelated (scores are summed over pairs of windows; where these are few, never less than the inflated covariance), and the other
+    coefficients are off by the declared slop, of which the joint fit takes out what the logs show.
+    """
+    k, data, precision = len(fitted.slots), fitted.point.data, fitted.point.precision
+    bread = np.linalg.inv(data.A.sum(axis=0) + np.diag(precision))
+    step = bread @ (data.b.sum(axis=0) - precision * fitted.point.offset)
+    step[:k] = 0.0
+    score = data.b - np.einsum("wij,j->wi", data.A, step)
+    pairs = score[: len(score) // 2 * 2].reshape(-1, 2, len(step)).sum(axis=1)
+    half = bread[:k] @ pairs.T
+    sandwich = (half**2).sum(axis=1) * (len(score) / max(2 * len(pairs), 1)) * len(pairs) / max(len(pairs) - k, 1)
+    white = problem.inflation * np.einsum("ij,jk,ik->i", bread[:k], data.A.sum(axis=0), bread[:k])
+    slop = bread[:k, k:] * precision[k:] * [problem.slop.sd[c] for c in data.columns[k:]]
+    spread = sandwich if len(pairs) > k + 1 else np.maximum(sandwich, white)
+    return np.asarray(np.sqrt(spread + (slop**2).sum(axis=1)))
+
+
+def undetermined(why: str, beside: Sequence[tuple[str, float]] = ()) -> dict[str, Any]:
+    """The row of a parameter that is left where it was: why, and what it is confused with."""
+    return {"why": why, "with": [{"parameter": name, "coherence": value} for name, value in beside]}
