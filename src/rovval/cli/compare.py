@@ -3,37 +3,43 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from rovval.cli import complete, options, output
 
+if TYPE_CHECKING:
+    from rovval.data import Comparison
+    from rovval.vehicle.model import Vehicle
+
+With = Annotated[
+    Path | None,
+    typer.Option(
+        "--with",
+        metavar="SIM",
+        help="Another simulation of the same run to stand beside ours: a .parquet of `rovval simulate`, "
+        "or a file of velocities that a profile reads.",
+    ),
+]
+WithProfile = Annotated[
+    str | None,
+    typer.Option("--with-profile", metavar="P", autocompletion=complete.profiles, help="How to read SIM, if it is a log file."),
+]
+Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Report folder. Default: reports/RUN.")]
+
 
 def command(
     source: options.Source,
-    with_: Annotated[
-        Path | None,
-        typer.Option(
-            "--with",
-            metavar="SIM",
-            help="Another simulation of the same run to stand beside ours: a .parquet of `rovval simulate`, "
-            "or a file of velocities that a profile reads.",
-        ),
-    ] = None,
-    with_profile: Annotated[
-        str | None,
-        typer.Option(
-            "--with-profile", metavar="P", autocompletion=complete.profiles, help="How to read SIM, if it is a log file."
-        ),
-    ] = None,
+    with_: With = None,
+    with_profile: WithProfile = None,
     vehicle: options.VehicleOption = None,
     model: options.ModelOption = options.Model.fossen,
     effect: options.EffectOption = None,
     window: options.WindowOption = 10.0,
     profile: options.ProfileOption = None,
     archive: options.ArchiveOption = Path("archive"),
-    out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Report folder. Default: reports/RUN.")] = None,
+    out: Out = None,
     fail_above: options.FailAbove = None,
     json_: options.JsonFlag = False,
     quiet: options.QuietOption = False,
@@ -49,12 +55,10 @@ def command(
       rovval compare dive.csv --fail-above surge=0.10 --fail-above yaw.iae=5 --json
       rovval compare run_a.csv --with run_a.sim.csv --with-profile bluerov2_tank_sim
     """
-    from rovval import report, store
+    from rovval import store
     from rovval.compare import compare
     from rovval.pipeline import tolerances
     from rovval.pipeline.steps import other_velocities, simulated, vehicle_of
-    from rovval.report.json import document as comparison_json
-    from rovval.report.table import text
 
     show = output.progress(quiet)
     limits = tolerances.parse(fail_above or ())
@@ -65,15 +69,26 @@ def command(
     show("simulate", 0.3)
     sim = simulated(run, nominal, model.value, tuple(effect or ()), window)
     comparison = compare(run, sim, other, with_.name if with_ else "")
-    document = comparison_json(comparison)
     show("report", 0.7)
-    files = {} if json_ and out is None else report.write(comparison, out or Path("reports") / run.id, nominal)
+    folder = Path("reports") / run.id if out is None and not json_ else out
+    document = _report(comparison, nominal, folder, json_)
     show("report", 1.0)
-    if json_:
+    if beyond := tolerances.exceeded(limits, document):
+        output.say("\n".join(f"rovval: tolerance exceeded: {line}" for line in beyond))
+        raise typer.Exit(1)
+
+
+def _report(comparison: Comparison, vehicle: Vehicle, folder: Path | None, as_json: bool) -> dict[str, Any]:
+    """The report into its folder, if it has one, and the result on stdout; what `--json` prints."""
+    from rovval import report
+    from rovval.report.json import document as comparison_json
+    from rovval.report.table import text
+
+    document = comparison_json(comparison)
+    files = {} if folder is None else report.write(comparison, folder, vehicle)
+    if as_json:
         output.result_json(document)
     else:
         output.result(text(comparison))
         output.result("\nWritten:\n" + output.places(files))
-    if beyond := tolerances.exceeded(limits, document):
-        output.say("\n".join(f"rovval: tolerance exceeded: {line}" for line in beyond))
-        raise typer.Exit(1)
+    return document
