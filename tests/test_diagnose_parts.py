@@ -17,7 +17,7 @@ from rovval.diagnose.linearise import Linear
 from rovval.diagnose.localise import axis_channels, change_points, slices, worst
 from rovval.diagnose.parity import faults, parity
 from rovval.diagnose.problem import pose
-from rovval.diagnose.products import Products, fixed, products, start_corrected
+from rovval.diagnose.products import Products, products, start_corrected
 from rovval.diagnose.separate import coherence
 from rovval.diagnose.stretches import Stretches, cut
 from rovval.effects import load
@@ -46,18 +46,6 @@ def test_products_are_the_inner_products_of_the_full_covariance():
         np.testing.assert_allclose(got.A[w], S.T @ weighed[:, :-1], rtol=1e-9, atol=1e-9)
         np.testing.assert_allclose(got.b[w], S.T @ weighed[:, -1], rtol=1e-9, atol=1e-9)
         np.testing.assert_allclose(got.c[w], (r.T @ weighed[:, -1:])[0, 0], rtol=1e-9)
-
-
-@pytest.mark.parametrize("own", [(10, 12), (11,), ()], ids=str)
-def test_columns_that_stay_fixed_stand_beside_others_as_if_linearised_with_them(own):
-    linear, ok, variance, spread = random_linear()
-    kept = tuple(c for c in (10, 12, 13) if c not in own)
-    whole = products(replace(linear, S=linear.S[..., [c - 10 for c in (*own, *kept)]], columns=(*own, *kept)), ok, variance, spread)
-    mine = replace(linear, S=linear.S[..., [c - 10 for c in own]], columns=own)
-    got = products(mine, ok, variance, spread, fixed(linear, ok, variance, (10, 12, 13)))
-    assert got.columns == whole.columns
-    for a, b in ((got.A, whole.A), (got.b, whole.b), (got.c, whole.c)):
-        np.testing.assert_allclose(a, b, rtol=1e-9, atol=1e-12)
 
 
 def test_a_stopped_window_counts_nothing():

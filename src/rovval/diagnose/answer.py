@@ -30,7 +30,7 @@ def answer(
     """Put everything that was found into one document."""
     before = corrected_residuals(problem)
     axes = axis_rows(problem, before)
-    judgement = judge(problem, selection, axes)
+    judgement = judge(problem, selection, before)
     shrunk = shrinkage(problem, judgement.final, before, seed)
     document = {
         **_head(problem, slop),
@@ -76,17 +76,21 @@ def _head(problem: Problem, slop: float) -> dict[str, object]:
 
 
 def _detection(problem: Problem, selection: Selection, judgement: Judgement) -> dict[str, float]:
-    """What the verdict rests on: p-values, evidence beside that of healthy logs, the share of the gap that is sensor noise, and those that
-    slop alone, any systematic force, and the causes with slop beside them close on held-out windows."""
+    """What the verdict rests on: p-values; the share of the gap that is sensor noise, and that healthy coefficients within slop close;
+    twice the log Bayes factor of the causes, and of a generic force instead of them and beside them; how many standard deviations
+    of its tolerance the most strained healthy coefficient is off."""
+    gap = float(problem.dynamic.c.sum())
     return {
-        "noise": min(float(noise_loss(problem).sum() / problem.dynamic.c.sum()), 1.0),
+        "noise": min(float(noise_loss(problem).sum()) / gap, 1.0),
+        "slop": 1.0 - float(selection.healthy.left().sum()) / gap,
         "p_value": selection.named[0].p_value if selection.named else selection.last_p,
         "last_p": selection.last_p,
         "last_evidence": selection.last_evidence,
         "null_evidence": selection.null_evidence,
-        "slop": judgement.slop_share,
-        "ceiling": judgement.ceiling_share,
-        "cause_and_slop": judgement.cause_share,
+        "causes": judgement.causes,
+        "generic_instead": judgement.instead,
+        "generic_beside": judgement.beside,
+        "strain": judgement.strain,
     }
 
 

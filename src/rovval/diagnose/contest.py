@@ -84,9 +84,9 @@ def fit(ring: Ring, prior: Prior, inflation: float) -> Fit:
     step = np.zeros(ring.b.shape[1])
     if not prior.sd:
         return Fit(float(ring.c.sum()), step)
-    free, ridge = free_of(ring.data, prior, inflation)
+    free, ridge, offset = free_of(ring.data, prior, inflation)
     block = np.ix_(free, free)
-    A, b = ring.A.sum(axis=0)[block], ring.b.sum(axis=0)[free]
+    A, b = ring.A.sum(axis=0)[block], ring.b.sum(axis=0)[free] - ridge @ offset
     loss = 0.0
     for own_A, own_b, own_c in zip(ring.A, ring.b, ring.c, strict=True):
         mine_A, mine_b = own_A[block], own_b[free]
@@ -96,10 +96,10 @@ def fit(ring: Ring, prior: Prior, inflation: float) -> Fit:
     return Fit(loss, step)
 
 
-def free_of(data: Products, prior: Prior, inflation: float) -> tuple[np.ndarray, Array]:
-    """Places of the free columns and their ridge."""
-    sd = np.array(list(prior.sd.values()))
-    return data.place(tuple(prior.sd)), np.diag(inflation / sd**2)
+def free_of(data: Products, prior: Prior, inflation: float) -> tuple[np.ndarray, Array, Array]:
+    """Places of the free columns, their ridge, and how far each already is from where its prior stands."""
+    sd, free = np.array(list(prior.sd.values())), data.place(tuple(prior.sd))
+    return free, np.diag(inflation / sd**2), np.zeros(len(free)) if data.offset is None else data.offset[free]
 
 
 def contest(ring: Ring, base: Prior, hypotheses: Mapping[str, Prior], inflation: float) -> tuple[Fit, dict[str, Fit]]:
@@ -112,8 +112,8 @@ def heldout(data: Products, folds: Sequence[Fold], prior: Prior, inflation: floa
     ring, out = Ring.of(data, folds), data.c.copy()
     if not prior.sd:
         return out
-    free, ridge = free_of(data, prior, inflation)
-    A, b = ring.A.sum(axis=0)[np.ix_(free, free)], ring.b.sum(axis=0)[free]
+    free, ridge, offset = free_of(data, prior, inflation)
+    A, b = ring.A.sum(axis=0)[np.ix_(free, free)], ring.b.sum(axis=0)[free] - ridge @ offset
     for i, fold in enumerate(folds):
         step = np.linalg.solve(A - ring.A[i][np.ix_(free, free)] + ridge, b - ring.b[i][free])
         out[fold.test] = losses(data, free, step, fold.test)

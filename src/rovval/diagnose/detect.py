@@ -41,24 +41,26 @@ class Detection:
 def detect(data: Products, base: Prior, slop: Prior, hypotheses: Mapping[str, Prior], inflation: float, everything: Array, seed: int) -> Detection:
     """Evidence of every hypothesis, real and in null draws; ``everything`` (k,) fits the whole library: its leftover is the disturbance."""
     b = np.concatenate([data.b.sum(axis=0)[None], _draws(data, slop, everything, np.random.default_rng(seed))])
-    A = data.A.sum(axis=0)
-    ground = _evidence(data, A, b, base, inflation)
+    A, real = data.A.sum(axis=0), np.array([1.0, *np.zeros(DRAWS)])[:, None]
+    ground = _evidence(data, A, b, real, base, inflation)
     evidence, best = dict[str, float](), np.full(DRAWS, -np.inf)
     for name, prior in hypotheses.items():
-        gain = _evidence(data, A, b, base.widened(prior), inflation) - ground
+        gain = _evidence(data, A, b, real, base.widened(prior), inflation) - ground
         evidence[name] = float(gain[0])
         best = np.maximum(best, gain[1:])
     return Detection(evidence, best)
 
 
-def _evidence(data: Products, A: Array, b: Array, prior: Prior, inflation: float) -> Array:
+def _evidence(data: Products, A: Array, b: Array, real: Array, prior: Prior, inflation: float) -> Array:
     """Twice the log evidence (d,) of each right-hand side ``b`` (d, k), up to a constant: explained sum of squares less the log volume
-    that the data takes from the prior (MacKay 1992, 2.7)."""
+    that the data takes from the prior (MacKay 1992, 2.7). ``real`` (d, 1) is 1 where the columns are as far from their priors as the
+    log's fit has taken them, 0 for null draws, which begin at them."""
     if not prior.sd:
         return np.zeros(len(b))
-    free, ridge = free_of(data, prior, inflation)
-    H = A[np.ix_(free, free)] + ridge
-    explained = (b[:, free] * np.linalg.solve(H, b[:, free].T).T).sum(axis=1) / inflation
+    free, ridge, offset = free_of(data, prior, inflation)
+    H, pull = A[np.ix_(free, free)] + ridge, real * (ridge @ offset)
+    slope = b[:, free] - pull
+    explained = ((slope * np.linalg.solve(H, slope.T).T).sum(axis=1) - pull @ offset) / inflation
     volume = np.linalg.slogdet(H)[1] - np.log(np.diag(ridge)).sum()
     return np.asarray(explained - volume)
 

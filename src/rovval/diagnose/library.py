@@ -46,7 +46,7 @@ def hypotheses(parts: Sequence[Stretches], without: Sequence[str] = ()) -> tuple
     plant, found, untestable = parts[0].plant, list[Hypothesis](), dict[str, str]()
     for name, slots in plant.hypotheses.items():
         effect = effects.load(name.partition("[")[0])
-        if {name, effect.name} & set(without):
+        if not effect.competes or {name, effect.name} & set(without):
             continue
         missing = [c for c in effect.needs if not all(part.run.measured(c) for part in parts)]
         if missing:

@@ -60,10 +60,12 @@ def simulate_windows(stretches: Stretches, beta: Array, nu0: Array, eta0: Array,
     return out, fine
 
 
-def linearise(stretches: Stretches, beta: Array, columns: tuple[int, ...], directions: Sequence[Direction] = ()) -> Linear:
-    """Residual and sensitivities about ``beta`` (k,) for every window."""
+def linearise(
+    stretches: Stretches, beta: Array, columns: tuple[int, ...], directions: Sequence[Direction] = (), coarse: tuple[int, ...] = ()
+) -> Linear:
+    """Residual and sensitivities about ``beta`` (k,) for every window; columns ``coarse``, behind the others, by one-sided differences."""
     states = _state_steps(stretches)
-    lanes = _lanes(stretches, beta, states, columns, directions)
+    lanes = _lanes(stretches, beta, states, columns, directions) + _one_sided(stretches, beta, coarse)
     windows = stretches.count
     b = np.repeat(np.stack([lane.beta for lane in lanes]), windows, axis=0)
     nu = np.concatenate([stretches.nu0 + lane.nu for lane in lanes])
@@ -71,7 +73,7 @@ def linearise(stretches: Stretches, beta: Array, columns: tuple[int, ...], direc
     out, fine = simulate_windows(stretches, b, nu, eta, np.tile(np.arange(windows), len(lanes)))
     out = out.reshape(len(lanes), windows, stretches.steps + 1, len(stretches.channels))
     nominal = out[0]
-    ids = (*columns, *(d.id for d in directions))
+    ids = (*columns, *(d.id for d in directions), *coarse)
     J, S = np.zeros((*nominal.shape, len(states) + len(_drifting(stretches)))), np.zeros((*nominal.shape, len(ids)))
     for i, channel in enumerate(_drifting(stretches)):
         J[..., channel, len(states) + i] = 1.0
@@ -124,6 +126,15 @@ def _lanes(
             lanes.append(Lane(there, still, still))
         up, _ = _both_ways(stretches, there, d.slot)
         lanes.append(Lane(_moved(there, [(d.slot, there[d.slot] + up)]), still, still, column=d.id, step=up, against=bases[d.at]))
+    return lanes
+
+
+def _one_sided(stretches: Stretches, beta: Array, columns: tuple[int, ...]) -> list[Lane]:
+    """One lane a parameter, the way that its bounds leave open."""
+    still, lanes = np.zeros(6), []
+    for column in columns:
+        up, down = _both_ways(stretches, beta, column)
+        lanes.append(Lane(_moved(beta, [(column, beta[column] + (up or down))]), still, still, column=column, step=up or down))
     return lanes
 
 

@@ -16,7 +16,7 @@ from rovval.diagnose.contest import Fold, Prior, Ring, fit, folds_of, inflation_
 from rovval.diagnose.library import Hypothesis
 from rovval.diagnose.linearise import Direction, Linear, linearise, state_spread
 from rovval.diagnose.parity import Parity, parity
-from rovval.diagnose.products import Fixed, Products, fixed, joined, products, start_corrected
+from rovval.diagnose.products import Products, joined, products, start_corrected
 from rovval.diagnose.stretches import BELIEVED, Stretches
 from rovval.diagnose.tolerance import slop_prior
 from rovval.plant import Plant, parse_settings
@@ -27,16 +27,14 @@ SMOOTH = 11  # samples over which the unexplained variance is smoothed along the
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """``parts`` one per run; ``origin`` (k,) the parameters it starts from; ``variance`` (n, c); ``at_null`` the linearisation,
-    ``beside`` its columns of slop and ``data`` the products (with parity) at the nominal vehicle; ``inflation`` the design effect of
-    autocorrelated residuals."""
+    """``parts`` one per run; ``origin`` (k,) the parameters it starts from; ``variance`` (n, c); ``at_null`` the linearisation
+    and ``data`` the products (with parity) at the nominal vehicle; ``inflation`` the design effect of autocorrelated residuals."""
 
     parts: tuple[Stretches, ...]
     origin: Array
     variance: Array
     slop: Prior
     at_null: tuple[Linear, ...]
-    beside: tuple[Fixed, ...]
     dynamic: Products
     data: Products
     parity: tuple[Parity, ...]
@@ -74,8 +72,7 @@ def pose(parts: tuple[Stretches, ...], library: Sequence[Hypothesis], slop: floa
     dynamic = _joined(parts, linear, variance)
     inflation = inflation_of(dynamic, fit(Ring.of(dynamic, folds), everything, inflation).step)
     data = dynamic + joined([check.moved(origin, dynamic.columns).products(inflation) for check in checks])
-    beside = tuple(fixed(one, part.ok, variance, tuple(prior.sd)) for part, one in zip(parts, linear, strict=True))
-    return Problem(parts, origin, variance, prior, linear, beside, dynamic, data, checks, folds, inflation, run_of_window)
+    return Problem(parts, origin, variance, prior, linear, dynamic, data, checks, folds, inflation, run_of_window)
 
 
 def columns_of(library: Sequence[Hypothesis], slop: Prior) -> tuple[tuple[int, ...], tuple[Direction, ...]]:
@@ -87,16 +84,18 @@ def columns_of(library: Sequence[Hypothesis], slop: Prior) -> tuple[tuple[int, .
 
 def at(problem: Problem, beta: Array, columns: tuple[int, ...], directions: Sequence[Direction] = ()) -> tuple[Products, Products]:
     """Products of every window about ``beta`` for the given columns: (dynamics alone, dynamics and parity)."""
-    return _products(problem, beta, tuple(linearise(part, beta, columns, directions) for part in problem.parts))
+    return products_about(problem, beta, tuple(linearise(part, beta, columns, directions) for part in problem.parts))
 
 
-def beside_slop(problem: Problem, beta: Array, columns: tuple[int, ...]) -> tuple[Products, Products]:
-    """As `at`, with the columns of calibration slop beside them; those are taken from the nominal vehicle, where they were simulated."""
-    return _products(problem, beta, tuple(linearise(part, beta, columns) for part in problem.parts), problem.beside)
+def beside(linear: Linear, other: Linear, columns: tuple[int, ...]) -> Linear:
+    """The same linearisation with further columns, whose slopes are taken from another one."""
+    place = [other.columns.index(c) for c in columns]
+    return replace(linear, S=np.concatenate([linear.S, other.S[..., place]], axis=-1), columns=(*linear.columns, *columns))
 
 
-def _products(problem: Problem, beta: Array, linear: tuple[Linear, ...], beside: Sequence[Fixed] = ()) -> tuple[Products, Products]:
-    dynamic = _joined(problem.parts, linear, problem.variance, beside)
+def products_about(problem: Problem, beta: Array, linear: tuple[Linear, ...]) -> tuple[Products, Products]:
+    """Products of linearisations about ``beta``: (dynamics alone, dynamics and parity)."""
+    dynamic = _joined(problem.parts, linear, problem.variance)
     moved = joined([check.moved(beta, dynamic.columns).products(problem.inflation) for check in problem.parity])
     return dynamic, dynamic + moved
 
@@ -109,10 +108,9 @@ def corrected_residuals(problem: Problem, beta: Array | None = None) -> list[Arr
     ]
 
 
-def _joined(parts: Sequence[Stretches], linear: Sequence[Linear], variance: Array, beside: Sequence[Fixed] = ()) -> Products:
-    others: Sequence[Fixed | None] = beside or [None] * len(parts)
+def _joined(parts: Sequence[Stretches], linear: Sequence[Linear], variance: Array) -> Products:
     return joined(
-        [products(one, part.ok, variance, state_spread(part), other) for part, one, other in zip(parts, linear, others, strict=True)]
+        [products(one, part.ok, variance, state_spread(part)) for part, one in zip(parts, linear, strict=True)]
     )
 
 

@@ -17,12 +17,14 @@ from rovval.diagnose.linearise import Linear
 
 @dataclass(frozen=True, slots=True)
 class Products:
-    """Per window: ``A`` (m, k, k), ``b`` (m, k), ``c`` (m,); ``columns`` are the plant's slot numbers of the k parameters."""
+    """Per window: ``A`` (m, k, k), ``b`` (m, k), ``c`` (m,); ``columns`` are the plant's slot numbers of the k parameters; ``offset`` (k,)
+    how far each is from where its prior stands (None: all at it)."""
 
     A: Array
     b: Array
     c: Array
     columns: tuple[int, ...]
+    offset: Array | None = None
 
     def place(self, slots: tuple[int, ...]) -> np.ndarray:
         """Positions of plant slots among the columns."""
@@ -30,7 +32,7 @@ class Products:
         return np.array([where[s] for s in slots], dtype=int)
 
     def __add__(self, other: Products) -> Products:
-        return Products(self.A + other.A, self.b + other.b, self.c + other.c, self.columns)
+        return Products(self.A + other.A, self.b + other.b, self.c + other.c, self.columns, self.offset)
 
 
 def joined(parts: list[Products]) -> Products:
@@ -43,55 +45,22 @@ def joined(parts: list[Products]) -> Products:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class Fixed:
-    """Columns that stay as they are wherever the others are linearised (calibration slop): weighed ``x`` (m, n c, k) and its ``gram``
-    (m, k, k), so that going to another point does not cost them again."""
-
-    x: Array
-    gram: Array
-    columns: tuple[int, ...]
-
-    def place(self, without: tuple[int, ...]) -> np.ndarray:
-        """Positions of the columns that are not in ``without``."""
-        return np.array([i for i, c in enumerate(self.columns) if c not in without], dtype=int)
-
-
-def fixed(linear: Linear, ok: np.ndarray, variance: Array, columns: tuple[int, ...]) -> Fixed:
-    """``columns`` of a linearisation, to stand beside others."""
-    m, k = len(linear.r), len(columns)
-    weight = np.where(ok, 1.0 / np.sqrt(variance), 0.0)
-    x = (linear.S[..., [linear.columns.index(c) for c in columns]] * weight[..., None]).reshape(m, -1, k)
-    return Fixed(x, np.stack([one.T @ one for one in x]), columns)
-
-
-def products(linear: Linear, ok: np.ndarray, variance: Array, spread: Array, beside: Fixed | None = None) -> Products:
-    """Products of every window; ``variance`` (n, c), ``spread`` (s,) standard error of the initial states. Columns ``beside`` those of
-    ``linear`` that it does not hold itself come after its own."""
-    m, own = len(linear.r), linear.S.shape[-1]
-    extra = beside.place(linear.columns) if beside else np.zeros(0, dtype=int)
-    k = own + len(extra)
+def products(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> Products:
+    """Products of every window; ``variance`` (n, c), ``spread`` (s,) standard error of the initial states."""
+    m, k = len(linear.r), linear.S.shape[-1]
     A, b, c = np.zeros((m, k, k)), np.zeros((m, k)), np.zeros(m)
     root = 1.0 / np.sqrt(variance)
-    for w in np.flatnonzero(linear.valid):
+    for w in range(m):
+        if not linear.valid[w]:
+            continue
         weight = np.where(ok[w], root, 0.0).reshape(-1, 1)
-        x = np.concatenate([linear.S[w].reshape(len(weight), own), linear.r[w].reshape(-1, 1)], axis=1) * weight
+        x = np.concatenate([linear.S[w].reshape(len(weight), k), linear.r[w].reshape(-1, 1)], axis=1) * weight
         j = linear.J[w].reshape(len(weight), -1) * weight * spread
-        gram, cross = x.T @ x, j.T @ x
-        if beside and len(extra):
-            gram = _bordered(gram, (x.T @ beside.x[w])[:, extra], beside.gram[w][np.ix_(extra, extra)])
-            cross = np.concatenate([cross[:, :own], (j.T @ beside.x[w])[:, extra], cross[:, own:]], axis=1)
+        gram = x.T @ x
+        cross = j.T @ x
         gram -= cross.T @ np.linalg.solve(np.eye(j.shape[1]) + j.T @ j, cross)
         A[w], b[w], c[w] = gram[:k, :k], gram[:k, k], gram[k, k]
-    return Products(A, b, c, (*linear.columns, *(beside.columns[i] for i in extra)) if beside else linear.columns)
-
-
-def _bordered(gram: Array, across: Array, block: Array) -> Array:
-    """Gram matrix of (own, residual) with other columns set in between: own, others, residual."""
-    own, both = len(gram) - 1, np.zeros((len(gram) + len(block),) * 2)
-    mine, others = [*range(own), len(both) - 1], slice(own, len(both) - 1)
-    both[np.ix_(mine, mine)], both[mine, others], both[others, mine], both[others, others] = gram, across, across.T, block
-    return both
+    return Products(A, b, c, linear.columns)
 
 
 def start_corrected(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> Array:

@@ -13,13 +13,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rovval.data import Array
-from rovval.diagnose.confirm import NAMING_SLOP, Confirmed, confirm, significance
+from rovval.diagnose.confirm import Confirmed, confirm, roughly, significance
 from rovval.diagnose.contest import Fit, Prior, Ring, contest, fit
 from rovval.diagnose.detect import Detection, detect
 from rovval.diagnose.library import PRIOR_WIDTH, Hypothesis
 from rovval.diagnose.problem import Problem, at, columns_of
 from rovval.diagnose.products import Products
 from rovval.diagnose.separate import PER_PARAMETER, Rival, coherence, group
+from rovval.diagnose.settle import Point, evidence, settle
 
 MOST = 3  # effects at once
 FINALISTS = 10  # hypotheses that are re-simulated in a round
@@ -32,6 +33,7 @@ LATER_GAIN = 0.08  # the same for a second and third effect: the forms of equati
 LEAST_EVIDENCE = 16.0  # over slop: well past "very strong" (10; Kass & Raftery 1995), since null logs reach 10 now and then
 LEAST_SIGMA = 2.2  # standard errors, slop included, by which an effect departs from nothing (tuning set: healthy logs reach 2.0)
 TOLERANCES = 3.0  # times the tolerance of calibration slop within which a coefficient is not worth a name
+SHARPENED = 4  # finalists that are settled with slopes made at their own point
 SERIOUS = 0.5  # share of the best evidence from which a rival's gain counts
 NEARLY = 0.9  # of the best's gain
 LEAST_OF_BEST = 0.5  # of the gain of the best serious rival
@@ -51,11 +53,12 @@ class Named:
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """Effects in the order found; the final joint fit (None: nothing found); every hypothesis's held-out share of the gap alone;
+    """Effects in the order found; the final joint fit (None: nothing found); where slop settles without any; every hypothesis's held-out share of the gap;
     of each round the finalists with their evidence and held-out gain; the p-value of the round that ended the search."""
 
     named: tuple[Named, ...]
     final: Confirmed | None
+    healthy: Point
     ranking: tuple[tuple[str, float], ...]
     rounds: tuple[tuple[tuple[str, float, float], ...], ...]
     last_p: float
@@ -65,14 +68,15 @@ class Selection:
 
 def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Callable[[str, float], None]) -> Selection:
     """Search for the effects that explain the gap; see the module."""
-    beta, chosen = problem.origin.copy(), tuple[int, ...]()
+    chosen, loss = tuple[int, ...](), problem.data.c
+    healthy = base = settle(problem, problem.origin, ())
     named: list[Named] = []
     rounds: list[tuple[tuple[str, float, float], ...]] = []
     ranking: tuple[tuple[str, float], ...] = ()
     p, last, null = 1.0, 0.0, 0.0
     for round_number in range(MOST):
         progress(f"screening {len(library)} hypotheses, round {round_number + 1}", 0.3 + 0.2 * round_number)
-        data = _bank(problem, library, beta, chosen)
+        data = _bank(problem, library, base)
         open_now = [h for h in library if h.name not in {n.hypothesis.name for n in named}]
         detection = _detect(problem, data, open_now, chosen, seed + round_number)
         names = _name(problem, data, open_now, chosen)
@@ -82,10 +86,10 @@ def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Cal
         if p > FALSE_ALARM:
             break
         progress("re-simulating the finalists", 0.4 + 0.2 * round_number)
-        fitted = _finalists(problem, data, names, detection, beta, chosen)
-        ground = confirm(problem, beta, chosen)
-        able = admissible(problem, fitted, ground)
-        rounds.append(tuple((r.hypothesis.name, r.evidence, r.gain) for r in able or _weighed(fitted, ground, float(problem.data.c.sum()))))
+        fitted = _finalists(problem, data, names, detection, base, chosen)
+        weighed = _weighed(problem, fitted, base, loss)
+        able = admissible(problem, _sharpened(problem, admissible(problem, weighed), base, loss))
+        rounds.append(tuple((r.hypothesis.name, r.evidence, r.gain) for r in able or weighed))
         if not able or able[0].gain < (LATER_GAIN if named else LEAST_GAIN) or able[0].evidence < LEAST_EVIDENCE:
             break
         members = group(problem, able, seed)
@@ -93,9 +97,9 @@ def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Cal
         members = tuple(sorted(members, key=lambda member: member[0] != best.hypothesis.name))
         named.append(Named(best.hypothesis, members, best.fitted, detection.p_value(best.hypothesis.label), best.evidence))
         named = _pruned(problem, named)
-        beta, chosen = named[-1].fitted.beta, named[-1].fitted.slots
+        chosen, loss, base = named[-1].fitted.slots, named[-1].fitted.loss, named[-1].fitted.point
     final = named[-1].fitted if named else None
-    return Selection(tuple(named), final, ranking, tuple(rounds), p, last, null)
+    return Selection(tuple(named), final, healthy, ranking, tuple(rounds), p, last, null)
 
 
 def _pruned(problem: Problem, named: list[Named]) -> list[Named]:
@@ -112,12 +116,12 @@ def _pruned(problem: Problem, named: list[Named]) -> list[Named]:
     return named
 
 
-def _bank(problem: Problem, library: list[Hypothesis], beta: Array, chosen: tuple[int, ...]) -> Products:
+def _bank(problem: Problem, library: list[Hypothesis], base: Point) -> Products:
     """Linearise everything about the point reached."""
-    if (beta == problem.origin).all():
-        return problem.data
     columns, directions = columns_of(library, problem.slop)
-    return at(problem, beta, tuple(sorted({*columns, *chosen})), directions)[1]
+    data = at(problem, base.beta, tuple(sorted({*columns, *base.columns})), directions)[1]
+    offset = np.array([base.beta[c] - problem.origin[c] if c < len(base.beta) else 0.0 for c in data.columns])
+    return replace(data, offset=offset)
 
 
 def _free(problem: Problem, slots: tuple[int, ...]) -> Prior:
@@ -138,9 +142,9 @@ def _detect(problem: Problem, data: Products, library: list[Hypothesis], chosen:
 
 
 def _name(problem: Problem, data: Products, library: list[Hypothesis], chosen: tuple[int, ...]) -> dict[str, tuple[Hypothesis, Fit, float]]:
-    """Held-out contest of names with only a trace of slop: label -> hypothesis, fit, share of the loss that it takes away."""
-    tight = problem.slop.scaled(NAMING_SLOP).widened(_free(problem, chosen))
-    _, fits = contest(Ring.of(data, problem.folds), tight, {h.label: _prior(h) for h in library}, problem.inflation)
+    """Held-out contest of names with slop beside them: label -> hypothesis, fit, share of the loss that it takes away."""
+    base = problem.slop.widened(_free(problem, chosen))
+    _, fits = contest(Ring.of(data, problem.folds), base, {h.label: _prior(h) for h in library}, problem.inflation)
     return {h.label: (h, fits[h.label], 1.0 - fits[h.label].loss / max(float(data.c.sum()), 1e-300)) for h in library}
 
 
@@ -152,15 +156,15 @@ def _ranking(contest: dict[str, tuple[Hypothesis, Fit, float]]) -> tuple[tuple[s
 
 
 def _finalists(
-    problem: Problem, data: Products, names: dict[str, tuple[Hypothesis, Fit, float]], detection: Detection, beta: Array, chosen: tuple[int, ...]
+    problem: Problem, data: Products, names: dict[str, tuple[Hypothesis, Fit, float]], detection: Detection, base: Point, chosen: tuple[int, ...]
 ) -> list[tuple[Hypothesis, Confirmed]]:
     """The best starting point of each of the best hypotheses, refitted by re-simulation jointly with what was chosen before."""
     ordered = sorted(names.values(), key=lambda item: -detection.evidence[item[0].label])
     fitted: dict[str, tuple[Hypothesis, Confirmed]] = {}
 
     def refit(h: Hypothesis, one: Fit) -> None:
-        start = _start(problem, data, h, one, beta)
-        fitted[h.name] = h, confirm(problem, start, tuple(dict.fromkeys((*chosen, *h.slots))))
+        start = _start(problem, data, h, one, base.beta)
+        fitted[h.name] = h, roughly(problem, start, tuple(dict.fromkeys((*chosen, *h.slots))), base.linear)
 
     for h, one, _ in ordered:
         if h.name not in fitted and len(fitted) < FINALISTS and detection.evidence[h.label] > 0:
@@ -174,12 +178,21 @@ def _finalists(
     return list(fitted.values())
 
 
-def _weighed(fitted: list[tuple[Hypothesis, Confirmed]], ground: Confirmed, gap: float) -> list[Rival]:
-    rivals = [Rival(h, c, c.evidence - ground.evidence, float((ground.loss - c.loss).sum()) / gap) for h, c in fitted]
+def _sharpened(problem: Problem, rivals: list[Rival], base: Point, loss: Array) -> list[Rival]:
+    """The best of the admissible settled with slopes made at their own point, the others as they are."""
+    serious = [r for r in rivals if r.evidence > SERIOUS * rivals[0].evidence][:SHARPENED]
+    sharp = [(r.hypothesis, confirm(problem, r.fitted.point.beta, r.fitted.slots)) for r in serious]
+    return _weighed(problem, sharp + [(r.hypothesis, r.fitted) for r in rivals if r not in serious], base, loss)
+
+
+def _weighed(problem: Problem, fitted: list[tuple[Hypothesis, Confirmed]], base: Point, loss: Array) -> list[Rival]:
+    """Finalists with what they add to what stands: evidence over slop, and the share of the gap that they close by themselves."""
+    ground, gap = float(evidence(problem, base, np.ones((1, problem.blocks)))[0]), float(problem.data.c.sum())
+    rivals = [Rival(h, c, c.evidence - ground, float((loss - c.loss).sum()) / gap) for h, c in fitted]
     return sorted(rivals, key=lambda r: -r.evidence)
 
 
-def admissible(problem: Problem, fitted: list[tuple[Hypothesis, Confirmed]], ground: Confirmed) -> list[Rival]:
+def admissible(problem: Problem, weighed: list[Rival]) -> list[Rival]:
     """Finalists that could be the cause, best evidence first.
 
     Evidence alone is not enough: what a hypothesis achieves only with slop's help leaves the gap itself open. It must close, by itself
@@ -187,7 +200,7 @@ def admissible(problem: Problem, fitted: list[tuple[Hypothesis, Confirmed]], gro
     all other coefficients could feign. A thruster counts as reversed only where it pushes the other way (up to half-reversed it is
     a degraded one), and what begins before the log does has no onset in it.
     """
-    rivals = [r for r in _weighed(fitted, ground, float(problem.data.c.sum())) if not _half_reversed(r) and not _from_the_start(problem, r)]
+    rivals = [r for r in weighed if not _half_reversed(r) and not _from_the_start(problem, r)]
     if not rivals or rivals[0].evidence <= 0:
         return []
     serious = max(r.gain for r in rivals if r.evidence >= SERIOUS * rivals[0].evidence)
@@ -233,9 +246,10 @@ def _start(problem: Problem, data: Products, h: Hypothesis, one: Fit, beta: Arra
     start = beta.copy()
     for slot, value in h.at:
         start[slot] = value
-    free = [d.slot for d in h.directions] or list(h.columns)
-    for slot, step in zip(free, one.step[data.place(h.columns)], strict=True):
-        if slot >= 0:
+    moved = {d.id: d.slot for d in h.directions}
+    for column, step in zip(data.columns, one.step, strict=True):
+        slot = moved.get(column, column)
+        if step and 0 <= slot < len(start):
             parameter = problem.plant.slots[slot].parameter
             start[slot] = float(np.clip(start[slot] + step, parameter.low, parameter.high))
     return start

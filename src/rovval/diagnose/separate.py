@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.data import Array
-from rovval.diagnose.confirm import Confirmed, evidence_of
+from rovval.diagnose.confirm import Confirmed
 from rovval.diagnose.library import Hypothesis
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import Products
+from rovval.diagnose.settle import evidence
 
 RESAMPLES = 500
 GROUP_RESAMPLES = 200
@@ -41,7 +42,7 @@ def group(problem: Problem, rivals: list[Rival], seed: int, block: int = 2) -> t
     draws = _blocks(problem.blocks, block, np.random.default_rng(seed))[:GROUP_RESAMPLES]
     counts = np.stack([np.bincount(draw, minlength=problem.blocks) for draw in draws]).astype(float)
     near = [r for r in rivals if r.evidence > (1 - 2 * FORM) * best.evidence or _near(r, best)]
-    total = {r.hypothesis.name: evidence_of(problem, r.fitted.point, len(r.fitted.slots), counts) for r in near}
+    total = {r.hypothesis.name: evidence(problem, r.fitted.point, counts) for r in near}
     lead = total[best.hypothesis.name]
     kept = [r for r in near if r is best or _near(r, best) or float((total[r.hypothesis.name] >= lead).mean()) > LEVEL]
     short = [best.evidence * (1 - PER_PARAMETER * _saved(r, best)) - r.evidence for r in rivals]

@@ -10,6 +10,7 @@ from rovval.diagnose.contest import Prior
 from rovval.plant import Plant
 
 RELATIVE = ("added_mass", "linear_drag", "quadratic_drag", "inertia_error", "thruster_degraded", "reverse_asymmetry", "rpm_scale")
+ASTERN = 0.5  # of the slop: how far the gains ahead and astern of one thruster are off apart from each other (chosen)
 MOUNTING = 0.3  # rad per unit of slop: 5 % slop goes with thrusters mounted to within a degree
 TRIM = 0.02  # of the weight per unit of slop: 5 % slop goes with a vehicle trimmed to a thousandth of its weight
 LEVEL = 0.4  # of the metacentric height per unit of slop: 5 % slop goes with a vehicle that floats level to a degree
@@ -36,6 +37,8 @@ def slop_prior(plant: Plant, slop: float) -> Prior:
         name = slot.parameter.name
         if slot.effect in RELATIVE:
             sd[i] = slop * (0.5 if slot.effect == "rpm_scale" else 1.0)
+        elif slot.effect == "thruster_astern":
+            sd[i] = ASTERN * slop
         elif slot.effect == "thruster_misaligned":
             sd[i] = MOUNTING * slop
         elif slot.effect == "buoyancy_error":

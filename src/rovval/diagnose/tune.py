@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rovval.data import Array
-from rovval.diagnose.confirm import Confirmed, confirm, interval
+from rovval.diagnose.confirm import Confirmed, confirm, errors, interval
 from rovval.diagnose.library import PRIOR_WIDTH
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.separate import coherence
@@ -54,7 +54,7 @@ def tuned(problem: Problem, slots: tuple[int, ...]) -> tuple[Confirmed | None, A
     out = dict[int, dict[str, Any]]()
     while slots:
         fitted = confirm(problem, problem.origin, slots)
-        bounds = [interval(float(fitted.beta[s]), float(e), problem.blocks) for s, e in zip(slots, joint_errors(problem, fitted), strict=True)]
+        bounds = [interval(float(fitted.beta[s]), float(e), problem.blocks) for s, e in zip(slots, errors(problem, fitted), strict=True)]
         low, high = np.array(bounds).T
         half = 0.5 * (high - low) / [problem.plant.slots[s].parameter.typical for s in slots]
         if half.max() <= WIDEST:
@@ -64,26 +64,6 @@ def tuned(problem: Problem, slots: tuple[int, ...]) -> tuple[Confirmed | None, A
         out[worst] = _confused(problem, worst, tuple(dict.fromkeys((*slots, *problem.slop.sd))), why)
         slots = tuple(s for s in slots if s != worst)
     return None, np.zeros(0), np.zeros(0), out
-
-
-def joint_errors(problem: Problem, fitted: Confirmed) -> Array:
-    """Standard errors (k,) of the tuned slots: the sandwich of the estimator that `confirm` is, which lets slop move beside them.
-
-    Residuals may be autocorrelated (scores are summed over pairs of windows; where these are few, never less than the inflated covariance), and the other
-    coefficients are off by the declared slop, of which the joint fit takes out what the logs show.
-    """
-    k, data, precision = len(fitted.slots), fitted.point.data, fitted.point.precision
-    bread = np.linalg.inv(data.A.sum(axis=0) + np.diag(precision))
-    step = bread @ (data.b.sum(axis=0) - precision * fitted.point.offset)
-    step[:k] = 0.0
-    score = data.b - np.einsum("wij,j->wi", data.A, step)
-    pairs = score[: len(score) // 2 * 2].reshape(-1, 2, len(step)).sum(axis=1)
-    half = bread[:k] @ pairs.T
-    sandwich = (half**2).sum(axis=1) * (len(score) / max(2 * len(pairs), 1)) * len(pairs) / max(len(pairs) - k, 1)
-    white = problem.inflation * np.einsum("ij,jk,ik->i", bread[:k], data.A.sum(axis=0), bread[:k])
-    slop = bread[:k, k:] * precision[k:] * [problem.slop.sd[c] for c in data.columns[k:]]
-    spread = sandwich if len(pairs) > k + 1 else np.maximum(sandwich, white)
-    return np.asarray(np.sqrt(spread + (slop**2).sum(axis=1)))
 
 
 def undetermined(why: str, beside: Sequence[tuple[str, float]] = ()) -> dict[str, Any]:

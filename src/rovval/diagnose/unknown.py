@@ -1,7 +1,8 @@
-"""What any systematic cause could explain: a ceiling of generic forces that depend on speed, attitude, heading, depth and thrusters.
+"""What any systematic cause could explain: generic forces that depend on speed, attitude, heading, depth and thrusters.
 
-It is never the explanation. It says how much of the gap is systematic at all, so that a library effect that is only the least bad is
-not named, and it says on which axis and with what the unexplained force varies.
+They are never the explanation. Set free beside what was found and beside calibration slop, their evidence says how much of the gap is
+systematic and still unexplained, so that a library effect that is only the least bad is not named; and on which axis and with
+what the unexplained force varies.
 """
 
 from __future__ import annotations
@@ -13,10 +14,11 @@ import numpy as np
 
 from rovval.channels import AXES
 from rovval.data import Array
-from rovval.diagnose.contest import Prior, Ring, fit, heldout
-from rovval.diagnose.linearise import Linear, linearise, simulate_windows, state_spread
+from rovval.diagnose.contest import Fold, Prior, heldout
+from rovval.diagnose.linearise import Linear, simulate_windows, state_spread
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import Products, joined, products
+from rovval.diagnose.settle import Point
 from rovval.diagnose.stretches import Stretches, difference, predicted
 from rovval.vehicle.model import allocation
 
@@ -24,27 +26,65 @@ SHARES = (0.01, 0.1, 1.0)  # prior sizes tried for a generic force, as a share o
 
 
 @dataclass(frozen=True, slots=True)
-class Ceiling:
-    """Held-out loss per window (m,) under generic forces; the axes it acts on and the features that carry it, best first."""
+class Forces:
+    """Generic forces ``names`` (axis, feature) beside the columns of a point: products of all (the forces last), the precision of the
+    point's columns and the gradient that their priors add."""
 
-    loss: Array
-    axes: tuple[tuple[str, float], ...]
-    features: tuple[tuple[str, float], ...]
+    names: tuple[tuple[str, str], ...]
+    data: Products
+    precision: Array
+    pull: Array
+    inflation: float
+
+    def evidence(self, axes: Sequence[str] = AXES, feature: str = "") -> float:
+        """Twice the log Bayes factor of forces on ``axes`` (and of one feature only) over none, at the best of the prior sizes."""
+        chosen = [i for i, (axis, name) in enumerate(self.names) if axis in axes and feature in ("", name)]
+        return max((self._evidence(chosen, share) - self._evidence([], 1.0) for share in SHARES), default=0.0) if chosen else 0.0
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        """What the forces depend on."""
+        return tuple(dict.fromkeys(name for _, name in self.names))
+
+    def share(self, folds: Sequence[Fold]) -> float:
+        """Part of the loss that all forces take away on held-out windows, everything else standing still."""
+        k = len(self.precision)
+        columns, whole = self.data.columns[k:], float(self.data.c.sum())
+        kept = [float(heldout(self.data, folds, Prior(dict.fromkeys(columns, share)), self.inflation).sum()) for share in SHARES]
+        return max(1.0 - min(kept) / whole, 0.0)
+
+    def _evidence(self, chosen: Sequence[int], share: float) -> float:
+        k = len(self.precision)
+        free = np.array([*range(k), *(k + i for i in chosen)], dtype=int)
+        ridge = np.concatenate([self.precision, np.full(len(chosen), self.inflation / share**2)])
+        H = self.data.A.sum(axis=0)[np.ix_(free, free)] + np.diag(ridge)
+        slope = self.data.b.sum(axis=0)[free] - np.concatenate([self.pull, np.zeros(len(chosen))])
+        return float(slope @ np.linalg.solve(H, slope)) / self.inflation - float(np.linalg.slogdet(H)[1] - np.log(ridge).sum())
 
 
-def ceiling(problem: Problem, beta: Array) -> Ceiling:
-    """The best that a generic force (features x axes) achieves about ``beta``, on held-out windows."""
-    data, names = _products(problem, beta)
-    ring, free = Ring.of(data, problem.folds), range(len(names))
-    best = min(SHARES, key=lambda s: fit(ring, _even(free, s), problem.inflation).loss)
-    loss = heldout(data, problem.folds, _even(free, best), problem.inflation)
-    by_axis = [(axis, _gain(ring, problem, [i for i, (a, _) in enumerate(names) if a == axis], best)) for axis in AXES]
-    by_axis.sort(key=lambda item: -item[1])
-    leading = by_axis[0][0]
-    features = sorted({f for a, f in names if a == leading})
-    by_feature = [(f, _gain(ring, problem, [i for i, (a, n) in enumerate(names) if a == leading and n == f], SHARES[-1])) for f in features]
-    by_feature.sort(key=lambda item: -item[1])
-    return Ceiling(loss, tuple(by_axis), tuple(by_feature))
+def forces(problem: Problem, point: Point) -> Forces:
+    """Every feature on every axis, simulated about ``point``, with slop beside them."""
+    return _beside(problem, point.beta, point.linear, point.precision, point.precision * point.offset)
+
+
+def bare_forces(problem: Problem) -> Forces:
+    """The same about the vehicle as it is, with nothing beside them: what the gap itself looks like."""
+    still = tuple(replace(one, S=one.S[..., :0], columns=()) for one in problem.at_null)
+    return _beside(problem, problem.origin, still, np.zeros(0), np.zeros(0))
+
+
+def _beside(problem: Problem, beta: Array, linear: Sequence[Linear], precision: Array, pull: Array) -> Forces:
+    banks = [features_of(part) for part in problem.parts]
+    shared = [name for name in banks[0] if all(name in bank for bank in banks)]
+    names = tuple((axis, feature) for axis in AXES for feature in shared)
+    sizes = _typical_wrench(problem.parts)
+    ids = tuple(range(len(beta), len(beta) + len(names)))
+    parts = []
+    for part, bank, one in zip(problem.parts, banks, linear, strict=True):
+        extra = _forced(part, beta, [(a, bank[f] * sizes[AXES.index(a)]) for a, f in names])
+        both = Linear(one.r, np.concatenate([one.S, extra], axis=-1), one.J, (*one.columns, *ids), one.valid)
+        parts.append(products(both, part.ok, problem.variance, state_spread(part)))
+    return Forces(names, joined(parts), precision, pull, problem.inflation)
 
 
 def features_of(stretches: Stretches) -> dict[str, Array]:
@@ -72,20 +112,6 @@ def features_of(stretches: Stretches) -> dict[str, Array]:
         found[f"thrust of {name}"], found[f"|thrust of {name}|"] = thrust[:, i], np.abs(thrust[:, i])
     scaled = {n: f / np.sqrt(np.mean(f**2)) for n, f in found.items() if np.mean(f**2) > 1e-12}
     return {n: f for n, f in scaled.items() if n == "constant" or np.std(f) > 1e-3}
-
-
-def _products(problem: Problem, beta: Array) -> tuple[Products, list[tuple[str, str]]]:
-    banks = [features_of(part) for part in problem.parts]
-    shared = [name for name in banks[0] if all(name in bank for bank in banks)]
-    names = [(axis, feature) for axis in AXES for feature in shared]
-    sizes = _typical_wrench(problem.parts)
-    parts = []
-    for part, bank in zip(problem.parts, banks, strict=True):
-        linear = linearise(part, beta, ())
-        S = _forced(part, beta, [(a, bank[f] * sizes[AXES.index(a)]) for a, f in names])
-        with_forces = Linear(linear.r, S, linear.J, tuple(range(len(names))), linear.valid)
-        parts.append(products(with_forces, part.ok, problem.variance, state_spread(part)))
-    return joined(parts), names
 
 
 def _forced(part: Stretches, beta: Array, forces: Sequence[tuple[str, Array]]) -> Array:
@@ -120,14 +146,3 @@ def _typical_wrench(parts: Sequence[Stretches]) -> Array:
         total += np.mean(wrench**2, axis=0) / len(parts)
     weight = part.plant.vehicle.weight
     return np.asarray(np.maximum(np.sqrt(total), 0.01 * max(float(np.sqrt(total.max())), 0.01 * weight)))
-
-
-def _gain(ring: Ring, problem: Problem, free: Sequence[int], sd: float) -> float:
-    """Held-out share of the loss that forces of these columns take away alone."""
-    return 1.0 - fit(ring, _even(free, sd), problem.inflation).loss / float(ring.c.sum())
-
-
-def _even(free: Sequence[int], sd: float) -> Prior:
-    """The same prior on every column."""
-    each: dict[int, float] = dict.fromkeys(free, sd)
-    return Prior(each)

@@ -1,4 +1,9 @@
-"""The verdict: explained, partly explained, unknown, or no gap. A library effect is not named for being the least bad."""
+"""The verdict: explained, partly explained, unknown, or no gap. A library effect is not named for being the least bad.
+
+Three questions are asked of what was found. Does it do better than a generic force on the axes where it acts? What would such a force
+still gain beside it? And how far must healthy coefficients leave their tolerance so that it fits? A true cause passes all three;
+the nearest relative of an effect that the library lacks leaves one of them open.
+"""
 
 from __future__ import annotations
 
@@ -7,91 +12,105 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rovval.channels import AXES
 from rovval.data import Array
-from rovval.diagnose.confirm import Confirmed, slop_loss
-from rovval.diagnose.problem import Problem
-from rovval.diagnose.select import FALSE_ALARM, LEAST_EVIDENCE, Named, Selection
-from rovval.diagnose.unknown import Ceiling, ceiling
+from rovval.diagnose.confirm import Confirmed
+from rovval.diagnose.gap import axis_squares
+from rovval.diagnose.problem import Problem, corrected_residuals
+from rovval.diagnose.select import FALSE_ALARM, Named, Selection
+from rovval.diagnose.settle import Point, evidence
+from rovval.diagnose.unknown import Forces, bare_forces, forces
 
-LEAST_OF_CEILING = 0.5  # a cause takes at least half of the systematic gap that slop leaves (research E.9)
-BEYOND, FAR_ABOVE_NOISE = 2.0, 20.0  # times the null's evidence, times the sensors' noise (chosen; healthy logs of the tuning set do not pass)
-STRUCTURED = 0.15  # of the gap: a generic force must close this much more before something unknown is claimed (research E.9)
+LEAST_BAD = 0.35  # of a cause's evidence: more left over, or more strain on healthy coefficients, and it is only the least bad
+BETTER = 1.0  # times a cause's evidence: a generic force that has more is nearer to the truth
+ACTING = 0.15  # of what a cause closes: the axes on which it acts
+REAL = 100.0  # twice the log Bayes factor of a generic force from which it is not a healthy vehicle's form (tuning set)
+REMAINS = 0.10  # of a cause's evidence: less left over is form, not another cause
+WITHIN = 3.5  # standard deviations of tolerance that healthy coefficients reach (tuning set: 3.3 of some hundred)
+STRAINED = 5.0  # standard deviations that they do not
 
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """``verdict`` of the contract; the causes that stand, their joint fit, groups and probabilities; the shares of the gap that slop
-    alone, any systematic force, and the causes with slop beside them close; what is left in words."""
+    """``verdict`` of the contract; the causes that stand, their joint fit, groups and probabilities; the evidence of the causes, of a
+    generic force instead of them and beside them; the largest strain on a healthy coefficient; what is left in words."""
 
     verdict: str
     named: tuple[Named, ...]
     final: Confirmed | None
     groups: Mapping[str, tuple[tuple[str, float], ...]]
     probability: Mapping[str, float]
-    slop_share: float
-    ceiling_share: float
-    cause_share: float
+    causes: float
+    instead: float
+    beside: float
+    strain: float
     left: dict[str, object] | None
 
 
-def judge(problem: Problem, selection: Selection, axes: dict[str, dict[str, object]]) -> Judgement:
-    """Weigh what was found against what could have been found."""
-    gap = float(problem.dynamic.c.sum())
-    by_slop = slop_loss(problem, problem.origin)
-    top = ceiling(problem, problem.origin)
+def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgement:
+    """Weigh what was found against what could have been found; ``before`` are the nominal vehicle's residuals."""
     named, final = selection.named, selection.final
-    with_cause = slop_loss(problem, final.beta) if final else by_slop
-    rest = ceiling(problem, final.beta) if final else top
-    structure, remains = _beyond(by_slop, top), _beyond(with_cause, rest)
-    slop_share, ceiling_share, cause_share = (1.0 - float(x.sum()) / gap for x in (by_slop, np.minimum(top.loss, by_slop), with_cause))
-    parity_led = bool(named) and float((problem.data.c - problem.dynamic.c).sum()) > gap
-    insufficient = remains / gap > STRUCTURED and remains > (1 - LEAST_OF_CEILING) * max(structure, 1e-12)
-    if named and final and not parity_led and insufficient:
-        named, final, remains, rest = (), None, structure, top
-    real = remains / gap > STRUCTURED and _most_windows(with_cause if final else by_slop, rest.loss)
-    left = _left(rest, remains / gap) if real else None
-    if not named:
-        if not real and slop_share < LEAST_OF_CEILING and _plain_to_see(selection, axes):
-            left = _formless(axes)
-        return Judgement("unknown" if left else "no_gap", (), None, {}, {}, slop_share, ceiling_share, cause_share, left)
-    groups = {n.hypothesis.name: n.group for n in named}
-    probability = {n.hypothesis.name: _probability(n) for n in named}
-    return Judgement("partly_explained" if real else "explained", named, final, groups, probability, slop_share, ceiling_share, cause_share, left)
+    general = forces(problem, selection.healthy)
+    if named and final:
+        rest, total = forces(problem, final.point), _gained(problem, selection.healthy, final.point)
+        axes = _acting(problem, before, final)
+        beside, instead = rest.evidence(axes), general.evidence(axes)
+        parity_led = float((problem.data.c - problem.dynamic.c).sum()) > float(problem.dynamic.c.sum())
+        excess, strain = _excess(final.point), _strain(final.point)
+        least_bad = max(beside, excess) > LEAST_BAD * total or (instead > BETTER * total and beside > REMAINS * total)
+        if parity_led or not least_bad:
+            remains = rest.evidence() > max(REAL, REMAINS * total) or strain > STRAINED
+            left = _left(problem, rest, final.point) if remains else None
+            groups = {n.hypothesis.name: n.group for n in named}
+            verdict = "partly_explained" if remains else "explained"
+            return Judgement(verdict, named, final, groups, {n.hypothesis.name: _probability(n) for n in named}, total, instead, beside, strain, left)
+    else:
+        total = 0.0
+    anything, strain = general.evidence(), _strain(selection.healthy)
+    real = bool(named) or ((anything > REAL or strain > STRAINED) and selection.last_p <= FALSE_ALARM)
+    left = _left(problem, bare_forces(problem), selection.healthy) if real else None
+    return Judgement("unknown" if real else "no_gap", (), None, {}, {}, total, anything, anything, strain, left)
 
 
-def _plain_to_see(selection: Selection, axes: dict[str, dict[str, object]]) -> bool:
-    """Whether a gap that nothing explains is still no healthy log's: beyond slop by evidence, and far above the sensors' noise."""
-    times = [float(str(row["rms"])) / max(float(str(row["floor_rms"])), 1e-12) for row in axes.values()]
-    beyond = selection.last_p <= FALSE_ALARM and selection.last_evidence > BEYOND * max(selection.null_evidence, LEAST_EVIDENCE)
-    return beyond and max(times, default=0.0) > FAR_ABOVE_NOISE
+def _gained(problem: Problem, healthy: Point, point: Point) -> float:
+    ones = np.ones((1, problem.blocks))
+    return float(evidence(problem, point, ones)[0] - evidence(problem, healthy, ones)[0])
 
 
-def _formless(axes: dict[str, dict[str, object]]) -> dict[str, object]:
-    ordered = sorted(axes, key=lambda axis: -float(str(axes[axis]["share"])))[:2]
-    text = (
-        f"the gap in {' and '.join(ordered)} is far beyond noise and slop, but no effect of the library and no smooth force closes it; "
-        "the simulated motion may diverge within a window (shorten --window), or the cause acts in events"
-    )
-    return {"axes": ordered, "depends_on": [], "share": 0.0, "text": text}
+def _acting(problem: Problem, before: list[Array], final: Confirmed) -> tuple[str, ...]:
+    """Axes on which the causes close a good part of what they close."""
+    was, now = axis_squares(problem, before), axis_squares(problem, corrected_residuals(problem, final.beta))
+    closed = {axis: max(float(was[axis].sum() - now[axis].sum()), 0.0) for axis in was}
+    return tuple(axis for axis in AXES if closed.get(axis, 0.0) > ACTING * max(sum(closed.values()), 1e-300))
 
 
-def _beyond(base: Array, top: Ceiling) -> float:
-    """What a generic force closes of a loss on held-out windows beyond ``base``."""
-    return max(float((base - top.loss).sum()), 0.0)
+def _strain(point: Point) -> float:
+    """Standard deviations by which the most strained healthy coefficient is off."""
+    return float(np.abs(point.sigmas()).max(initial=0.0))
 
 
-def _most_windows(base: Array, loss: Array) -> bool:
-    """Whether the generic force helps in most of the log and not by a few windows: one-sided sign test at 5 %."""
-    return bool((base > loss).mean() > 0.5 + 0.82 / np.sqrt(len(base)))
+def _excess(point: Point) -> float:
+    """What coefficients beyond tolerance cost, in twice the log of their prior."""
+    return float(np.maximum(point.sigmas() ** 2 - WITHIN**2, 0.0).sum())
 
 
-def _left(top: Ceiling, share: float) -> dict[str, object]:
-    axes = [axis for axis, gain in top.axes if gain > 0.3 * max(top.axes[0][1], 1e-9)][:3]
-    depends = [name for name, gain in top.features if gain > 0.3 * max(top.features[0][1], 1e-9)][:4]
-    text = f"a systematic force on {', '.join(axes)} that varies with {', '.join(depends)} would close {100 * share:.0f} % more; no effect of the library is it"
+def _left(problem: Problem, left: Forces, point: Point) -> dict[str, object]:
+    """On which axes a generic force would close most of what is left, with what it varies, and which coefficient is strained."""
+    by_axis = sorted(((axis, left.evidence([axis])) for axis in AXES), key=lambda item: -item[1])
+    axes = [axis for axis, gain in by_axis if gain > 0.3 * by_axis[0][1]][:3] or [by_axis[0][0]]
+    by_feature = sorted(((f, left.evidence([axes[0]], f)) for f in left.features), key=lambda item: -item[1])
+    depends = [f for f, gain in by_feature if gain > 0.5 * by_feature[0][1] and gain > 0][:4]
+    share = left.share(problem.folds)
+    text = f"a systematic force on {', '.join(axes)}"
+    text += f" that varies with {', '.join(depends)}" if depends else ""
+    text += f" would close {100 * share:.0f} % of it; no effect of the library is it" if share > 0 else " is at work; no effect of the library is it"
+    strained = [(problem.plant.slots[c].key, z) for c, z in zip(point.columns[point.own :], point.sigmas(), strict=True) if abs(z) > STRAINED]
+    if strained:
+        name, z = max(strained, key=lambda item: abs(item[1]))
+        text += f"; nearest is {name}, which would have to be {abs(z):.0f} times its tolerance off"
     return {"axes": axes, "depends_on": depends, "share": share, "text": text}
 
 
 def _probability(named: Named) -> float:
-    """Share of bootstrap resamples that the named effect leads, less the chance that detection itself was false."""
+    """Share of belief that the named effect has in its group, less the chance that detection itself was false."""
     return float(named.group[0][1] * (1.0 - min(named.p_value, FALSE_ALARM)))

@@ -1,0 +1,169 @@
+"""Settle effects and calibration slop together by re-simulation: the most probable point of both, linearised there.
+
+Slop moves in the simulation itself, not only in its tangent: a coefficient that has to go far from its tolerance is seen to, and what a
+hypothesis then still gains is gained over a vehicle whose coefficients are as good as a careful calibration makes them. The sensors'
+tolerances, small and nearly linear, stay in the tangent.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rovval import effects
+from rovval.data import Array
+from rovval.diagnose.contest import losses
+from rovval.diagnose.library import PRIOR_WIDTH
+from rovval.diagnose.linearise import Linear, linearise
+from rovval.diagnose.problem import Problem, beside, products_about
+from rovval.diagnose.products import Products
+
+ROUNDS = 5
+LITTLE = 1.0  # twice the log posterior: a smaller gain is not worth another step
+SHORTER = (1.0, 0.4, 0.1)  # shares of the Gauss-Newton step that are tried
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """Parameters ``beta`` (k,), slop moved; ``columns`` the ``own`` slots of the effects, then slop; the linearisation and its products there;
+    ``precision`` of each column's prior, ``offset`` from where that stands, ``side``: -1 and 1 on a lower and upper bound, else 0, and
+    ``still``: which columns stay in the tangent."""
+
+    beta: Array
+    columns: tuple[int, ...]
+    own: int
+    linear: tuple[Linear, ...]
+    dynamic: Products
+    data: Products
+    precision: Array
+    offset: Array
+    side: Array
+    still: np.ndarray
+
+    @property
+    def slope(self) -> Array:
+        """Descent of loss and prior along each column."""
+        return np.asarray(self.data.b.sum(axis=0) - self.precision * self.offset)
+
+    @property
+    def curvature(self) -> Array:
+        """Second derivative of loss and prior."""
+        return np.asarray(self.data.A.sum(axis=0) + np.diag(self.precision))
+
+    def cost(self) -> float:
+        """Loss and prior here, what stays in the tangent at its best."""
+        return self._below(self.still)
+
+    def profile(self) -> float:
+        """Loss and prior once one more linear step of every column is taken."""
+        return self._below(np.ones(len(self.columns), dtype=bool))
+
+    def step(self, which: np.ndarray) -> Array:
+        """Gauss-Newton step (len(columns),) that the windows ``which`` ask for."""
+        slope = self.data.b[which].sum(axis=0) - self.precision * self.offset
+        return self.solved(self.data.A[which].sum(axis=0) + np.diag(self.precision), slope)
+
+    def solved(self, H: Array, slope: Array, among: np.ndarray | None = None) -> Array:
+        """H^-1 slope for the columns that are free to go that way; columns pushed against a bound stay."""
+        free = (self.side * slope <= 0) if among is None else (self.side * slope <= 0) & among
+        step = np.zeros(len(slope))
+        step[free] = np.linalg.solve(H[np.ix_(free, free)], slope[free])
+        return step
+
+    def sigmas(self) -> Array:
+        """Departure of each slop column in standard deviations of its tolerance, one linear step ahead."""
+        step = self.solved(self.curvature, self.slope)
+        return np.asarray((self.offset + step)[self.own :] * np.sqrt(self.precision[self.own :]))
+
+    def left(self) -> Array:
+        """Loss of the dynamics per window (m,), what stays in the tangent at its best."""
+        step = self.solved(self.curvature, self.slope, self.still)
+        return losses(self.dynamic, np.arange(len(step)), step, np.ones(len(self.dynamic.c), dtype=bool))
+
+    def _below(self, among: np.ndarray) -> float:
+        slope = self.slope
+        whole = float(self.data.c.sum()) + float((self.precision * self.offset**2).sum())
+        return whole - float(slope @ self.solved(self.curvature, slope, among))
+
+
+def settle(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[Linear, ...] | None = None, rounds: int = ROUNDS) -> Point:
+    """Fit ``slots`` and slop jointly from ``start``.
+
+    With ``near``, slop's slopes are taken from a linearisation nearby, which is quicker; slop moves in the simulation all the same.
+    """
+    columns = (*slots, *(c for c in problem.slop.sd if c not in slots))
+    point = _about(problem, start, columns, len(slots), near)
+    for _ in range(rounds):
+        better = _better(problem, point, near)
+        if better is None:
+            break
+        gain, point = point.cost() - better.cost(), better
+        if gain < LITTLE * problem.inflation:
+            break
+    return point
+
+
+def moved(problem: Problem, point: Point, slot: int, value: float) -> Point:
+    """The point with one slot elsewhere, slop's slopes kept."""
+    beta = point.beta.copy()
+    beta[slot] = value
+    return _about(problem, beta, point.columns, point.own, point.linear)
+
+
+def evidence(problem: Problem, point: Point, counts: Array) -> Array:
+    """Twice the log evidence (d,) of a point on windows weighted by ``counts`` (d, m), over the vehicle as it is (Laplace; MacKay 1992)."""
+    found = np.empty(len(counts))
+    k = len(point.columns)
+    flat = point.data.A.reshape(len(point.data.A), -1)
+    volume = -float(np.log(point.precision).sum())
+    pull = point.precision * point.offset
+    for i, count in enumerate(counts):
+        H = (count @ flat).reshape(k, k) + np.diag(point.precision)
+        slope = count @ point.data.b - pull
+        loss = float(count @ point.data.c) + float(pull @ point.offset) - float(slope @ point.solved(H, slope))
+        found[i] = (float(count @ problem.data.c) - loss) / problem.inflation - (np.linalg.slogdet(H)[1] + volume)
+    return found
+
+
+def _about(problem: Problem, beta: Array, columns: tuple[int, ...], own: int, near: tuple[Linear, ...] | None) -> Point:
+    """Linearise about ``beta``: all columns, or the own ones with slop's slopes from ``near``."""
+    coarse = columns[own:] if near is None else ()
+    linear = tuple(linearise(part, beta, columns[:own], coarse=coarse) for part in problem.parts)
+    if near is not None:
+        linear = tuple(beside(one, other, columns[own:]) for one, other in zip(linear, near, strict=True))
+    return _point(problem, beta, own, linear)
+
+
+def _point(problem: Problem, beta: Array, own: int, linear: tuple[Linear, ...]) -> Point:
+    dynamic, data = products_about(problem, beta, linear)
+    columns = data.columns
+    parameters = [problem.plant.slots[s].parameter for s in columns]
+    width = np.array([PRIOR_WIDTH * p.typical for p in parameters[:own]] + [problem.slop.sd[s] for s in columns[own:]])
+    at = beta[list(columns)]
+    side = np.array([float(x >= p.high) - float(x <= p.low) for x, p in zip(at, parameters, strict=True)])
+    still = np.array([i >= own and effects.load(problem.plant.slots[s].effect).place == "sensor" for i, s in enumerate(columns)], dtype=bool)
+    return Point(beta, columns, own, linear, dynamic, data, problem.inflation / width**2, at - problem.origin[list(columns)], side, still)
+
+
+def _better(problem: Problem, point: Point, near: tuple[Linear, ...] | None) -> Point | None:
+    """The next point of a damped Gauss-Newton iteration, None where no step gains more than a `LITTLE`."""
+    step = np.where(point.still, 0.0, point.solved(point.curvature, point.slope))
+    moving, columns = np.flatnonzero(~point.still), tuple(point.columns[i] for i in np.flatnonzero(point.still))
+    for share in SHORTER:
+        beta = _clipped(problem, point, share * step)
+        bare = tuple(linearise(part, beta, ()) for part in problem.parts)
+        trial = _point(problem, beta, 0, tuple(beside(one, other, columns) for one, other in zip(bare, point.linear, strict=True)))
+        away = beta[[point.columns[i] for i in moving]] - problem.origin[[point.columns[i] for i in moving]]
+        if trial.profile() + float((point.precision[moving] * away**2).sum()) < point.cost() - LITTLE * problem.inflation:
+            return _about(problem, beta, point.columns, point.own, near)
+    return None
+
+
+def _clipped(problem: Problem, point: Point, step: Array) -> Array:
+    """The step, stopped at the parameters' bounds (a parameter that rests there is reported as such)."""
+    trial = point.beta.copy()
+    for slot, part in zip(point.columns, step, strict=True):
+        parameter = problem.plant.slots[slot].parameter
+        trial[slot] = min(max(point.beta[slot] + part, parameter.low), parameter.high)
+    return trial
