@@ -158,15 +158,24 @@ def test_an_answer_that_failed_is_wrong_and_counted():
 
 ALIASES = [
     (planted("inertia_error", "surge", relative=0.2), cause("payload_change"), True),
-    (planted("inertia_error", "yaw", relative=0.2), cause("added_mass[yaw]"), False),
+    (planted("inertia_error", "yaw", relative=0.2), cause("added_mass[yaw]"), True),
+    (planted("inertia_error", "yaw", relative=0.2), cause("added_mass[roll]"), False),
+    (planted("added_mass", "pitch"), cause("inertia_error[pitch]"), True),
+    (planted("added_mass", "surge"), cause("inertia_error[surge]"), False),
     (planted("thruster_degraded", "HFP", loss=0.5), cause("thruster_fault_onset[HFP]", onset=4.0), True),
     (planted("thruster_degraded", "HFP", loss=0.5), cause("thruster_fault_onset[HFP]", onset=0.0), True),
     (planted("thruster_degraded", "HFP", loss=0.5), cause("thruster_fault_onset[HFP]", onset=90.0), False),
     (planted("thruster_degraded", "HFP", loss=0.5), cause("thruster_fault_onset[HFS]", onset=4.0), False),
     (planted("thruster_fault_onset", "HFP", loss=0.5), cause("thruster_degraded[HFP]"), False),
-    (planted("thruster_degraded", "HFP", loss=1.0), cause("thruster_reversed[HFP]", fraction=0.48), True),
-    (planted("thruster_degraded", "HFP", loss=0.5), cause("thruster_reversed[HFP]", fraction=0.48), False),
-    (planted("time_offset", "velocity", delay_s=0.4), cause("velocity_filter_lag"), True),
+    (planted("thruster_degraded", "HFP", loss=1.0), cause("thruster_reversed[HFP]", fraction=0.48), False),
+    (planted("thruster_interaction", "HFP", loss=0.6), cause("thruster_interaction[HFP]"), True),
+    (planted("thruster_interaction", "HFP", loss=0.6), cause("thruster_interaction[VFP]"), False),
+    (planted("thruster_interaction", "HFP", loss=0.6), cause("thruster_degraded[HFP]"), False),
+    (planted("time_offset", "velocity", delay_s=0.4), cause("time_offset[velocity]"), True),
+    (planted("time_offset", "velocity", delay_s=0.4), cause("time_offset"), False),
+    (planted("time_offset", "velocity", delay_s=0.4), cause("velocity_filter_lag"), False),
+    (planted("time_offset", "thruster_feedback", delay_s=0.4), cause("time_offset"), True),
+    (planted("time_offset", "thruster_feedback", delay_s=0.4), cause("time_offset[velocity]"), False),
     (planted("time_offset", "attitude", delay_s=0.4), cause("velocity_filter_lag"), False),
     (planted("velocity_filter_lag", None), cause("time_offset"), False),
     (planted("current_constant", None), cause("current_varying"), False),
@@ -301,7 +310,7 @@ MAPPED = [
 MAPPED = [
     (n, t)
     for n, t in MAPPED
-    if not (n == "time_offset" and t != "thruster_feedback") and not (n == "inertia_error" and t == "surge")
+    if not (n == "time_offset" and t in ("attitude", "depth")) and not (n == "inertia_error" and t == "surge")
 ]
 
 

@@ -51,6 +51,12 @@ def test_listing_and_completion_know_the_same_names(kind, names):
     assert RUNNER.invoke(app, ["list", kind]).output.split() == list(names())
 
 
+def test_an_effect_shows_how_to_ask_for_each_of_its_hypotheses():
+    shown = RUNNER.invoke(app, ["show", "effect", "time_offset"]).output
+    assert "  [velocity] delay [s]" in shown
+    assert "'time_offset:tau=VALUE', --effect 'time_offset[velocity]:delay=VALUE'" in shown
+
+
 @pytest.mark.parametrize(
     ("kind", "name"),
     [

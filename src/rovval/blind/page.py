@@ -14,7 +14,7 @@ DEFINITIONS = (
     "One named: share right among logs with one effect where the answer names one effect and its group holds no other.",
     "Group: the truth is among the at most three names given. Errors: named and not planted, plus planted and not named.",
     "Found: any verdict but no_gap; on null logs this is the false alarm. Blamed: a library effect is named.",
-    "Left out: the true effect, with all of its targets and laws that contain it, is taken out of the library; right is `unknown`.",
+    "Left out: the true effect, with all of its targets and every law that does its work, is taken out of the library; right is `unknown`.",
     "Distinguishable: the true effect, fitted to the log, closes at least a tenth of the gap on held-out windows.",
     "Oracle: share of the gap that the true effect closes, fitted to the log. x: severity. In brackets: the axis or thruster.",
     "/oracle: shrinkage over that of the true effect. Intervals are 90 %: Wilson for shares, bootstrap for the rest.",

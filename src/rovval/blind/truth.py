@@ -13,10 +13,10 @@ from rovval.blind.spec import AXES
 
 Row = Mapping[str, Any]  # one effect of a label, or one cause of an answer
 TARGETED = {"added_mass", "linear_drag", "quadratic_drag", "inertia_error", "thruster_degraded", "thruster_fault_onset"}
-TARGETED |= {"thruster_reversed", "thruster_misaligned"}  # hypotheses that the library keeps apart by axis or thruster
+TARGETED |= {"thruster_reversed", "thruster_misaligned", "thruster_interaction"}  # by axis or thruster, as the library has them
 EARLY_S = 10.0  # an onset within the first window is no onset to a diagnosis in windows of 10 s
-DEAD = 0.15  # of a thruster's gain
 MAIN = 0.5  # an axis belongs to an effect that pushes it at least half as hard as its hardest
+ABOUT = {"added_mass": "inertia_error", "inertia_error": "added_mass"}  # one law about roll, pitch and yaw
 CHANNEL_AXIS = {"LinVelX": "surge", "LinVelY": "sway", "LinVelZ": "heave", "Depth": "heave", "AngVelX": "roll", "Roll": "roll"}
 CHANNEL_AXIS |= {"AngVelY": "pitch", "Pitch": "pitch", "AngVelZ": "yaw", "Heading": "yaw"}
 VELOCITY = dict(zip(AXES, "uvwpqr", strict=True))
@@ -31,7 +31,8 @@ def name(effect: Row) -> str:
     """The library's hypothesis for a planted effect; a foreign one keeps its own name, which no hypothesis has."""
     if effect["name"] == "inertia_error" and effect["target"] == "surge":
         return "added_mass[surge]"  # see `alias`
-    return f"{effect['name']}[{effect['target']}]" if effect["name"] in TARGETED else str(effect["name"])
+    apart = effect["name"] in TARGETED or (effect["name"], effect["target"]) == ("time_offset", "velocity")
+    return f"{effect['name']}[{effect['target']}]" if apart else str(effect["name"])
 
 
 def foreign(effect: Row) -> bool:
@@ -47,7 +48,6 @@ def accepts(effect: Row, cause: Row) -> bool:
 def alias(effect: Row, cause: Row) -> str | None:
     """The reason for which a cause of another name is the same answer; None: it is not. There are these and no others."""
     said, on = str(cause["effect"]), f"[{effect['target']}]"
-    numbers = {key: float(p["value"]) for key, p in cause.get("parameters", {}).items()}
     if effect["name"] == "inertia_error" and effect["target"] == "surge":
         if said in ("added_mass[sway]", "added_mass[heave]", "payload_change"):
             return "weightless extra mass has no name of its own: the library has it as added mass of an axis or as a payload"
@@ -55,11 +55,8 @@ def alias(effect: Row, cause: Row) -> str | None:
         onset = cause.get("onset_s")
         if onset is not None and float(onset) < EARLY_S:
             return "a loss from the first window on is a loss all the time"
-    elif effect["name"] == "thruster_degraded" and said == f"thruster_reversed{on}":
-        if abs(2.0 * numbers.get("fraction", 9.0) - float(effect["values"]["loss"])) < DEAD:
-            return "half reversed is dead: fraction f and loss 2f are one law where both gains are equal"
-    elif effect["name"] == "time_offset" and effect["target"] == "velocity" and said == "velocity_filter_lag":
-        return "the library delays all of navigation or lags the velocities; velocities alone late is nearest to the second"
+    elif effect["name"] in ABOUT and effect["target"] in ("roll", "pitch", "yaw") and said == ABOUT[effect["name"]] + on:
+        return "about an axis of rotation the motion shows the sum of inertia and added inertia and nothing of either"
     return None
 
 
@@ -79,6 +76,6 @@ def goes_with(effect: Row) -> str | None:
     """Pattern that one of an answer's worst regimes, or features of the unknown force, should match; None: not scored."""
     if effect["name"] in ("linear_drag", "quadratic_drag"):
         return rf"\|?\b{VELOCITY[str(effect['target'])]}\b"
-    if effect["name"].startswith("thruster_") and effect["target"] and effect["name"] != "thruster_interaction":
+    if effect["name"].startswith("thruster_") and effect["target"]:
         return re.escape(str(effect["target"]))
     return GOES_WITH.get(str(effect["name"]))

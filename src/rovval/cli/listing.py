@@ -113,11 +113,12 @@ def _effect(name: str) -> Shown:
     effect = effects.load(name)
     lines = [f"{effect.name}: {effect.title}", f"enters at: {effect.place}", f"equation: {effect.equation}", "", "parameters"]
     lines += [
-        f"  {p.name} [{p.unit}]  {p.low:g} to {p.high:g}, null {p.null:g}, typical {p.typical:g} ({p.source})"
+        f"  {p.target and f'[{p.target}] '}{p.name} [{p.unit}]  {p.low:g} to {p.high:g}, null {p.null:g}, typical {p.typical:g} ({p.source})"
         for p in effect.parameters
     ]
     target = {"axis": effect.axes or AXES, "thruster": ("THRUSTER",), "": ()}[effect.per]
-    asked = f"{effect.name}[{target[0]}]" if target else effect.name
+    first = {p.target or next(iter(target), ""): p.name for p in reversed(effect.parameters)}  # one use a hypothesis
+    uses = [f"--effect '{effect.name}{on and f'[{on}]'}:{first[on]}=VALUE'" for on in reversed(first)]
     lines += [
         "",
         f"signature: {effect.signature}",
@@ -125,18 +126,14 @@ def _effect(name: str) -> Shown:
         f"what separates it: {effect.separates}",
     ]
     lines += [f"needs: {', '.join(effect.needs)}"] if effect.needs else []
-    lines += [
-        "",
-        f"use: --effect '{asked}:{effect.parameters[0].name}=VALUE'"
-        + (f"  (per {effect.per}: {', '.join(target)})" if target else ""),
-    ]
+    lines += ["", "use: " + ", ".join(uses) + (f"  (per {effect.per}: {', '.join(target)})" if target else "")]
     return "\n".join(lines), lambda: _effect_document(effect)
 
 
 def _effect_document(effect: Effect) -> dict[str, Any]:
     plain = ("name", "title", "place", "equation", "signature", "separates", "per")
     listed = ("confused_with", "axes", "needs")
-    numbers = ("name", "unit", "low", "high", "null", "typical", "source")
+    numbers = ("name", "unit", "low", "high", "null", "typical", "source", "target")
     document: dict[str, Any] = {k: getattr(effect, k) for k in plain} | {k: list(getattr(effect, k)) for k in listed}
     return document | {"parameters": [{k: getattr(p, k) for k in numbers} for p in effect.parameters]}
 
