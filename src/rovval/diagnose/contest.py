@@ -96,6 +96,14 @@ def fit(ring: Ring, prior: Prior, inflation: float) -> Fit:
     return Fit(loss, step)
 
 
+def step(data: Products, prior: Prior, inflation: float) -> Array:
+    """Ridge step (k,) of the columns of ``prior`` that fits all windows."""
+    free, ridge, offset = free_of(data, prior, inflation)
+    found = np.zeros(len(data.columns))
+    found[free] = np.linalg.solve(data.A.sum(axis=0)[np.ix_(free, free)] + ridge, data.b.sum(axis=0)[free] - ridge @ offset)
+    return found
+
+
 def free_of(data: Products, prior: Prior, inflation: float) -> tuple[np.ndarray, Array, Array]:
     """Places of the free columns, their ridge, and how far each already is from where its prior stands."""
     sd, free = np.array(list(prior.sd.values())), data.place(tuple(prior.sd))

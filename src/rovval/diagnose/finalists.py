@@ -1,0 +1,141 @@
+"""The finalists of a round: the hypotheses that a screen puts first, settled by re-simulation, and which of them could be the cause."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rovval.data import Array
+from rovval.diagnose.confirm import Confirmed, confirm, roughly, significance
+from rovval.diagnose.contest import Prior, step
+from rovval.diagnose.detect import Detection
+from rovval.diagnose.library import PRIOR_WIDTH, Hypothesis
+from rovval.diagnose.problem import Problem
+from rovval.diagnose.products import Products
+from rovval.diagnose.separate import PER_PARAMETER, Rival, coherence
+from rovval.diagnose.settle import Point, evidence
+
+FINALISTS = 10  # hypotheses that are re-simulated in a round
+SCREENED = 0.15  # of the best linear evidence: less is not re-simulated
+TWIN, MOST_TWINS = 0.85, 4  # coherence from which a hypothesis is re-simulated beside the best finalist whatever the screen said
+HALF_REVERSED = 0.55  # 0.5 is a dead thruster; the margin is chosen
+LEAST_SIGMA = 2.2  # standard errors, slop included, by which an effect departs from nothing (tuning set: healthy logs reach 2.0)
+TOLERANCES = 3.0  # times the tolerance of calibration slop within which a coefficient is not worth a name
+SHARPENED = 4  # finalists that are settled with slopes made at their own point
+SERIOUS = 0.5  # share of the best evidence from which a rival's gain counts
+NEARLY = 0.9  # of the best's gain
+LEAST_OF_BEST = 0.5  # of the gain of the best serious rival
+
+
+def finalists(
+    problem: Problem, data: Products, library: list[Hypothesis], detection: Detection, base: Point, chosen: tuple[int, ...], loss: Array
+) -> list[Rival]:
+    """The best starting point of each of the best hypotheses, settled jointly with what was chosen before; best evidence first.
+
+    ``loss`` (m,) is the held-out loss of what stands, ``base`` where it settled and ``data`` the library linearised there.
+    """
+    ordered = sorted(library, key=lambda h: -detection.evidence[h.label])
+    least = SCREENED * max(detection.evidence[detection.best], 0.0)
+    ground = problem.slop.widened(freed(problem, chosen))
+    fitted: dict[str, tuple[Hypothesis, Confirmed]] = {}
+
+    def refit(h: Hypothesis) -> None:
+        start = _start(problem, data, h, step(data, ground.widened(prior_of(h)), problem.inflation), base.beta)
+        fitted[h.name] = h, roughly(problem, start, tuple(dict.fromkeys((*chosen, *h.slots))), base.linear)
+
+    for h in ordered:
+        if h.name not in fitted and len(fitted) < FINALISTS and detection.evidence[h.label] > least:
+            refit(h)
+    if fitted:
+        best = max(fitted.values(), key=lambda item: item[1].evidence)[0]
+        twins = [h for h in ordered if h.name not in fitted and coherence(data, best.columns, h.columns) > TWIN]
+        for h in twins[:MOST_TWINS]:
+            if h.name not in fitted:
+                refit(h)
+    return _weighed(problem, list(fitted.values()), base, loss)
+
+
+def sharpened(problem: Problem, rivals: list[Rival], base: Point, loss: Array) -> list[Rival]:
+    """The best of the admissible settled with slopes made at their own point, the others as they are."""
+    serious = [r for r in rivals if r.evidence > SERIOUS * rivals[0].evidence][:SHARPENED]
+    sharp = [(r.hypothesis, confirm(problem, r.fitted.point.beta, r.fitted.slots)) for r in serious]
+    return _weighed(problem, sharp + [(r.hypothesis, r.fitted) for r in rivals if r not in serious], base, loss)
+
+
+def _weighed(problem: Problem, fitted: list[tuple[Hypothesis, Confirmed]], base: Point, loss: Array) -> list[Rival]:
+    """Finalists with what they add to what stands: evidence over slop, and the share of the gap that they close by themselves."""
+    ground, gap = float(evidence(problem, base, np.ones((1, problem.blocks)))[0]), float(problem.data.c.sum())
+    rivals = [Rival(h, c, c.evidence - ground, float((loss - c.loss).sum()) / gap) for h, c in fitted]
+    return sorted(rivals, key=lambda r: -r.evidence)
+
+
+def admissible(problem: Problem, weighed: list[Rival]) -> list[Rival]:
+    """Finalists that could be the cause, best evidence first.
+
+    Evidence alone is not enough: what a hypothesis achieves only with slop's help leaves the gap itself open. It must close, by itself
+    and on held-out windows, at least half of what the best of its serious rivals closes, and its size must be beyond what slop of
+    all other coefficients could feign. A thruster counts as reversed only where it pushes the other way (up to half-reversed it is
+    a degraded one), and what begins before the log does has no onset in it.
+    """
+    rivals = [r for r in weighed if not _half_reversed(r) and not _from_the_start(problem, r)]
+    if not rivals or rivals[0].evidence <= 0:
+        return []
+    serious = max(r.gain for r in rivals if r.evidence >= SERIOUS * rivals[0].evidence)
+    return [
+        r for r in rivals
+        if r.gain >= LEAST_OF_BEST * serious
+        and r.gain > 0
+        and significance(problem, r.fitted, r.hypothesis.slots) >= LEAST_SIGMA
+        and _beyond_tolerance(problem, r)
+    ]  # fmt: skip
+
+
+def _beyond_tolerance(problem: Problem, rival: Rival) -> bool:
+    """Whether some parameter that healthy vehicles and sensors vary in is further off than they are; True where none has a tolerance."""
+    slots = [s for s in rival.hypothesis.slots if s in problem.slop.sd]
+    off = [abs(rival.fitted.beta[s] - problem.origin[s]) / problem.slop.sd[s] for s in slots]
+    return not off or max(off) >= TOLERANCES
+
+
+def simplest(rivals: list[Rival], members: tuple[tuple[str, float], ...]) -> Rival:
+    """Of the rivals that the log does not tell apart, the one with the fewest parameters, if it closes nearly as much as the best does."""
+    most = len(rivals[0].hypothesis.slots)
+    tied = [
+        r for r in rivals
+        if r.hypothesis.name in dict(members) and r.gain >= (NEARLY - PER_PARAMETER * max(most - len(r.hypothesis.slots), 0)) * rivals[0].gain
+    ]  # fmt: skip
+    return min(tied, key=lambda r: (len(r.hypothesis.slots), -r.evidence))
+
+
+def _from_the_start(problem: Problem, rival: Rival) -> bool:
+    first = min(float(part.start[0] + part.steps) * part.run.dt for part in problem.parts)
+    slots = problem.plant.slots
+    return any(slots[s].parameter.name == "onset" and rival.fitted.beta[s] < first for s in rival.hypothesis.slots)
+
+
+def _half_reversed(rival: Rival) -> bool:
+    h = rival.hypothesis
+    return h.name.startswith("thruster_reversed") and any(rival.fitted.beta[s] < HALF_REVERSED for s in h.slots)
+
+
+def _start(problem: Problem, data: Products, h: Hypothesis, moves: Array, beta: Array) -> Array:
+    """The linear answer as the starting point of the re-simulation, inside the parameters' bounds."""
+    start = beta.copy()
+    for slot, value in h.at:
+        start[slot] = value
+    moved = {d.id: d.slot for d in h.directions}
+    for column, move in zip(data.columns, moves, strict=True):
+        slot = moved.get(column, column)
+        if move and 0 <= slot < len(start):
+            parameter = problem.plant.slots[slot].parameter
+            start[slot] = float(np.clip(start[slot] + move, parameter.low, parameter.high))
+    return start
+
+
+def freed(problem: Problem, slots: tuple[int, ...]) -> Prior:
+    """The wide prior of effects that were chosen."""
+    return Prior({s: PRIOR_WIDTH * problem.plant.slots[s].parameter.typical for s in slots})
+
+
+def prior_of(h: Hypothesis) -> Prior:
+    """The wide prior of a hypothesis."""
+    return Prior(dict(zip(h.columns, h.sd, strict=True)))
