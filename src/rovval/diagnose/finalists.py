@@ -11,7 +11,7 @@ from rovval.diagnose.detect import Detection
 from rovval.diagnose.library import PRIOR_WIDTH, Hypothesis
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import Products
-from rovval.diagnose.separate import PER_PARAMETER, Rival, coherence
+from rovval.diagnose.separate import PER_PARAMETER, Rival, coherence, form_share
 from rovval.diagnose.settle import Point, evidence
 
 FINALISTS = 10  # hypotheses that are re-simulated in a round
@@ -24,14 +24,15 @@ SHARPENED = 4  # finalists that are settled with slopes made at their own point
 SERIOUS = 0.5  # share of the best evidence from which a rival's gain counts
 NEARLY = 0.9  # of the best's gain
 LEAST_OF_BEST = 0.5  # of the gain of the best serious rival
+Losses = tuple[Array, Array]
 
 
 def finalists(
-    problem: Problem, data: Products, library: list[Hypothesis], detection: Detection, base: Point, chosen: tuple[int, ...], loss: Array
+    problem: Problem, data: Products, library: list[Hypothesis], detection: Detection, base: Point, chosen: tuple[int, ...], loss: Losses
 ) -> list[Rival]:
     """The best starting point of each of the best hypotheses, settled jointly with what was chosen before; best evidence first.
 
-    ``loss`` (m,) is the held-out loss of what stands, ``base`` where it settled and ``data`` the library linearised there.
+    ``loss`` are the held-out losses of what stands, with and without the kinematic checks, ``base`` where it settled and ``data`` the library linearised there.
     """
     ordered = sorted(library, key=lambda h: -detection.evidence[h.label])
     least = SCREENED * max(detection.evidence[detection.best], 0.0)
@@ -54,17 +55,21 @@ def finalists(
     return _weighed(problem, list(fitted.values()), base, loss)
 
 
-def sharpened(problem: Problem, rivals: list[Rival], base: Point, loss: Array) -> list[Rival]:
+def sharpened(problem: Problem, rivals: list[Rival], base: Point, loss: Losses) -> list[Rival]:
     """The best of the admissible settled with slopes made at their own point, the others as they are."""
     serious = [r for r in rivals if r.evidence > SERIOUS * rivals[0].evidence][:SHARPENED]
     sharp = [(r.hypothesis, confirm(problem, r.fitted.point.beta, r.fitted.slots)) for r in serious]
     return _weighed(problem, sharp + [(r.hypothesis, r.fitted) for r in rivals if r not in serious], base, loss)
 
 
-def _weighed(problem: Problem, fitted: list[tuple[Hypothesis, Confirmed]], base: Point, loss: Array) -> list[Rival]:
-    """Finalists with what they add to what stands: evidence over slop, and the share of the gap that they close by themselves."""
-    ground, gap = float(evidence(problem, base, np.ones((1, problem.blocks)))[0]), float(problem.data.c.sum())
-    rivals = [Rival(h, c, c.evidence - ground, float((loss - c.loss).sum()) / gap) for h, c in fitted]
+def _weighed(problem: Problem, fitted: list[tuple[Hypothesis, Confirmed]], base: Point, loss: Losses) -> list[Rival]:
+    """Finalists with what they add to what stands: evidence over slop, and the share that they close of what is left of the gap, with or
+    without the kinematic checks, whichever is more."""
+    ground = float(evidence(problem, base, np.ones((1, problem.blocks)))[0])
+    rivals = [
+        Rival(h, c, c.evidence - ground, max(float((was - now).sum() / was.sum()) for was, now in zip(loss, (c.loss, c.dynamic_loss), strict=True)))
+        for h, c in fitted
+    ]
     return sorted(rivals, key=lambda r: -r.evidence)
 
 
@@ -96,12 +101,12 @@ def _beyond_tolerance(problem: Problem, rival: Rival) -> bool:
     return not off or max(off) >= TOLERANCES
 
 
-def simplest(rivals: list[Rival], members: tuple[tuple[str, float], ...]) -> Rival:
-    """Of the rivals that the log does not tell apart, the one with the fewest parameters, if it closes nearly as much as the best does."""
-    most = len(rivals[0].hypothesis.slots)
+def simplest(problem: Problem, rivals: list[Rival]) -> Rival:
+    """Of the rivals that the form of an equation may set apart, the one with the fewest parameters, if it closes nearly as much as the best."""
+    most, least = len(rivals[0].hypothesis.slots), (1.0 - form_share(problem.blocks)) * rivals[0].evidence
     tied = [
         r for r in rivals
-        if r.hypothesis.name in dict(members) and r.gain >= (NEARLY - PER_PARAMETER * max(most - len(r.hypothesis.slots), 0)) * rivals[0].gain
+        if r.evidence >= least and r.gain >= (NEARLY - PER_PARAMETER * max(most - len(r.hypothesis.slots), 0)) * rivals[0].gain
     ]  # fmt: skip
     return min(tied, key=lambda r: (len(r.hypothesis.slots), -r.evidence))
 

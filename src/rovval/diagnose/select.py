@@ -26,7 +26,7 @@ MOST = 3  # effects at once
 FALSE_ALARM = 0.05  # family-wise, over the whole library
 NEEDLESS = 6.0  # twice the log Bayes factor below which an effect is dropped again (Kass & Raftery 1995: positive evidence)
 LEAST_GAIN = 0.06  # of the gap, on held-out windows: less is not worth a name
-LATER_GAIN = 0.08  # the same for a second and third effect: the forms of equations alone leave structure of this size
+LATER_GAIN = 0.10  # of what is left, the same for a second and third effect: the forms of equations alone leave structure of this size
 PROMISING = 0.5  # of `LEAST_EVIDENCE`, in the linearised model: less is not re-simulated
 LEAST_EVIDENCE = 16.0  # over slop: well past "very strong" (10; Kass & Raftery 1995), since null logs reach 10 now and then
 
@@ -60,7 +60,7 @@ class Selection:
 
 def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Callable[[str, float], None]) -> Selection:
     """Search for the effects that explain the gap; see the module."""
-    chosen, loss = tuple[int, ...](), problem.data.c
+    chosen, loss = tuple[int, ...](), (problem.data.c, problem.dynamic.c)
     healthy = base = settle(problem, problem.origin, ())
     named: list[Named] = []
     rounds: list[tuple[tuple[str, float, float], ...]] = []
@@ -80,11 +80,12 @@ def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Cal
         if not able or able[0].gain < (LATER_GAIN if named else LEAST_GAIN) or able[0].evidence < LEAST_EVIDENCE:
             break
         members = group(problem, able, seed)
-        best = simplest(able, members)
+        best = simplest(problem, able)
         members = tuple(sorted(members, key=lambda member: member[0] != best.hypothesis.name))
         named.append(Named(best.hypothesis, members, best.fitted, detection.p_value(best.hypothesis.label), best.evidence))
         named = _pruned(problem, named)
-        chosen, loss, base = named[-1].fitted.slots, named[-1].fitted.loss, named[-1].fitted.point
+        chosen, base = named[-1].fitted.slots, named[-1].fitted.point
+        loss = named[-1].fitted.loss, named[-1].fitted.dynamic_loss
     final = named[-1].fitted if named else None
     return Selection(tuple(named), final, healthy, _ranking(problem, library, named, rounds), tuple(rounds), p, last, null)
 

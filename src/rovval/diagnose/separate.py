@@ -16,6 +16,7 @@ from rovval.diagnose.settle import evidence
 RESAMPLES = 500
 GROUP_RESAMPLES = 200
 FORM = 0.35  # chosen on the tuning set: share of the evidence that may be owed to the form of an equation
+FEW, MOST_FORM = 6.0, 0.7  # chosen: windows that are too few to average the form of an equation over, and the largest share it then has
 PER_PARAMETER = 0.05  # chosen: what each parameter that the best has more may add to it
 TEMPER = 4.0  # twice the log Bayes factor that counts as a nat of belief, beside the form's share (chosen on the tuning set)
 LEVEL = 0.05  # one-sided: a member of the group must be this plausible to be as good as the winner
@@ -35,25 +36,31 @@ def group(problem: Problem, rivals: list[Rival], seed: int, block: int = 2) -> t
     """The best rival and every other that this log does not tell from it, with probabilities, best first.
 
     A rival stays in the group if its evidence is as good in more than `LEVEL` of a paired block bootstrap over windows, or falls
-    short by less than `FORM` of the best: what equations that are only nearly right may cost. Probabilities weigh evidence
+    short by less than `FORM` of the best (more in short logs): what equations that are only nearly right may cost. Probabilities weigh evidence
     tempered by the same share, so that they say how sure the name is, form of the equations included.
     """
     best = rivals[0]
     draws = _blocks(problem.blocks, block, np.random.default_rng(seed))[:GROUP_RESAMPLES]
     counts = np.stack([np.bincount(draw, minlength=problem.blocks) for draw in draws]).astype(float)
-    near = [r for r in rivals if r.evidence > (1 - 2 * FORM) * best.evidence or _near(r, best)]
+    form = form_share(problem.blocks)
+    near = [r for r in rivals if r.evidence > (1 - 2 * form) * best.evidence or _near(r, best, form)]
     total = {r.hypothesis.name: evidence(problem, r.fitted.point, counts) for r in near}
     lead = total[best.hypothesis.name]
-    kept = [r for r in near if r is best or _near(r, best) or float((total[r.hypothesis.name] >= lead).mean()) > LEVEL]
+    kept = [r for r in near if r is best or _near(r, best, form) or float((total[r.hypothesis.name] >= lead).mean()) > LEVEL]
     short = [best.evidence * (1 - PER_PARAMETER * _saved(r, best)) - r.evidence for r in rivals]
-    weight = np.exp(-np.maximum(short, 0.0) / (TEMPER + 0.5 * FORM * best.evidence))
+    weight = np.exp(-np.maximum(short, 0.0) / (TEMPER + 0.5 * form * best.evidence))
     probability = {r.hypothesis.name: float(w) for r, w in zip(rivals, weight / weight.sum(), strict=True)}
     return tuple((r.hypothesis.name, probability[r.hypothesis.name]) for r in kept)
 
 
-def _near(rival: Rival, best: Rival) -> bool:
+def form_share(windows: int) -> float:
+    """Share of the evidence that may be owed to the form of an equation: `FORM`, and more where few windows average over it."""
+    return min(FORM * (1.0 + (FEW / windows) ** 3), MOST_FORM)
+
+
+def _near(rival: Rival, best: Rival, form: float) -> bool:
     """Whether a rival's shortfall in evidence may be owed to the form of its equation, the more so the fewer parameters it has."""
-    return rival.evidence > (1 - FORM - PER_PARAMETER * _saved(rival, best)) * best.evidence
+    return rival.evidence > (1 - form - PER_PARAMETER * _saved(rival, best)) * best.evidence
 
 
 def _saved(rival: Rival, best: Rival) -> int:

@@ -18,13 +18,14 @@ from rovval.diagnose.confirm import Confirmed
 from rovval.diagnose.gap import axis_squares
 from rovval.diagnose.problem import Problem, corrected_residuals
 from rovval.diagnose.select import FALSE_ALARM, Named, Selection
+from rovval.diagnose.separate import form_share
 from rovval.diagnose.settle import Point, evidence
 from rovval.diagnose.unknown import Forces, bare_forces, forces
 
-LEAST_BAD = 0.35  # of a cause's evidence: more left over, or more strain on healthy coefficients, and it is only the least bad
 BETTER = 1.0  # times a cause's evidence: a generic force that has more is nearer to the truth
 ACTING = 0.15  # of what a cause closes: the axes on which it acts
 REAL = 100.0  # twice the log Bayes factor of a generic force from which it is not a healthy vehicle's form (tuning set)
+HOLDS = 0.02  # of what is left: a generic force that closes less on held-out windows is a fit to these windows (chosen)
 REMAINS = 0.10  # of a cause's evidence: less left over is form, not another cause
 WITHIN = 3.5  # standard deviations of tolerance that healthy coefficients reach (tuning set: 3.3 of some hundred)
 STRAINED = 5.0  # standard deviations that they do not
@@ -54,12 +55,13 @@ def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgem
     if named and final:
         rest, total = forces(problem, final.point), _gained(problem, selection.healthy, final.point)
         axes = _acting(problem, before, final)
-        beside, instead = rest.evidence(axes), general.evidence(axes)
+        holds = rest.share(problem.folds) > HOLDS
+        beside, instead = rest.evidence(axes) if holds else 0.0, general.evidence(axes)
         parity_led = float((problem.data.c - problem.dynamic.c).sum()) > float(problem.dynamic.c.sum())
-        excess, strain = _excess(final.point), _strain(final.point)
-        least_bad = max(beside, excess) > LEAST_BAD * total or (instead > BETTER * total and beside > REMAINS * total)
+        excess, strain = _excess(problem, final.point, axes), _strain(final.point)
+        least_bad = max(beside, excess) > form_share(problem.blocks) * total or (instead > BETTER * total and beside > REMAINS * total)
         if parity_led or not least_bad:
-            remains = rest.evidence() > max(REAL, REMAINS * total) or strain > STRAINED
+            remains = (holds and rest.evidence() > max(REAL, REMAINS * total)) or strain > STRAINED
             left = _left(problem, rest, final.point) if remains else None
             groups = {n.hypothesis.name: n.group for n in named}
             verdict = "partly_explained" if remains else "explained"
@@ -67,7 +69,7 @@ def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgem
     else:
         total = 0.0
     anything, strain = general.evidence(), _strain(selection.healthy)
-    real = bool(named) or ((anything > REAL or strain > STRAINED) and selection.last_p <= FALSE_ALARM)
+    real = bool(named) or (anything > REAL and general.share(problem.folds) > HOLDS) or strain > STRAINED
     left = _left(problem, bare_forces(problem), selection.healthy) if real else None
     return Judgement("unknown" if real else "no_gap", (), None, {}, {}, total, anything, anything, strain, left)
 
@@ -89,9 +91,15 @@ def _strain(point: Point) -> float:
     return float(np.abs(point.sigmas()).max(initial=0.0))
 
 
-def _excess(point: Point) -> float:
-    """What coefficients beyond tolerance cost, in twice the log of their prior."""
-    return float(np.maximum(point.sigmas() ** 2 - WITHIN**2, 0.0).sum())
+def _excess(problem: Problem, point: Point, axes: tuple[str, ...]) -> float:
+    """What coefficients beyond tolerance cost, in twice the log of their prior, each as far as it moves the motion on ``axes``."""
+    moves = np.zeros((2, len(point.columns)))
+    for part, one in zip(problem.parts, point.linear, strict=True):
+        by_channel = np.einsum("wtck,tc->ck", np.where(part.ok[..., None], one.S, 0.0) ** 2, 1.0 / problem.variance)
+        here = np.array([axis in axes for axis in part.axes], dtype=bool)
+        moves += by_channel[here].sum(axis=0), by_channel.sum(axis=0)
+    share = moves[0] / np.maximum(moves[1], 1e-300)
+    return float((np.maximum(point.sigmas() ** 2 - WITHIN**2, 0.0) * share[point.own :]).sum())
 
 
 def _left(problem: Problem, left: Forces, point: Point) -> dict[str, object]:
