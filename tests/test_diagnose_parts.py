@@ -195,6 +195,24 @@ def test_parity_finds_a_sensor_fault_with_sign_and_size(fault, size):
     assert row["value"] == pytest.approx(size, rel=0.15)
 
 
+def test_parity_about_another_point_is_that_of_its_moved_rows():
+    """Products from those at the null value against the rows moved one by one; other columns, in another order, some without a trace."""
+    part = cut(spoilt({"gyro_bias.r": 0.01, "dvl_scale.scale": 0.05}), merlin(), "fossen", 10.0)
+    index = part.plant.index
+    rows = parity(part, tuple(i for i, s in enumerate(part.plant.slots) if s.effect != "dvl_lever_arm"))
+    beta = part.plant.null.copy()
+    for key, value in (("gyro_bias.r", 0.008), ("dvl_scale.scale", 0.04), ("dvl_misalignment.yaw", -0.1), ("buoyancy_error.force", 30.0)):
+        beta[index[key]] = value
+    columns = tuple(index[key] for key in ("inflow_loss.loss", "dvl_misalignment.yaw", "gyro_bias.r", "gyro_bias.p", "dvl_scale.scale"))
+    place = [rows.columns.index(c) for c in columns]
+    T, r = rows.traces[..., place], rows.rows - rows.traces @ beta[list(rows.columns)]
+    got = rows.moved(beta, (*columns, len(part.plant.slots))).products(2.0 * rows.inflation)
+    assert got.columns == (*columns, len(part.plant.slots)) and not got.A[:, -1].any() and not got.b[:, -1].any()
+    wanted = np.einsum("wqi,wqj->wij", T, T), np.einsum("wqi,wq->wi", T, r), (r**2).sum(axis=1)
+    for found, want in zip((got.A[:, :-1, :-1], got.b[:, :-1], got.c), wanted, strict=True):
+        assert np.abs(found - 2.0 * want).max() < 1e-12 * np.abs(want).max()
+
+
 def test_parity_of_healthy_sensors_finds_nothing():
     assert not [name for name, row in parity_of(spoilt({})).items() if row["significant"]]
 

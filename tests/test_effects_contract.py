@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import plant_cases as cases
 from rovval import effects
 from rovval.channels import AXES, CHANNELS
 from rovval.plant import Inputs, Plant, compose
+from rovval.plant.sensors import Log, observe
 
 LIBRARY = """added_mass linear_drag quadratic_drag cross_drag current_constant current_shear current_varying waves density_gradient
 ground_effect wall_suction tether_drag tether_tension tether_snag buoyancy_error cg_offset payload_change inertia_error thruster_degraded
@@ -87,6 +89,27 @@ def test_a_window_reproduces_the_log_that_its_own_effects_made():
         log = plant.simulate(inputs, np.zeros(1, int), 150, zero, zero, beta[None])
         window = plant.simulate(inputs, np.array([80]), 60, log.nu[:, 80], log.eta[:, 80], beta[None])
         assert np.abs(window.nu - log.nu[:, 80:141]).max() < tolerance, key
+
+
+def test_sensors_of_many_lanes_are_those_of_one_lane_at_a_time():
+    """Lanes side by side, apart and all at once, several effects on one of them; the motion handed in stays as it was."""
+    plant, rng = Plant(cases.merlin()), np.random.default_rng(2)
+    motion = Log(*(0.3 * rng.normal(size=(6, 40, 6)) for _ in range(2)), 0.1, 0.3 * rng.normal(size=(6, 6)))
+    beta = np.tile(plant.null, (6, 1))
+    for key, value, lanes in (
+        ("gyro_bias.r", 0.02, slice(None)), ("dvl_lever_arm.x", 0.5, [0, 2, 5]), ("dvl_misalignment.yaw", 0.2, [1, 2, 3]), ("compass_deviation.sine", 0.2, [4]),
+        ("velocity_filter_lag.tau", 0.3, [2, 3]), ("time_offset[velocity].delay", -0.25, [0, 3]), ("time_offset.tau", 0.2, [1]),
+    ):  # fmt: skip
+        beta[lanes, plant.index[key]] = value
+    before = motion.nu.copy(), motion.eta.copy()
+    seen = observe(plant.vehicle, plant.index, plant.null, beta, motion)
+    assert np.array_equal(motion.nu, before[0]) and np.array_equal(motion.eta, before[1])
+    for b in range(6):
+        one = replace(motion, nu=motion.nu[b : b + 1], eta=motion.eta[b : b + 1], nu0=motion.nu0[b : b + 1])
+        alone = observe(plant.vehicle, plant.index, plant.null, beta[b : b + 1], one)
+        assert np.allclose(seen.nu[b], alone.nu[0], rtol=0, atol=1e-12) and np.allclose(seen.eta[b], alone.eta[0], rtol=0, atol=1e-12)
+    turned = before[0][5, :, :3] + np.cross(before[0][5, :, 3:], [0.5, 0.0, 0.0])
+    assert np.allclose(seen.nu[5, :, :3], turned, rtol=0, atol=1e-12)
 
 
 def test_a_delay_of_the_velocities_leaves_all_else_and_is_a_hypothesis_of_its_own():

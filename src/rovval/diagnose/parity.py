@@ -8,7 +8,7 @@ The residual and those traces enter the contest of hypotheses as rows beside the
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy import stats
@@ -29,32 +29,47 @@ DEAD_RECKONED = 0.5  # a position that follows the integrated velocity closer th
 
 @dataclass(frozen=True, slots=True)
 class Parity:
-    """Rows (m, q) in standard errors and their change (m, q, k) per parameter of ``columns``; ``used`` relations, ``sigma`` of
-    each, and ``inflation`` of its score. Zero rows where a window lacks pose or velocity."""
+    """Rows (m, q) in standard errors and their change (m, q, k) per parameter of ``columns``; ``gram`` their products of those columns
+    that leave a trace; ``used`` relations, ``sigma`` of each, and ``inflation`` of its score. Zero rows where a window lacks pose or velocity."""
 
     rows: Array
     traces: Array
+    gram: Products
     columns: tuple[int, ...]
     used: tuple[str, ...]
     sigma: tuple[float, ...]
     inflation: float
     notes: tuple[str, ...]
 
-    def products(self, inflation: float) -> Products:
-        """Products of the parity rows, discounted so that one common ``inflation`` suits them and the dynamics."""
-        scale = inflation / self.inflation
-        A = scale * np.einsum("wqi,wqj->wij", self.traces, self.traces)
-        b = scale * np.einsum("wqi,wq->wi", self.traces, self.rows)
-        return Products(A, b, scale * (self.rows**2).sum(axis=1), self.columns)
+    def moved(self, beta: Array, columns: tuple[int, ...]) -> Moved:
+        """The same rows about another parameter point, for other columns."""
+        return Moved(self, beta, columns)
 
-    def moved(self, beta: Array, columns: tuple[int, ...]) -> Parity:
-        """The same rows about another parameter point (linear in the sensors' parameters), for other columns."""
-        rows = self.rows - self.traces @ beta[list(self.columns)]
-        place = {c: i for i, c in enumerate(self.columns)}
-        traces = np.stack(
-            [self.traces[..., place[c]] if c in place else np.zeros_like(self.rows) for c in columns], axis=-1
-        ) if columns else np.zeros((*self.rows.shape, 0))
-        return replace(self, rows=rows, traces=traces, columns=columns)
+
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """Parity about the parameters ``beta`` (k,) for ``columns``."""
+
+    parity: Parity
+    beta: Array
+    columns: tuple[int, ...]
+
+    def products(self, inflation: float) -> Products:
+        """Products of the rows, discounted so that one common ``inflation`` suits them and the dynamics. Rows are linear in the sensors'
+        parameters, r(beta) = r - T beta, so that with A = T'T, b = T'r and c = r'r at the null value b(beta) = b - A beta and
+        c(beta) = c - beta'(b + b(beta)); columns without a trace have zeros."""
+        null, m, k = self.parity.gram, len(self.parity.gram.c), len(self.columns)
+        beta = self.beta[list(null.columns)]
+        b = null.b - null.A @ beta
+        c = null.c - (null.b + b) @ beta
+        place = {column: i for i, column in enumerate(null.columns)}
+        to = [i for i, column in enumerate(self.columns) if column in place]
+        of = [place[self.columns[i]] for i in to]
+        scale = inflation / self.parity.inflation
+        out = Products(np.zeros((m, k, k)), np.zeros((m, k)), scale * c, self.columns)
+        out.A[np.ix_(range(m), to, to)] = scale * null.A[np.ix_(range(m), of, of)]
+        out.b[:, to] = scale * b[:, of]
+        return out
 
 
 def parity(stretches: Stretches, columns: tuple[int, ...]) -> Parity:
@@ -170,7 +185,7 @@ def _weighted(stretches: Stretches, nominal: Array, traces: Array, columns: tupl
     """Rows and traces in standard errors: what all sensor faults together leave is the noise of each relation."""
     m, k = len(nominal), len(columns)
     if not keep:
-        return Parity(np.zeros((m, 0)), np.zeros((m, 0, k)), columns, (), (), 1.0, ("no pose beside velocity in this log",))
+        return _none(m, columns, ("no pose beside velocity in this log",))
     free = np.flatnonzero(np.abs(traces).max(axis=(0, 1, 2)) > 0)
     sigma = np.array([max(1.4826 * float(np.median(np.abs(nominal[..., i]))), LEAST_SIGMA[i]) for i in keep])
     notes: list[str] = []
@@ -185,11 +200,23 @@ def _weighted(stretches: Stretches, nominal: Array, traces: Array, columns: tupl
         sigma = np.maximum(left.std(axis=(0, 1)), [LEAST_SIGMA[i] for i in keep])
     keep, sigma = _independent(stretches, keep, sigma, notes)
     if not keep:
-        return Parity(np.zeros((m, 0)), np.zeros((m, 0, k)), columns, (), (), 1.0, tuple(notes))
+        return _none(m, columns, tuple(notes))
     rows = (nominal[..., keep] / sigma).reshape(m, -1)
     scaled = (traces[..., keep, :] / sigma[:, None]).reshape(m, -1, k)
     inflation = _inflation(rows, scaled, free)
-    return Parity(rows, scaled, columns, tuple(RELATIONS[i] for i in keep), tuple(sigma.tolist()), inflation, tuple(notes))
+    gram = _gram(rows, scaled[..., free], tuple(columns[i] for i in free))
+    return Parity(rows, scaled, gram, columns, tuple(RELATIONS[i] for i in keep), tuple(sigma.tolist()), inflation, tuple(notes))
+
+
+def _none(m: int, columns: tuple[int, ...], notes: tuple[str, ...]) -> Parity:
+    """No rows at all."""
+    rows, traces = np.zeros((m, 0)), np.zeros((m, 0, len(columns)))
+    return Parity(rows, traces, _gram(rows, traces[..., :0], ()), columns, (), (), 1.0, notes)
+
+
+def _gram(rows: Array, traces: Array, columns: tuple[int, ...]) -> Products:
+    turned = traces.swapaxes(1, 2)
+    return Products(turned @ traces, (turned @ rows[..., None])[..., 0], (rows**2).sum(axis=1), columns)
 
 
 def _independent(stretches: Stretches, keep: list[int], sigma: Array, notes: list[str]) -> tuple[list[int], Array]:

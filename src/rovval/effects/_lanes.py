@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,16 +54,28 @@ class Lanes:
 
     def take(self, which: NDArray[np.int64]) -> Lanes:
         """Some of the lanes."""
-        return replace(self, **{f.name: getattr(self, f.name)[which] for f in fields(self) if f.name not in ("vehicle", "model")})
+        return replace(self, **{name: getattr(self, name)[which] for name in self._numbers()})
+
+    def repeated(self, size: int) -> Lanes:
+        """A single lane ``size`` times over, read-only and at no cost."""
+        each: dict[str, Any] = {}
+        for name in self._numbers():
+            value = getattr(self, name)[0]
+            each[name] = np.broadcast_to(value, (size, *value.shape))
+        return replace(self, **each)
+
+    def _numbers(self) -> list[str]:
+        return [f.name for f in fields(self) if f.name not in ("vehicle", "model")]
 
 
-def nominal(vehicle: Vehicle, model: str, size: int) -> Lanes:
-    """``size`` equal lanes of the vehicle as its file has it. ``freefloating`` has no added mass and no linear drag (thesis 2.1
-    and 2.3: M_a and G_a are zero, damping is quadratic)."""
+def nominal(vehicle: Vehicle, model: str) -> Lanes:
+    """One lane of the vehicle as its file has it. ``freefloating`` has no added mass and no linear drag (thesis 2.1 and 2.3: M_a
+    and G_a are zero, damping is quadratic)."""
 
     def each(value: object) -> Array:
-        a = np.asarray(value, dtype=float)
-        return np.broadcast_to(a, (size, *a.shape))
+        one = np.array([value], dtype=float)
+        one.setflags(write=False)
+        return one
 
     body = vehicle.body
     fossen = 1.0 if model == "fossen" else 0.0

@@ -10,6 +10,7 @@ import numpy as np
 
 from rovval.effects import Effect, Parameter
 from rovval.effects._lanes import Array
+from rovval.frames import skew
 
 if TYPE_CHECKING:
     from rovval.plant.sensors import Log
@@ -34,7 +35,7 @@ EFFECT = Effect(
 
 def observe(log: Log, p: Mapping[str, Array]) -> Log:
     """Velocity at the sensor."""
-    seen = log.nu[..., :3] + np.cross(log.nu[..., 3:], _arm(p)[:, None])
+    seen = log.nu[..., :3] + log.nu[..., 3:] @ skew(_arm(p))
     return replace(log, nu=np.concatenate([seen, log.nu[..., 3:]], axis=-1))
 
 

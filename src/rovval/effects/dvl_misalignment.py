@@ -35,7 +35,7 @@ EFFECT = Effect(
 
 def observe(log: Log, p: Mapping[str, Array]) -> Log:
     """Velocities in the sensor's axes."""
-    seen = np.einsum("bji,btj->bti", _mount(p), log.nu[..., :3])
+    seen = log.nu[..., :3] @ _mount(p)
     return replace(log, nu=np.concatenate([seen, log.nu[..., 3:]], axis=-1))
 
 

@@ -40,6 +40,8 @@ def lower(lanes: Lanes, p: Mapping[str, Array]) -> Lanes:
 def observe(log: Log, p: Mapping[str, Array]) -> Log:
     """Velocities of ``delay`` ago: linear from the measured first one to the true first one, then between samples; one that is early
     goes on along its last slope."""
+    if not p["delay"].any():
+        return log
     v, last = log.nu[..., :3], log.nu.shape[1] - 1
     late = p["delay"][:, None] / log.dt
     sample = np.arange(last + 1)

@@ -9,10 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval import effects
-from rovval.effects._lanes import Lanes, nominal
+from rovval.effects._lanes import Lanes
 from rovval.frames import skew
 from rovval.plant import compose, slots
-from rovval.vehicle.model import Vehicle
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -43,10 +42,10 @@ def active_effects(found: tuple[slots.Slot, ...], null: Array, beta: Array) -> f
     return frozenset(found[c].effect for c in np.flatnonzero((beta != null).any(axis=0)))
 
 
-def lower(vehicle: Vehicle, model: str, found: tuple[slots.Slot, ...], index: Mapping[str, int], null: Array, beta: Array) -> Lowered:
-    """Lower ``beta`` (B, K). An effect that no lane has is not even called."""
-    active = active_effects(found, null, beta)
-    lanes = nominal(vehicle, model, len(beta))
+def lower(nominal: Lanes, found: tuple[slots.Slot, ...], index: Mapping[str, int], null: Array, beta: Array) -> Lowered:
+    """Lower ``beta`` (B, K) from one ``nominal`` lane. An effect that no lane has is not even called."""
+    active, vehicle = active_effects(found, null, beta), nominal.vehicle
+    lanes = nominal.repeated(len(beta))
     rows: dict[str, Array] = {}
     for name in effects.names():
         if name not in active:
@@ -59,7 +58,7 @@ def lower(vehicle: Vehicle, model: str, found: tuple[slots.Slot, ...], index: Ma
         if not own:
             continue
         p = slots.gather(vehicle, index, name, beta if name in active else null[None])
-        values = effects.module(name).rows(lanes if name in active else nominal(vehicle, model, 1), p)
+        values = effects.module(name).rows(lanes if name in active else nominal, p)
         for row in own:
             rows[f"{name}.{row}"] = values[row]
     return Lowered(lanes, rows, active, _full(found, null, beta), _acts(found, null, beta))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval import effects
-from rovval.effects._lanes import Lanes
+from rovval.effects._lanes import Lanes, nominal
 from rovval.errors import BadInput, UsageProblem, all_at_once
 from rovval.frames import quaternion_from_euler
 from rovval.plant import compose, geometry, kernel, sensors, slots
@@ -70,6 +70,7 @@ class Plant:
         self._dense = any(_coupled(m) for m in (vehicle.body.added_mass, vehicle.body.linear_drag, vehicle.body.quadratic_drag))
         self._advance = any(t.diameter > 0 and any((*t.advance_pos, *t.advance_neg)) for t in vehicle.thruster)
         self._geometry = _geometry(vehicle)
+        self.nominal = nominal(vehicle, model)
 
     def thrust(self, speed: Array) -> Array:
         """Nominal thrust (S, k) N of thruster speeds (S, k) rev/s, at rest in the water."""
@@ -90,7 +91,7 @@ class Plant:
         """
         start, nu0, eta0, beta, which, gain = self._checked(inputs, start, steps, nu0, eta0, beta, extra, extra_gain)
         prepared = prepare(inputs, self.vehicle)
-        lowered = lower(self.vehicle, self.model, self.slots, self.index, self.null, beta)
+        lowered = lower(self.nominal, self.slots, self.index, self.null, beta)
         true_nu, true_eta = sensors.unobserve(self.vehicle, self.index, self.null, beta, nu0, eta0)
         lanes = _Lanes(start, true_nu, true_eta, which, gain)
         if sensors.settling(lowered.active):

@@ -31,7 +31,7 @@ def simulate(
     size = len(start)
     which = np.full(size, -1) if extra is None else extra
     gain = np.ones(size) if extra_gain is None else extra_gain
-    lowered = lower(plant.vehicle, plant.model, plant.slots, plant.index, plant.null, beta)
+    lowered = lower(plant.nominal, plant.slots, plant.index, plant.null, beta)
     nu, eta = sensors.unobserve(plant.vehicle, plant.index, plant.null, beta, nu0, eta0)
     prepared = prepare(inputs, plant.vehicle)
     if sensors.settling(lowered.active):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ from rovval.plant import slots
 from rovval.vehicle.model import Vehicle
 
 Array = NDArray[np.float64]
+Part = NDArray[np.int64] | slice  # of the lanes; those that lie side by side are a view
 
 # In the order in which they act on the true motion: where the sensor sits, how it is turned, its scale, then bias, filter and delay.
 ORDER = (
@@ -40,14 +42,17 @@ def order() -> tuple[str, ...]:
 
 
 def observe(vehicle: Vehicle, index: Mapping[str, int], null: Array, beta: Array, log: Log) -> Log:
-    """The log as written; only lanes whose sensor effect is not null are touched."""
+    """The log as written; only lanes whose sensor effect is not null are touched, and what an effect hands back as it was is not copied."""
+    written = log
     for name, lanes in _acting(order(), index, null, beta):
-        part = Log(log.nu[lanes], log.eta[lanes], log.dt, log.nu0[lanes])
+        if written is log:
+            written = Log(log.nu.copy(), log.eta.copy(), log.dt, log.nu0)
+        part = Log(written.nu[lanes], written.eta[lanes], log.dt, log.nu0[lanes])
         seen = effects.module(name).observe(part, slots.gather(vehicle, index, name, beta[lanes]))
-        nu, eta = log.nu.copy(), log.eta.copy()
-        nu[lanes], eta[lanes] = seen.nu, seen.eta
-        log = Log(nu, eta, log.dt, log.nu0)
-    return log
+        for whole, before, after in ((written.nu, part.nu, seen.nu), (written.eta, part.eta, seen.eta)):
+            if after is not before:
+                whole[lanes] = after
+    return written
 
 
 def unobserve(vehicle: Vehicle, index: Mapping[str, int], null: Array, beta: Array, nu0: Array, eta0: Array) -> tuple[Array, Array]:
@@ -76,12 +81,22 @@ def settle(vehicle: Vehicle, index: Mapping[str, int], null: Array, beta: Array,
     return nu
 
 
-def _acting(wanted: tuple[str, ...], index: Mapping[str, int], null: Array, beta: Array) -> list[tuple[str, NDArray[np.int64]]]:
+def _acting(wanted: tuple[str, ...], index: Mapping[str, int], null: Array, beta: Array) -> list[tuple[str, Part]]:
     """Effects and the lanes in which they are not null."""
-    found = []
+    found = list[tuple[str, Part]]()
+    columns, away = _columns(tuple(index)), beta != null
     for name in wanted:
-        columns = [c for key, c in index.items() if key.partition(".")[0].partition("[")[0] == name]
-        lanes = np.flatnonzero((beta[:, columns] != null[columns]).any(axis=1))
+        lanes = np.flatnonzero(away[:, columns[name]].any(axis=1))
         if len(lanes):
-            found.append((name, lanes))
+            first, last = int(lanes[0]), int(lanes[-1])
+            found.append((name, slice(first, last + 1) if last - first < len(lanes) else lanes))
     return found
+
+
+@cache
+def _columns(keys: tuple[str, ...]) -> Mapping[str, list[int]]:
+    """Where each effect's parameters stand among the keys of the slots."""
+    found: dict[str, list[int]] = {}
+    for column, key in enumerate(keys):
+        found.setdefault(key.partition(".")[0].partition("[")[0], []).append(column)
+    return MappingProxyType(found)
