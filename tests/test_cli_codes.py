@@ -1,5 +1,6 @@
 """What the wrapper does with each way to end: exit code, one message, and where a traceback goes."""
 
+import os
 import re
 import signal
 import subprocess
@@ -43,6 +44,21 @@ def test_refusals_keep_their_code_and_say_what_next(ends_with, error: RovvalErro
     left, err = ends_with(error)
     assert left == code
     assert err == f"rovval: {error}\n"
+
+
+def test_blas_has_one_thread_unless_the_user_says_so():
+    """The command line asks for it before numpy is there, and leaves alone what is set."""
+    names = rovval.cli.BLAS_THREADS
+    code = f"""import os, sys; import rovval.cli.app; assert 'numpy' not in sys.modules
+sys.argv = ['rovval', 'list', 'vehicle']
+try:
+    rovval.cli.main()
+except SystemExit:
+    print(*(os.environ[n] for n in {names!r}))"""
+    bare = {k: v for k, v in os.environ.items() if k not in names}
+    for given, want in (({}, "1 1 1"), ({"OMP_NUM_THREADS": "3"}, "1 3 1")):
+        done = subprocess.run([sys.executable, "-c", code], env=bare | given, capture_output=True, text=True, check=True)
+        assert done.stdout.splitlines()[-1] == want
 
 
 def test_interrupt_is_130(ends_with):
