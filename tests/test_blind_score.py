@@ -176,6 +176,8 @@ ALIASES = [
     (planted("time_offset", "velocity", delay_s=0.4), cause("velocity_filter_lag"), False),
     (planted("time_offset", "thruster_feedback", delay_s=0.4), cause("time_offset"), True),
     (planted("time_offset", "thruster_feedback", delay_s=0.4), cause("time_offset[velocity]"), False),
+    (planted("time_offset", "attitude", delay_s=0.4), cause("time_offset[attitude]"), True),
+    (planted("time_offset", "attitude", delay_s=0.4), cause("time_offset"), False),
     (planted("time_offset", "attitude", delay_s=0.4), cause("velocity_filter_lag"), False),
     (planted("velocity_filter_lag", None), cause("time_offset"), False),
     (planted("current_constant", None), cause("current_varying"), False),

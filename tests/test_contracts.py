@@ -54,7 +54,7 @@ def test_listing_and_completion_know_the_same_names(kind, names):
 def test_an_effect_shows_how_to_ask_for_each_of_its_hypotheses():
     shown = RUNNER.invoke(app, ["show", "effect", "time_offset"]).output
     assert "  [velocity] delay [s]" in shown
-    assert "'time_offset:tau=VALUE', --effect 'time_offset[velocity]:delay=VALUE'" in shown
+    assert "'time_offset:tau=VALUE', --effect 'time_offset[velocity]:delay=VALUE', --effect 'time_offset[attitude]:delay=VALUE'" in shown
 
 
 @pytest.mark.parametrize(

@@ -164,6 +164,8 @@ def spoilt(fault: dict[str, float]) -> Run:
     for c in "uvw":
         t = np.arange(len(log[c])) * 0.1
         log[c] = np.interp(t - fault.get("time_offset[velocity].delay", 0.0), t, log[c])
+    for c in ("p", "q", "r", "phi", "theta", "psi"):
+        log[c] = np.interp(t - fault.get("time_offset[attitude].delay", 0.0), t, log[c])
     for c in "pqr":
         log[c] = log[c] + fault.get(f"gyro_bias.{c}", 0.0)
     for c in ("phi", "theta"):
@@ -186,7 +188,7 @@ def parity_of(run: Run) -> dict[str, dict[str, object]]:
     [
         ("gyro_bias.r", 0.01), ("gyro_bias.p", -0.008), ("dvl_scale.scale", 0.05), ("dvl_scale.scale", -0.04),
         ("dvl_misalignment.yaw", 0.08), ("dvl_lever_arm.x", 0.8), ("attitude_bias.phi", 0.06), ("attitude_bias.theta", -0.05),
-        ("compass_deviation.offset", 0.1), ("time_offset[velocity].delay", 0.4),
+        ("compass_deviation.offset", 0.1), ("time_offset[velocity].delay", 0.4), ("time_offset[attitude].delay", 0.4),
     ],
 )  # fmt: skip
 def test_parity_finds_a_sensor_fault_with_sign_and_size(fault, size):

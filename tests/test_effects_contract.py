@@ -11,6 +11,7 @@ import pytest
 import plant_cases as cases
 from rovval import effects
 from rovval.channels import AXES, CHANNELS
+from rovval.frames import wrap
 from rovval.plant import Inputs, Plant, compose
 from rovval.plant.sensors import Log, observe
 
@@ -81,7 +82,7 @@ def test_a_window_reproduces_the_log_that_its_own_effects_made():
     for key, value, tolerance in (
         ("dvl_misalignment.yaw", 0.2, 1e-9), ("dvl_lever_arm.x", 0.5, 1e-9), ("compass_deviation.sine", 0.2, 1e-9), ("attitude_bias.phi", 0.05, 1e-9),
         ("time_offset.tau", 0.25, 1e-9), ("thrust_lag.tau", 0.3, 1e-9), ("gyro_bias.r", 0.02, 1e-9), ("velocity_filter_lag.tau", 0.3, 0.05),
-        ("time_offset[velocity].delay", 0.3, 0.05),
+        ("time_offset[velocity].delay", 0.3, 0.05), ("time_offset[attitude].delay", 0.3, 0.05),
     ):  # fmt: skip
         beta = plant.null.copy()
         beta[plant.index[key]] = value
@@ -94,41 +95,46 @@ def test_a_window_reproduces_the_log_that_its_own_effects_made():
 def test_sensors_of_many_lanes_are_those_of_one_lane_at_a_time():
     """Lanes side by side, apart and all at once, several effects on one of them; the motion handed in stays as it was."""
     plant, rng = Plant(cases.merlin()), np.random.default_rng(2)
-    motion = Log(*(0.3 * rng.normal(size=(6, 40, 6)) for _ in range(2)), 0.1, 0.3 * rng.normal(size=(6, 6)))
+    motion = Log(*(0.3 * rng.normal(size=(6, 40, 6)) for _ in range(2)), 0.1, *(0.3 * rng.normal(size=(6, 6)) for _ in range(2)))
     beta = np.tile(plant.null, (6, 1))
     for key, value, lanes in (
         ("gyro_bias.r", 0.02, slice(None)), ("dvl_lever_arm.x", 0.5, [0, 2, 5]), ("dvl_misalignment.yaw", 0.2, [1, 2, 3]), ("compass_deviation.sine", 0.2, [4]),
-        ("velocity_filter_lag.tau", 0.3, [2, 3]), ("time_offset[velocity].delay", -0.25, [0, 3]), ("time_offset.tau", 0.2, [1]),
+        ("velocity_filter_lag.tau", 0.3, [2, 3]), ("time_offset[velocity].delay", -0.25, [0, 3]),
+        ("time_offset[attitude].delay", 0.15, [3, 5]), ("time_offset.tau", 0.2, [1]),
     ):  # fmt: skip
         beta[lanes, plant.index[key]] = value
     before = motion.nu.copy(), motion.eta.copy()
     seen = observe(plant.vehicle, plant.index, plant.null, beta, motion)
     assert np.array_equal(motion.nu, before[0]) and np.array_equal(motion.eta, before[1])
     for b in range(6):
-        one = replace(motion, nu=motion.nu[b : b + 1], eta=motion.eta[b : b + 1], nu0=motion.nu0[b : b + 1])
+        one = replace(motion, nu=motion.nu[b : b + 1], eta=motion.eta[b : b + 1], nu0=motion.nu0[b : b + 1], eta0=motion.eta0[b : b + 1])
         alone = observe(plant.vehicle, plant.index, plant.null, beta[b : b + 1], one)
         assert np.allclose(seen.nu[b], alone.nu[0], rtol=0, atol=1e-12) and np.allclose(seen.eta[b], alone.eta[0], rtol=0, atol=1e-12)
     turned = before[0][5, :, :3] + np.cross(before[0][5, :, 3:], [0.5, 0.0, 0.0])
     assert np.allclose(seen.nu[5, :, :3], turned, rtol=0, atol=1e-12)
 
 
-def test_a_delay_of_the_velocities_leaves_all_else_and_is_a_hypothesis_of_its_own():
-    """From a steady start (no acceleration to begin with) the log is the true motion, u v w that much later; early ones too."""
+def test_a_delay_of_one_sensor_leaves_all_else_and_is_a_hypothesis_of_its_own():
+    """From a steady start (no acceleration to begin with) the log is the true motion, that sensor's part that much later; early ones too."""
     plant = Plant(cases.merlin())
-    assert len(plant.hypotheses["time_offset"]) == len(plant.hypotheses["time_offset[velocity]"]) == 1
+    assert [len(plant.hypotheses[f"time_offset{which}"]) for which in ("", "[velocity]", "[attitude]")] == [1, 1, 1]
     still = cases.changed(plant.vehicle, volume=plant.vehicle.body.mass / plant.vehicle.water.density)
     plant = Plant(still)
     speed = np.where(np.arange(100)[:, None] < 20, 0.0, np.linspace(-3.0, 3.0, 7))
     inputs, first, zero = Inputs(0.1, speed, False), np.zeros(1, int), np.zeros((1, 6))
     true = plant.simulate(inputs, first, 90, zero, zero, plant.null[None])
-    for delay in (0.25, -0.25):
-        beta = plant.null.copy()
-        beta[plant.index["time_offset[velocity].delay"]] = delay
-        seen = plant.simulate(inputs, first, 90, zero, zero, beta[None])
-        late = np.arange(5, 85) - delay / 0.1
-        for i in range(3):
-            assert np.allclose(seen.nu[0, 5:85, i], np.interp(late, np.arange(91), true.nu[0, :, i]), rtol=0, atol=1e-12)
-        assert np.allclose(seen.nu[..., 3:], true.nu[..., 3:], rtol=0, atol=1e-12) and np.allclose(seen.eta, true.eta, rtol=0, atol=1e-12)
+    whole = np.concatenate([true.nu[0], true.eta[0, :, :3], np.unwrap(true.eta[0, :, 3:], axis=0)], axis=1)
+    assert np.abs(whole[:, 11]).max() > np.pi / 2 and np.ptp(whole[:, :6], axis=0).min() > 1e-3
+    for which, part in (("velocity", (0, 1, 2)), ("attitude", (3, 4, 5, 9, 10, 11))):
+        for delay in (0.25, -0.25):
+            beta = plant.null.copy()
+            beta[plant.index[f"time_offset[{which}].delay"]] = delay
+            seen = plant.simulate(inputs, first, 90, zero, zero, beta[None])
+            late = np.arange(5, 85) - delay / 0.1
+            for i in range(12):
+                want = np.interp(late, np.arange(91), whole[:, i]) if i in part else whole[5:85, i]
+                got = np.concatenate([seen.nu[0], seen.eta[0]], axis=1)[5:85, i]
+                assert np.abs(wrap(got - want) if i > 8 else got - want).max() < 1e-12
 
 
 def test_sized_parameters_grow_with_the_vehicle():

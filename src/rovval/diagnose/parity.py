@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+from scipy import signal, stats
 
 from rovval.data import Array, Flags
 from rovval.diagnose.products import Products
@@ -24,6 +24,8 @@ ROW_EVERY = 10  # samples between rows of a window: poses 1 s apart, whose error
 RELATIONS = ("x", "y", "z", "phi", "theta", "psi")
 LEAST_SIGMA = (0.005, 0.005, 0.002, 0.001, 0.001, 0.001)  # m, rad: no sensor is believed below these (chosen)
 STEP = 0.25  # finite-difference step, in typical sizes
+LEAD = 10  # samples before a window from which a sensor's memory is filled: many times the steps of delays and lags (0.05 s)
+SMOOTH = 11  # samples of the quadratic by which motion is smoothed for traces: a delay's is a slope, which noise would drown and correlate
 DEAD_RECKONED = 0.5  # a position that follows the integrated velocity closer than half its noise allows was integrated from it
 
 
@@ -75,7 +77,9 @@ class Moved:
 def parity(stretches: Stretches, columns: tuple[int, ...]) -> Parity:
     """Parity rows of every window and the trace that each sensor parameter among ``columns`` leaves in them."""
     nu, eta, whole = _measured(stretches)
-    nominal = _drift(nu, eta, stretches.run.dt)
+    nominal = _drift(nu[:, LEAD:], eta[:, LEAD:], stretches.run.dt)
+    nu, eta = (signal.savgol_filter(a, SMOOTH, 2, axis=1) for a in (nu, eta))
+    smooth = _drift(nu[:, LEAD:], eta[:, LEAD:], stretches.run.dt)
     sensor = [c for c in columns if load(stretches.plant.slots[c].effect).place == "sensor"]
     traces = np.zeros((*nominal.shape, len(columns)))
     for column in sensor:
@@ -84,7 +88,7 @@ def parity(stretches: Stretches, columns: tuple[int, ...]) -> Parity:
         beta = stretches.plant.null.copy()
         beta[column] += step
         seen = _seen(stretches, nu, eta, beta)
-        traces[..., columns.index(column)] = wrap_angles(_drift(seen.nu, seen.eta, stretches.run.dt) - nominal) / step
+        traces[..., columns.index(column)] = wrap_angles(_drift(seen.nu[:, LEAD:], seen.eta[:, LEAD:], stretches.run.dt) - smooth) / step
     keep = [i for i, name in enumerate(RELATIONS) if whole[i]]
     usable = _complete(stretches)
     nominal[~usable], traces[~usable] = 0.0, 0.0
@@ -138,14 +142,15 @@ def wrap_angles(rows: Array) -> Array:
 def _seen(stretches: Stretches, nu: Array, eta: Array, beta: Array) -> Log:
     """The measured motion as sensors with the fault ``beta`` (k,) would have logged it."""
     plant = stretches.plant
-    log = Log(nu, eta, stretches.run.dt, nu[:, 0])
+    log = Log(nu, eta, stretches.run.dt, nu[:, 0], eta[:, 0])
     return observe(plant.vehicle, plant.index, plant.null, np.tile(beta, (len(nu), 1)), log)
 
 
 def _measured(stretches: Stretches) -> tuple[Array, Array, Flags]:
-    """Velocities and poses of the windows (m, n, 6) with gaps bridged linearly, and which relations the log can serve (6,)."""
+    """Velocities and poses of the windows and the LEAD before them (m, LEAD + n, 6), held before the log's start, gaps bridged linearly,
+    and which relations the log can serve (6,)."""
     run = stretches.run
-    at = stretches.start[:, None] + np.arange(stretches.steps + 1)[None, :]
+    at = np.maximum(stretches.start[:, None] + np.arange(-LEAD, stretches.steps + 1)[None, :], 0)
     nu = np.stack([_bridged(run.get(c))[at] for c in ("u", "v", "w", "p", "q", "r")], axis=-1)
     eta = np.stack([_bridged(run.get(c), angle=c in RELATIONS[3:])[at] for c in RELATIONS], axis=-1)
     attitude = all(run.measured(c) for c in RELATIONS[3:])

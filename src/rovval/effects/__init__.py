@@ -39,7 +39,7 @@ class Parameter:
     """One number of an effect. ``typical`` is the 1-sigma prior size of its departure from ``null``; ``low`` and ``high`` are
     refused beyond, never clipped. ``sized`` says that low, high and typical are for a BlueROV2 and grow with the vehicle's
     weight, surge drag or thruster speed (`plant.slots`). ``target`` sets a parameter of an effect that is neither per axis nor per
-    thruster apart, as a hypothesis of its own: ``time_offset[velocity]``."""
+    thruster apart, as a hypothesis of its own: ``time_offset[velocity]``, ``p["delay[velocity]"]``."""
 
     name: str
     unit: str

@@ -1,8 +1,8 @@
-"""Thrusters, navigation and its velocity log are stamped by clocks, or after processing, that are apart."""
+"""Thrusters, navigation, its velocity log and its attitude sensor are stamped by clocks, or after processing, that are apart."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from rovval.effects import Effect, Parameter
 from rovval.effects._lanes import Array, Lanes
+from rovval.frames import euler_rates, wrap
 
 if TYPE_CHECKING:
     from rovval.plant.sensors import Log
@@ -19,17 +20,20 @@ EFFECT = Effect(
     title="Time offset",
     place="sensor",
     equation="n_acting(t) = n_logged(t - tau), linear between samples, held at the log's ends (diagnosis.md S1). Positive: navigation is "
-    "stamped late. time_offset[velocity]: u v w logged = u v w (t - delay), late against thrusters and all other navigation. A window begins "
-    "at the measured velocity; the true one there is that plus the delay times the model's acceleration.",
+    "stamped late. time_offset[velocity]: u v w logged = u v w (t - delay), late against thrusters and all other navigation. "
+    "time_offset[attitude]: so are phi theta psi and p q r, the attitude sensor's (AHRS). A window begins at the measured state; the true "
+    "one there is that plus the delay times the model's acceleration and the measured turn rates.",
     parameters=(
         Parameter("tau", "s", -2.0, 2.0, 0.0, 0.1, "+-0.5 s (diagnosis.md S1)"),
         Parameter("delay", "s", -1.5, 1.5, 0.0, 0.2, "+-0.5 s (diagnosis.md S1)", target="velocity"),
+        Parameter("delay", "s", -1.5, 1.5, 0.0, 0.2, "+-0.5 s (diagnosis.md S1)", target="attitude"),
     ),
-    signature="the answer comes early or late by the same time on every axis; [velocity]: u v w late, p q r and attitude not",
+    signature="the answer comes early or late by the same time on every axis; [velocity]: u v w late, p q r and attitude not; [attitude]: the reverse",
     confused_with=("thrust_lag", "clock_drift", "velocity_filter_lag", "added_mass"),
-    separates="an offset delays without smoothing; it can be negative; position and depth show a delay of the velocities alone",
+    separates="an offset delays without smoothing; it can be negative; position and depth show a delay of velocities or attitude alone",
 )
-SETTLES = "delay"  # the plant adds the delay times the first acceleration to the first true velocity (`plant.model`)
+# The plant adds each delay times the first acceleration to the first true velocities (`plant.model`).
+SETTLES = {"delay[velocity]": slice(0, 3), "delay[attitude]": slice(3, 6)}
 
 
 def lower(lanes: Lanes, p: Mapping[str, Array]) -> Lanes:
@@ -38,23 +42,36 @@ def lower(lanes: Lanes, p: Mapping[str, Array]) -> Lanes:
 
 
 def observe(log: Log, p: Mapping[str, Array]) -> Log:
-    """Velocities of ``delay`` ago: linear from the measured first one to the true first one, then between samples; one that is early
-    goes on along its last slope."""
-    if not p["delay"].any():
-        return log
-    v, last = log.nu[..., :3], log.nu.shape[1] - 1
-    late = p["delay"][:, None] / log.dt
-    sample = np.arange(last + 1)
-    x = sample - late
-    low = np.clip(x.astype(np.int64), 0, max(last - 1, 0))
-    before, after = (np.take_along_axis(v, i[..., None], axis=1) for i in (low, np.minimum(low + 1, last)))
-    seen = before + (after - before) * (x - low)[..., None]
-    rising = (sample / np.where(late > 0, late, 1.0))[..., None]
-    first = log.nu0[:, None, :3]
-    seen = np.where((x < 0)[..., None], first + (v[:, :1] - first) * rising, seen)
-    return replace(log, nu=np.concatenate([np.where(late[..., None] != 0, seen, v), log.nu[..., 3:]], axis=-1))
+    """Velocities of the velocity log, and attitude and rates of the attitude sensor, of their ``delay`` ago."""
+    for parameter, part in SETTLES.items():
+        if p[parameter].any():
+            nu = log.nu.copy()
+            nu[..., part] = _late(nu[..., part], log.nu0[:, part], p[parameter] / log.dt)
+            log = replace(log, nu=nu)
+    if p["delay[attitude]"].any():
+        eta = log.eta.copy()
+        eta[..., 3:] = wrap(_late(np.unwrap(eta[..., 3:], axis=1), log.eta0[:, 3:], p["delay[attitude]"] / log.dt, wrap))
+        log = replace(log, eta=eta)
+    return log
 
 
 def unobserve(nu: Array, eta: Array, p: Mapping[str, Array]) -> tuple[Array, Array]:
-    """The measured velocity; the plant adds what has not been logged yet."""
-    return nu, eta
+    """The measured velocities, to which the plant adds what has not been logged yet, and the measured attitude turned on at its rates."""
+    turned = p["delay[attitude]"][:, None] * euler_rates(eta[:, 3:], nu[:, 3:])
+    return nu, np.concatenate([eta[:, :3], eta[:, 3:] + turned], axis=-1)
+
+
+def _late(true: Array, measured: Array, late: Array, gap: Callable[[Array], Array] = np.asarray) -> Array:
+    """Values (B, n, 3) of ``late`` (B,) samples ago: linear from the ``measured`` first one (B, 3) to the true first one, then between
+    samples; one that is early goes on along its last slope. ``gap`` makes a difference one of angles."""
+    last = true.shape[1] - 1
+    sample = np.arange(last + 1)
+    x = sample - late[:, None]
+    low = np.clip(x.astype(np.int64), 0, max(last - 1, 0))
+    lane = np.arange(len(true))[:, None]
+    before, after = true[lane, low], true[lane, np.minimum(low + 1, last)]
+    seen = before + (after - before) * (x - low)[..., None]
+    rising = 1.0 - sample / np.where(late > 0, late, 1.0)[:, None]
+    first = true[:, :1] + gap(measured[:, None] - true[:, :1]) * rising[..., None]
+    seen = np.where((x < 0)[..., None], first, seen)
+    return np.where(late[:, None, None] != 0, seen, true)

@@ -25,7 +25,7 @@ EFFECT = Effect(
     confused_with=("thrust_lag", "time_offset", "added_mass"),
     separates="an accelerometer; the gyros, which are not filtered",
 )
-SETTLES = "tau"  # the plant adds tau times the first acceleration to the first true velocity (`plant.model`)
+SETTLES = {"tau": slice(0, 3)}  # the plant adds tau times the first acceleration to the first true velocity (`plant.model`)
 
 
 def observe(log: Log, p: Mapping[str, Array]) -> Log:

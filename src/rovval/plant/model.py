@@ -101,7 +101,7 @@ class Plant:
         out, stopped, codes = self._run(inputs, prepared, lowered, lanes, steps)
         seen = sensors.observe(
             self.vehicle, self.index, self.null, beta,
-            sensors.Log(out[..., :6], out[..., 6:], inputs.dt, nu0),
+            sensors.Log(out[..., :6], out[..., 6:], inputs.dt, nu0, eta0),
         )  # fmt: skip
         why = tuple(f"lane {b} stopped at {stopped[b] * inputs.dt:.1f} s: {REASONS[codes[b]]}" for b in np.flatnonzero(stopped >= 0))
         return Motion(seen.nu, seen.eta, stopped, why)

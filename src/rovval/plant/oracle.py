@@ -38,7 +38,7 @@ def simulate(
         first, _, _ = _integrate(plant, lowered, inputs, prepared, start, which, gain, nu, eta, 1)
         nu = sensors.settle(plant.vehicle, plant.index, plant.null, beta, nu, (first[:, 1] - first[:, 0]) / inputs.dt)
     true_nu, true_eta, stopped = _integrate(plant, lowered, inputs, prepared, start, which, gain, nu, eta, steps)
-    seen = sensors.observe(plant.vehicle, plant.index, plant.null, beta, sensors.Log(true_nu, true_eta, inputs.dt, nu0))
+    seen = sensors.observe(plant.vehicle, plant.index, plant.null, beta, sensors.Log(true_nu, true_eta, inputs.dt, nu0, eta0))
     return Motion(seen.nu, seen.eta, stopped, tuple(f"lane {b}" for b in np.flatnonzero(stopped >= 0)))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from types import MappingProxyType
 
@@ -26,12 +26,13 @@ ORDER = (
 
 @dataclass(frozen=True, slots=True)
 class Log:
-    """A motion on its way through the sensors: ``nu`` and ``eta`` (B, T + 1, 6), ``dt`` s, and the first measured ``nu0`` (B, 6)."""
+    """A motion on its way through the sensors: ``nu`` and ``eta`` (B, T + 1, 6), ``dt`` s, and the first measured ``nu0`` and ``eta0`` (B, 6)."""
 
     nu: Array
     eta: Array
     dt: float
     nu0: Array
+    eta0: Array
 
 
 @cache
@@ -46,8 +47,8 @@ def observe(vehicle: Vehicle, index: Mapping[str, int], null: Array, beta: Array
     written = log
     for name, lanes in _acting(order(), index, null, beta):
         if written is log:
-            written = Log(log.nu.copy(), log.eta.copy(), log.dt, log.nu0)
-        part = Log(written.nu[lanes], written.eta[lanes], log.dt, log.nu0[lanes])
+            written = replace(log, nu=log.nu.copy(), eta=log.eta.copy())
+        part = Log(written.nu[lanes], written.eta[lanes], log.dt, log.nu0[lanes], log.eta0[lanes])
         seen = effects.module(name).observe(part, slots.gather(vehicle, index, name, beta[lanes]))
         for whole, before, after in ((written.nu, part.nu, seen.nu), (written.eta, part.eta, seen.eta)):
             if after is not before:
@@ -71,13 +72,14 @@ def settling(active: frozenset[str]) -> bool:
 
 
 def settle(vehicle: Vehicle, index: Mapping[str, int], null: Array, beta: Array, nu0: Array, acceleration: Array) -> Array:
-    """First true velocities behind a filter that has run for long, or a delay: u v w plus its time times the acceleration (B, 6)."""
+    """First true velocities behind a filter that has run for long, or a delay: those that it holds back plus its time times the
+    acceleration (B, 6)."""
     nu = nu0
     for name, lanes in _acting(order(), index, null, beta):
-        if tau := getattr(effects.module(name), "SETTLES", ""):
+        for parameter, part in getattr(effects.module(name), "SETTLES", {}).items():
             p = slots.gather(vehicle, index, name, beta[lanes])
             nu = nu.copy()
-            nu[lanes, :3] += p[tau][:, None] * acceleration[lanes, :3]
+            nu[lanes, part] += p[parameter][:, None] * acceleration[lanes, part]
     return nu
 
 

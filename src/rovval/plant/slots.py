@@ -74,12 +74,13 @@ def _hypothesis(name: str, target: str) -> str:
 
 
 def gather(vehicle: Vehicle, index: Mapping[str, int], name: str, beta: Array) -> dict[str, Array]:
-    """One effect's parameters out of ``beta`` (B, K): (B,), (B, 6) per axis with the null value on axes without, (B, k)."""
+    """One effect's parameters out of ``beta`` (B, K): (B,), (B, 6) per axis with the null value on axes without, (B, k); a parameter with a target under
+    ``delay[velocity]``."""
     effect = effects.load(name)
     values: dict[str, Array] = {}
     for parameter in effect.parameters:
         if effect.per == "":
-            values[parameter.name] = beta[:, index[f"{_hypothesis(name, parameter.target)}.{parameter.name}"]]
+            values[_hypothesis(parameter.name, parameter.target)] = beta[:, index[f"{_hypothesis(name, parameter.target)}.{parameter.name}"]]
         elif effect.per == "thruster":
             values[parameter.name] = beta[:, [index[f"{name}[{t}].{parameter.name}"] for t in vehicle.thrusters]]
         else:
