@@ -20,6 +20,7 @@ TWIN, MOST_TWINS = 0.85, 4  # coherence from which a hypothesis is re-simulated 
 HALF_REVERSED = 0.55  # 0.5 is a dead thruster; the margin is chosen
 LEAST_SIGMA = 2.2  # standard errors, slop included, by which an effect departs from nothing (tuning set: healthy logs reach 2.0)
 TOLERANCES = 3.0  # times the tolerance of calibration slop within which a coefficient is not worth a name
+LOSSES = 1.5  # the same for a loss of thrust that comes and goes
 SHARPENED = 4  # finalists that are settled with slopes made at their own point
 SERIOUS = 0.5  # share of the best evidence from which a rival's gain counts
 NEARLY = 0.9  # of the best's gain
@@ -95,10 +96,15 @@ def admissible(problem: Problem, weighed: list[Rival]) -> list[Rival]:
 
 
 def _beyond_tolerance(problem: Problem, rival: Rival) -> bool:
-    """Whether some parameter that healthy vehicles and sensors vary in is further off than they are; True where none has a tolerance."""
-    slots = [s for s in rival.hypothesis.slots if s in problem.slop.sd]
-    off = [abs(rival.fitted.beta[s] - problem.origin[s]) / problem.slop.sd[s] for s in slots]
-    return not off or max(off) >= TOLERANCES
+    """Whether some parameter that healthy vehicles and sensors vary in is further off than they are; True where none has a tolerance.
+
+    A loss of thrust that begins, or that a stream causes, is held against what thrust may be off by all the time.
+    """
+    beta, origin, slots = rival.fitted.beta, problem.origin, problem.plant.slots
+    tolerance = {s: TOLERANCES * problem.slop.sd[s] for s in rival.hypothesis.slots if s in problem.slop.sd}
+    thrust = max((sd for s, sd in problem.slop.sd.items() if slots[s].effect == "thruster_degraded"), default=0.0)
+    tolerance |= {s: LOSSES * thrust for s in rival.hypothesis.slots if slots[s].parameter.name == "loss" and s not in tolerance}
+    return not tolerance or any(abs(beta[s] - origin[s]) >= limit for s, limit in tolerance.items())
 
 
 def simplest(problem: Problem, rivals: list[Rival]) -> Rival:

@@ -17,6 +17,7 @@ from rovval.diagnose.library import Hypothesis
 from rovval.diagnose.linearise import Direction, Linear, linearise, state_spread
 from rovval.diagnose.parity import Parity, parity
 from rovval.diagnose.products import Products, joined, products, start_corrected
+from rovval.diagnose.steadied import discount, gains, loosened
 from rovval.diagnose.stretches import BELIEVED, Stretches
 from rovval.diagnose.tolerance import slop_prior
 from rovval.plant import Plant, parse_settings
@@ -57,7 +58,8 @@ def pose(parts: tuple[Stretches, ...], library: Sequence[Hypothesis], slop: floa
     """Set the problem up about the vehicle as it is (with the effects that its file carries)."""
     plant = parts[0].plant
     origin = parse_settings(plant, carried_effects(plant.vehicle))
-    prior = slop_prior(plant, slop)
+    gain = gains(parts)
+    prior = loosened(slop_prior(plant, slop), plant, gain)
     columns, directions = columns_of(library, prior)
     linear = tuple(linearise(part, origin, columns, directions) for part in parts)
     first = _variance(parts, linear, prior)
@@ -68,7 +70,7 @@ def pose(parts: tuple[Stretches, ...], library: Sequence[Hypothesis], slop: floa
     everything = Prior({c: plant.slots[c].parameter.typical for c in columns})
     inflation = inflation_of(early, fit(Ring.of(early, folds), everything, 10.0).step)
     best = fit(Ring.of(early, folds), everything, inflation).step
-    variance = first + _unexplained(parts, linear, first, best)
+    variance = (first + _unexplained(parts, linear, first, best)) * discount(parts, gain)
     dynamic = _joined(parts, linear, variance)
     inflation = inflation_of(dynamic, fit(Ring.of(dynamic, folds), everything, inflation).step)
     data = dynamic + joined([check.moved(origin, dynamic.columns).products(inflation) for check in checks])

@@ -6,14 +6,19 @@ sensors have tolerances of their own, stated here; each is what a careful instal
 
 from __future__ import annotations
 
+import numpy as np
+
 from rovval.diagnose.contest import Prior
+from rovval.effects._lanes import reference_drag_force
 from rovval.plant import Plant
 
 RELATIVE = ("added_mass", "linear_drag", "quadratic_drag", "inertia_error", "thruster_degraded", "reverse_asymmetry", "rpm_scale")
 ASTERN = 0.5  # of the slop: how far the gains ahead and astern of one thruster are off apart from each other (chosen)
 MOUNTING = 0.3  # rad per unit of slop: 5 % slop goes with thrusters mounted to within a degree
-TRIM = 0.02  # of the weight per unit of slop: 5 % slop goes with a vehicle trimmed to a thousandth of its weight
-LEVEL = 0.4  # of the metacentric height per unit of slop: 5 % slop goes with a vehicle that floats level to a degree
+TRIM = 0.02  # of the weight per unit of slop: 5 % slop goes with a vehicle trimmed to a thousandth of its weight,
+TRIM_FORCE = 0.1  # or of the drag at 1 m/s ahead, whichever is more: a light vehicle is trimmed to what its drives hardly notice (chosen)
+LEVEL = 0.4  # of the metacentric height per unit of slop: 5 % slop goes with a vehicle that floats level to a degree,
+CENTRE, CENTRE_LEVEL = 0.1, 0.04  # or of the longest thruster arm, for height and level: centres are known to 0.5 % of it (chosen)
 SENSORS = {
     "attitude_bias": 0.01,  # rad: AHRS of the class give 0.2 to 0.5 degrees static (Xsens MTi data sheets)
     "gyro_bias": 0.002,  # rad/s: 0.1 degree a second, MEMS in-run bias with temperature
@@ -33,6 +38,7 @@ def slop_prior(plant: Plant, slop: float) -> Prior:
         return Prior({})
     body, sd = plant.vehicle.body, dict[int, float]()
     height = abs(body.centre_of_gravity[2] - body.centre_of_buoyancy[2])
+    arm = max(float(np.linalg.norm(t.position)) for t in plant.vehicle.thruster)
     for i, slot in enumerate(plant.slots):
         name = slot.parameter.name
         if slot.effect in RELATIVE:
@@ -42,9 +48,9 @@ def slop_prior(plant: Plant, slop: float) -> Prior:
         elif slot.effect == "thruster_misaligned":
             sd[i] = MOUNTING * slop
         elif slot.effect == "buoyancy_error":
-            sd[i] = TRIM * slop * plant.vehicle.weight
+            sd[i] = slop * max(TRIM * plant.vehicle.weight, TRIM_FORCE * reference_drag_force(plant.vehicle))
         elif slot.effect == "cg_offset":
-            sd[i] = slop * height * (1.0 if name == "z" else LEVEL)
+            sd[i] = slop * (max(height, CENTRE * arm) if name == "z" else max(LEVEL * height, CENTRE_LEVEL * arm))
         elif slot.effect in SENSORS:
             sd[i] = SENSORS[slot.effect]
     return Prior(sd)
