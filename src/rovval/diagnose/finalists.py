@@ -11,7 +11,7 @@ from rovval.diagnose.detect import Detection
 from rovval.diagnose.library import PRIOR_WIDTH, Hypothesis
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import Products
-from rovval.diagnose.separate import PER_PARAMETER, Rival, coherence, form_share
+from rovval.diagnose.separate import PER_PARAMETER, Rival, alike, coherence, form_share
 from rovval.diagnose.settle import Point, evidence
 
 FINALISTS = 10  # hypotheses that are re-simulated in a round
@@ -112,7 +112,8 @@ def simplest(problem: Problem, rivals: list[Rival]) -> Rival:
     most, least = len(rivals[0].hypothesis.slots), (1.0 - form_share(problem.blocks)) * rivals[0].evidence
     tied = [
         r for r in rivals
-        if r.evidence >= least and r.gain >= (NEARLY - PER_PARAMETER * max(most - len(r.hypothesis.slots), 0)) * rivals[0].gain
+        if alike(problem, r, rivals[0])
+        or (r.evidence >= least and r.gain >= (NEARLY - PER_PARAMETER * max(most - len(r.hypothesis.slots), 0)) * rivals[0].gain)
     ]  # fmt: skip
     return min(tied, key=lambda r: (len(r.hypothesis.slots), -r.evidence))
 

@@ -16,7 +16,8 @@ from rovval.diagnose.settle import evidence
 RESAMPLES = 500
 GROUP_RESAMPLES = 200
 FORM = 0.35  # chosen on the tuning set: share of the evidence that may be owed to the form of an equation
-FEW, MOST_FORM = 6.0, 0.7  # chosen: windows that are too few to average the form of an equation over, and the largest share it then has
+FEW, MOST_FORM = 6, 0.7  # chosen: windows that are too few to average the form of an equation over, and the largest share it then has
+ALIKE = 0.6  # of the best gain: with fewer windows than that, whoever closes as much stays beside the best
 PER_PARAMETER = 0.05  # chosen: what each parameter that the best has more may add to it
 TEMPER = 4.0  # twice the log Bayes factor that counts as a nat of belief, beside the form's share (chosen on the tuning set)
 LEVEL = 0.05  # one-sided: a member of the group must be this plausible to be as good as the winner
@@ -43,10 +44,10 @@ def group(problem: Problem, rivals: list[Rival], seed: int, block: int = 2) -> t
     draws = _blocks(problem.blocks, block, np.random.default_rng(seed))[:GROUP_RESAMPLES]
     counts = np.stack([np.bincount(draw, minlength=problem.blocks) for draw in draws]).astype(float)
     form = form_share(problem.blocks)
-    near = [r for r in rivals if r.evidence > (1 - 2 * form) * best.evidence or _near(r, best, form)]
+    near = [r for r in rivals if r.evidence > (1 - 2 * form) * best.evidence or _near(r, best, form) or alike(problem, r, best)]
     total = {r.hypothesis.name: evidence(problem, r.fitted.point, counts) for r in near}
     lead = total[best.hypothesis.name]
-    kept = [r for r in near if r is best or _near(r, best, form) or float((total[r.hypothesis.name] >= lead).mean()) > LEVEL]
+    kept = [r for r in near if r is best or _near(r, best, form) or alike(problem, r, best) or float((total[r.hypothesis.name] >= lead).mean()) > LEVEL]
     short = [best.evidence * (1 - PER_PARAMETER * _saved(r, best)) - r.evidence for r in rivals]
     weight = np.exp(-np.maximum(short, 0.0) / (TEMPER + 0.5 * form * best.evidence))
     probability = {r.hypothesis.name: float(w) for r, w in zip(rivals, weight / weight.sum(), strict=True)}
@@ -56,6 +57,11 @@ def group(problem: Problem, rivals: list[Rival], seed: int, block: int = 2) -> t
 def form_share(windows: int) -> float:
     """Share of the evidence that may be owed to the form of an equation: `FORM`, and more where few windows average over it."""
     return min(FORM * (1.0 + (FEW / windows) ** 3), MOST_FORM)
+
+
+def alike(problem: Problem, rival: Rival, best: Rival) -> bool:
+    """Whether a log has too few windows to weigh evidence, and a rival closes nearly as much of the gap as the best."""
+    return problem.blocks < FEW and rival.gain >= ALIKE * best.gain
 
 
 def _near(rival: Rival, best: Rival, form: float) -> bool:

@@ -18,7 +18,7 @@ from rovval.diagnose.confirm import Confirmed
 from rovval.diagnose.gap import axis_squares
 from rovval.diagnose.problem import Problem, corrected_residuals
 from rovval.diagnose.select import FALSE_ALARM, Named, Selection
-from rovval.diagnose.separate import form_share
+from rovval.diagnose.separate import FEW, form_share
 from rovval.diagnose.settle import Point, evidence
 from rovval.diagnose.unknown import Forces, bare_forces, forces
 
@@ -28,7 +28,8 @@ REAL = 100.0  # twice the log Bayes factor of a generic force from which it is n
 HOLDS = 0.02  # of what is left: a generic force that closes less on held-out windows is a fit to these windows (chosen)
 REMAINS = 0.10  # of a cause's evidence: less left over is form, not another cause
 WITHIN = 3.5  # standard deviations of tolerance that healthy coefficients reach (tuning set: 3.3 of some hundred)
-STRAINED = 7.0  # standard deviations that they do not: one of some hundred healthy logs of the tuning set reached 6
+STRAINED = 5.0  # standard deviations from which something is left beside a cause
+BROKEN = 7.0  # standard deviations that say by themselves that something is at work: one of some hundred healthy logs of the tuning set reached 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,11 +56,11 @@ def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgem
     if named and final:
         rest, total = forces(problem, final.point), _gained(problem, selection.healthy, final.point)
         axes = _acting(problem, before, final)
-        holds = rest.share(problem.folds) > HOLDS
+        holds = problem.blocks >= FEW and rest.share(problem.folds) > HOLDS
         beside, instead = rest.evidence(axes) if holds else 0.0, general.evidence(axes)
         parity_led = float((problem.data.c - problem.dynamic.c).sum()) > float(problem.dynamic.c.sum())
         excess, strain = _excess(problem, final.point, axes), _strain(final.point)
-        least_bad = max(beside, excess) > form_share(problem.blocks) * total or (instead > BETTER * total and beside > REMAINS * total)
+        least_bad = max(beside, excess) > form_share(problem.blocks) * total or (holds and instead > BETTER * total and beside > REMAINS * total)
         if parity_led or not least_bad:
             remains = (holds and rest.evidence() > max(REAL, REMAINS * total)) or strain > STRAINED
             left = _left(problem, rest, final.point) if remains else None
@@ -69,7 +70,7 @@ def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgem
     else:
         total = 0.0
     anything, strain = general.evidence(), _strain(selection.healthy)
-    real = bool(named) or (anything > REAL and general.share(problem.folds) > HOLDS) or strain > STRAINED
+    real = bool(named) or (anything > REAL and general.share(problem.folds) > HOLDS) or strain > BROKEN
     left = _left(problem, bare_forces(problem), selection.healthy) if real else None
     return Judgement("unknown" if real else "no_gap", (), None, {}, {}, total, anything, anything, strain, left)
 
