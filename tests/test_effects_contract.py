@@ -95,7 +95,8 @@ def test_a_window_reproduces_the_log_that_its_own_effects_made():
 def test_sensors_of_many_lanes_are_those_of_one_lane_at_a_time():
     """Lanes side by side, apart and all at once, several effects on one of them; the motion handed in stays as it was."""
     plant, rng = Plant(cases.merlin()), np.random.default_rng(2)
-    motion = Log(*(0.3 * rng.normal(size=(6, 40, 6)) for _ in range(2)), 0.1, *(0.3 * rng.normal(size=(6, 6)) for _ in range(2)))
+    nu, eta, nu0, eta0 = (0.3 * rng.normal(size=size) for size in ((6, 40, 6), (6, 40, 6), (6, 6), (6, 6)))
+    motion = Log(nu, eta, 0.1, nu0, eta0)
     beta = np.tile(plant.null, (6, 1))
     for key, value, lanes in (
         ("gyro_bias.r", 0.02, slice(None)), ("dvl_lever_arm.x", 0.5, [0, 2, 5]), ("dvl_misalignment.yaw", 0.2, [1, 2, 3]), ("compass_deviation.sine", 0.2, [4]),

@@ -82,7 +82,7 @@ def pointer(a):
 def c_rate(plant: Plant, folder: Path) -> float:
     """Steps/s of one core of the plain C kernel, after it has given the same motion."""
     library = built(HERE / "plant_soa.c", folder / "soa.so")
-    lowered = lower(plant.vehicle, "fossen", plant.slots, plant.index, plant.null, np.tile(plant.null, (LANES, 1)))
+    lowered = lower(plant.nominal, plant.slots, plant.index, plant.null, np.tile(plant.null, (LANES, 1)))
     spec = compose.Spec(7, False, False, False)
     where = compose.layout(spec)
     first = where.first

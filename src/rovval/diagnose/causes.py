@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from rovval import effects
 from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed, confirm, errors, interval
@@ -11,6 +13,7 @@ from rovval.diagnose.select import Named
 from rovval.diagnose.shrinkage import shrinkage
 from rovval.diagnose.verdict import Judgement
 
+FORM = 0.07  # of a parameter's departure, one standard error: equations that are only nearly right (logs of the independent plant ask for it)
 MOST_GROUP = 3  # names printed of a confusion group
 
 
@@ -64,7 +67,8 @@ def _parameters(problem: Problem, final: Confirmed, h: Hypothesis) -> dict[str, 
     rows, error = dict[str, dict[str, object]](), errors(problem, final)
     for slot in h.slots:
         p, value = problem.plant.slots[slot].parameter, float(final.beta[slot])
-        low, high = interval(value, float(error[final.slots.index(slot)]), problem.blocks)
+        form = FORM * abs(value - float(problem.origin[slot]))
+        low, high = interval(value, float(np.hypot(error[final.slots.index(slot)], form)), problem.blocks)
         rows[p.name] = {
             "value": value, "low": max(low, p.low), "high": min(high, p.high), "unit": p.unit, "null": p.null, "at_bound": slot in final.at_bound,
         }  # fmt: skip

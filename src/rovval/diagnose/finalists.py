@@ -25,6 +25,7 @@ SHARPENED = 4  # finalists that are settled with slopes made at their own point
 SERIOUS = 0.5  # share of the best evidence from which a rival's gain counts
 NEARLY = 0.9  # of the best's gain
 LEAST_OF_BEST = 0.5  # of the gain of the best serious rival
+REVERSED, DEGRADED = "thruster_reversed", "thruster_degraded"  # one imitates the other up to a dead thruster, and no further
 Losses = tuple[Array, Array]
 
 
@@ -42,6 +43,8 @@ def finalists(
 
     def refit(h: Hypothesis) -> None:
         start = _start(problem, data, h, step(data, ground.widened(prior_of(h)), problem.inflation), base.beta)
+        if h.name.startswith(REVERSED):
+            start = _turned(problem, h, start)
         fitted[h.name] = h, roughly(problem, start, tuple(dict.fromkeys((*chosen, *h.slots))), base.linear)
 
     for h in ordered:
@@ -50,7 +53,8 @@ def finalists(
     if fitted:
         best = max(fitted.values(), key=lambda item: item[1].evidence)[0]
         twins = [h for h in ordered if h.name not in fitted and coherence(data, best.columns, h.columns) > TWIN]
-        for h in twins[:MOST_TWINS]:
+        turned = [h for h in ordered if h.name.replace(REVERSED, DEGRADED) in fitted and h.name.startswith(REVERSED)]
+        for h in (*twins[:MOST_TWINS], *turned):
             if h.name not in fitted:
                 refit(h)
     return _weighed(problem, list(fitted.values()), base, loss)
@@ -124,9 +128,20 @@ def _from_the_start(problem: Problem, rival: Rival) -> bool:
     return any(slots[s].parameter.name == "onset" and rival.fitted.beta[s] < first for s in rival.hypothesis.slots)
 
 
+def _turned(problem: Problem, h: Hypothesis, start: Array) -> Array:
+    """Start of a reversed thruster: fully turned, its gain as the vehicle has it. Where slop has worn the gain down to nothing, nothing
+    shows which way the shaft turns."""
+    start, target = start.copy(), h.name.removeprefix(REVERSED)
+    for i, slot in enumerate(problem.plant.slots):
+        if slot.hypothesis == DEGRADED + target:
+            start[i] = problem.origin[i]
+    start[list(h.slots)] = 1.0
+    return start
+
+
 def _half_reversed(rival: Rival) -> bool:
     h = rival.hypothesis
-    return h.name.startswith("thruster_reversed") and any(rival.fitted.beta[s] < HALF_REVERSED for s in h.slots)
+    return h.name.startswith(REVERSED) and any(rival.fitted.beta[s] < HALF_REVERSED for s in h.slots)
 
 
 def _start(problem: Problem, data: Products, h: Hypothesis, moves: Array, beta: Array) -> Array:

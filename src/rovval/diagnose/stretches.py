@@ -116,8 +116,8 @@ def _cut(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Stretches:
     channels = residual_channels(run)
     steps = round(window_s / run.dt) - 1
     touching = in_contact(run, driven)
-    values, good, noise, outliers = _cleaned(run, channels)
-    start = _starts(driven.known & ~touching, startable(run), steps)
+    values, good, noise, wild = _cleaned(run, channels)
+    start = _starts(driven.known & ~touching, startable(run) & ~wild, steps)
     inside = start[:, None] + np.arange(steps + 1)[None, :]
     possible = np.mean([1.0 / stride for stride in strides(run, channels)])
     enough = good[inside].mean(axis=(1, 2)) >= SHORTEST_SHARE * possible if len(start) else np.zeros(0, dtype=bool)
@@ -130,7 +130,7 @@ def _cut(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Stretches:
     inside = start[:, None] + np.arange(steps + 1)[None, :]
     nu0, eta0, _ = start_states(run, start)
     return Stretches(
-        run, plant, driven, channels, start, steps, nu0, eta0, values[inside], good[inside], noise, outliers, float(touching.sum() * run.dt)
+        run, plant, driven, channels, start, steps, nu0, eta0, values[inside], good[inside], noise, int(wild.sum()), float(touching.sum() * run.dt)
     )
 
 
@@ -196,22 +196,23 @@ def strides(run: Run, channels: Sequence[str]) -> tuple[int, ...]:
     return tuple(max(1, round(period / run.dt)) for period in periods)
 
 
-def _cleaned(run: Run, channels: Sequence[str]) -> tuple[Array, Flags, Array, int]:
-    """Channel values (n, c), where they count, white noise of each (c,), and how many isolated outliers were set aside."""
+def _cleaned(run: Run, channels: Sequence[str]) -> tuple[Array, Flags, Array, Flags]:
+    """Channel values (n, c), where they count, white noise of each (c,), and where isolated outliers were set aside (n,): no window begins
+    at one, since its start state would be the outlier."""
     values = run.stack(tuple(channels))
     good = np.isfinite(values)
-    noise, outliers = np.zeros(len(channels)), 0
+    noise, spoiled = np.zeros(len(channels)), np.zeros(len(run), dtype=bool)
     for i, (name, stride) in enumerate(zip(channels, strides(run, channels), strict=True)):
         real = np.arange(0, len(run), stride)
         keep = np.zeros(len(run), dtype=bool)
         keep[real] = good[real, i]
         series = values[real, i]
         wild = _wild(series, name)
-        outliers += int((wild & keep[real]).sum())
+        spoiled[real] |= wild & keep[real]
         keep[real] &= ~wild
         noise[i] = _noise(series, keep[real])
         good[:, i] = keep
-    return np.where(good, values, 0.0), good, noise, outliers
+    return np.where(good, values, 0.0), good, noise, spoiled
 
 
 def _wild(series: Array, name: str) -> Flags:
