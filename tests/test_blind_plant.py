@@ -305,3 +305,17 @@ def test_severity_one_is_visible(name: str, merlin: Path) -> None:
     clean = gap(merlin, plant.fly(merlin, "rich", [], 3, 150.0))
     dirty = gap(merlin, plant.fly(merlin, "rich", [Planted(name)], 3, 150.0))
     assert visibility(dirty, clean)[0] > (1.0 if name in parity else 1.3)
+
+
+def test_thrust_under_way_is_the_file_s_open_water_curve():
+    """Minerva's K_T of the public project, ahead 0.5 J^3 - 0.66 J^2 - 0.25 J + 0.24, astern 0.025 J^3 - 0.28 J^2 + 0.17 J + 0.15."""
+    hull = read_hull(LIBRARY / "minerva.toml")
+    body = Plant(nominal(hull), [], scales(hull), Given(np.zeros(len(hull.thrusters))), 1e6)
+    unit, speed = hull.thrusters.index("HS"), 0.4
+    axial = float(hull.directions[unit] @ np.array([speed, 0.0, 0.0]))
+    for n, curve in ((600.0, (0.5, -0.66, -0.25, 0.24)), (-600.0, (0.025, -0.28, 0.17, 0.15))):
+        j = axial / (n / 60.0 * hull.diameter[unit])
+        turn = np.full(len(hull.thrusters), n)
+        said = body.under_way(turn, [speed, 0.0, 0.0, 0.0, 0.0, 0.0])[unit]
+        assert said == pytest.approx(np.polyval(curve, j) / curve[-1], rel=1e-6)
+    assert not Plant(nominal(read_hull(LIBRARY / "merlin.toml")), [], scales(hull), Given(np.zeros(7)), 1e6).advancing

@@ -24,6 +24,7 @@ from rovval.blind.scales import Scales
 from rovval.blind.spec import Array
 
 BASE = 13  # position 3, quaternion 4, momentum 6
+FITTED_J = 1.0  # advance ratios of open-water series end near there
 CLEAR_M = 0.3  # chosen: where the bottom and the surface begin to push back
 
 
@@ -75,7 +76,7 @@ class Plant:
         self.lin, self.quad = p.lin.tolist(), p.quad.tolist()
         self.power = p.drag_power.tolist()
         self.reference = [self.scale.speed] * 3 + [0.5] * 3
-        self.plain = not any(self.power)
+        self.plain, self.advancing = not any(self.power), bool(np.any(p.advance))
         self.weight, self.lift = p.mass * p.gravity, p.density * p.volume * p.gravity
         self.displaced = p.density * p.volume
         return np.asarray(self.mass @ np.linalg.inv(before))
@@ -95,6 +96,15 @@ class Plant:
         gain = np.where(n >= 0.0, p.k_pos, p.k_neg)
         return np.asarray(gain * n * size * (size / self.scale.rpm + 1e-9) ** p.thrust_power)
 
+    def under_way(self, n: Array, rel: list[float]) -> Array:
+        """K_T(J) / K_T(0) of units whose file gives it: J = u_a / (n D) with n in rev/s, held where the polynomial was fitted."""
+        p, speed = self.p, n / 60.0
+        size = np.where(p.diameter > 0.0, p.diameter, 1.0)
+        axial = np.hstack([p.directions, np.cross(p.positions, p.directions)]) @ np.array(rel)
+        j = np.clip(axial * speed / (size * (speed * speed + 1e-9)), -FITTED_J, FITTED_J)
+        a, b, c = np.where(n >= 0.0, p.advance[0].T, p.advance[1].T)
+        return np.asarray(1.0 + j * (a + j * (b + j * c)))
+
     def see(self, t: float, y: Array) -> Kin:
         """Fill ``self.kin`` from the state: attitude, velocities, water, thrust."""
         k = self.kin
@@ -112,7 +122,8 @@ class Plant:
         for e in self.speeders:
             turn = e.speed(turn, k)
         k.turn = turn
-        k.static = thrust = self.bollard(turn)
+        k.static = self.bollard(turn)
+        thrust = k.static * self.under_way(turn, rel) if self.advancing else k.static
         for e, own in self.thrusters:
             thrust = e.thrust(thrust, k, y[own])
         k.thrust = thrust

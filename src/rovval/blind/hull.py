@@ -39,6 +39,8 @@ class Hull:
     directions: Array  # (N, 3), unit
     k_pos: Array  # (N,), N/rpm^2
     k_neg: Array
+    diameter: Array  # (N,), m; 0 where thrust does not depend on the advance ratio
+    advance: Array  # (2, N, 3), ahead and astern: K_T(J) / K_T(0) = 1 + a J + b J^2 + c J^3
 
 
 def _inertia(body: dict[str, Any]) -> Array:
@@ -77,6 +79,8 @@ def read_hull(path: Path) -> Hull:
         directions=aim / np.linalg.norm(aim, axis=1, keepdims=True),
         k_pos=np.array([unit.get("k_pos", T200_FORWARD) for unit in units], dtype=float),
         k_neg=np.array([unit.get("k_neg", T200_REVERSE) for unit in units], dtype=float),
+        diameter=np.array([unit.get("diameter", 0.0) for unit in units], dtype=float),
+        advance=np.array([[unit.get(row, (0.0, 0.0, 0.0)) for unit in units] for row in ("advance_pos", "advance_neg")], dtype=float),
     )
 
 

@@ -35,6 +35,8 @@ class Params:
     thrust_power: Array
     positions: Array
     directions: Array
+    diameter: Array
+    advance: Array
 
     def copy(self) -> Params:
         """Independent copy (arrays too)."""
@@ -81,6 +83,8 @@ def nominal(hull: Hull) -> Params:
         thrust_power=np.zeros(many),
         positions=hull.positions.copy(),
         directions=hull.directions.copy(),
+        diameter=hull.diameter.copy(),
+        advance=hull.advance.copy(),
     )
 
 
