@@ -207,12 +207,26 @@ def test_parity_about_another_point_is_that_of_its_moved_rows():
         beta[index[key]] = value
     columns = tuple(index[key] for key in ("inflow_loss.loss", "dvl_misalignment.yaw", "gyro_bias.r", "gyro_bias.p", "dvl_scale.scale"))
     place = [rows.columns.index(c) for c in columns]
-    T, r = rows.traces[..., place], rows.rows - rows.traces @ beta[list(rows.columns)]
+    scale, taken = index["dvl_scale.scale"], beta.copy()
+    taken[scale] = 0.04 / 1.04  # of a velocity that is 1.04 times the true one, the fault is 0.04 / 1.04
+    T, r = rows.traces[..., place].copy(), rows.rows - rows.traces @ taken[list(rows.columns)]
+    T[..., columns.index(scale)] /= 1.04**2
     got = rows.moved(beta, (*columns, len(part.plant.slots))).products(2.0 * rows.inflation)
     assert got.columns == (*columns, len(part.plant.slots)) and not got.A[:, -1].any() and not got.b[:, -1].any()
     wanted = np.einsum("wqi,wqj->wij", T, T), np.einsum("wqi,wq->wi", T, r), (r**2).sum(axis=1)
     for found, want in zip((got.A[:, :-1, :-1], got.b[:, :-1], got.c), wanted, strict=True):
         assert np.abs(found - 2.0 * want).max() < 1e-12 * np.abs(want).max()
+
+
+def test_a_velocity_scale_is_read_without_the_bias_of_its_tangent():
+    """12 % too large: the tangent at nothing would say 0.12 / 1.12."""
+    part = cut(spoilt({"dvl_scale.scale": 0.12}), merlin(), "fossen", 10.0)
+    slot = part.plant.index["dvl_scale.scale"]
+    rows, beta = parity(part, (slot,)), part.plant.null.copy()
+    for _ in range(4):
+        one = rows.moved(beta, (slot,)).products(rows.inflation)
+        beta[slot] += float(one.b.sum() / one.A.sum())
+    assert beta[slot] == pytest.approx(0.12, abs=0.004)
 
 
 def test_parity_of_healthy_sensors_finds_nothing():

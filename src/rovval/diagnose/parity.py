@@ -26,17 +26,20 @@ LEAST_SIGMA = (0.005, 0.005, 0.002, 0.001, 0.001, 0.001)  # m, rad: no sensor is
 STEP = 0.25  # finite-difference step, in typical sizes
 LEAD = 10  # samples before a window from which a sensor's memory is filled: many times the steps of delays and lags (0.05 s)
 SMOOTH = 11  # samples of the quadratic by which motion is smoothed for traces: a delay's is a slope, which noise would drown and correlate
+FACTORS = ("dvl_scale",)  # faults that multiply what they measure
 DEAD_RECKONED = 0.5  # a position that follows the integrated velocity closer than half its noise allows was integrated from it
 
 
 @dataclass(frozen=True, slots=True)
 class Parity:
     """Rows (m, q) in standard errors and their change (m, q, k) per parameter of ``columns``; ``gram`` their products of those columns
-    that leave a trace; ``used`` relations, ``sigma`` of each, and ``inflation`` of its score. Zero rows where a window lacks pose or velocity."""
+    that leave a trace, ``factor`` which of them multiply what they measure; ``used`` relations, ``sigma`` of each, and ``inflation`` of
+    its score. Zero rows where a window lacks pose or velocity."""
 
     rows: Array
     traces: Array
     gram: Products
+    factor: Flags
     columns: tuple[int, ...]
     used: tuple[str, ...]
     sigma: tuple[float, ...]
@@ -59,9 +62,12 @@ class Moved:
     def products(self, inflation: float) -> Products:
         """Products of the rows, discounted so that one common ``inflation`` suits them and the dynamics. Rows are linear in the sensors'
         parameters, r(beta) = r - T beta, so that with A = T'T, b = T'r and c = r'r at the null value b(beta) = b - A beta and
-        c(beta) = c - beta'(b + b(beta)); columns without a trace have zeros."""
+        c(beta) = c - beta'(b + b(beta)); columns without a trace have zeros. Of a measured velocity that is 1 + s times the true one, s is not
+        s of it but s / (1 + s), with slope 1 / (1 + s)^2."""
         null, m, k = self.parity.gram, len(self.parity.gram.c), len(self.columns)
-        beta = self.beta[list(null.columns)]
+        given = self.beta[list(null.columns)]
+        beta = np.where(self.parity.factor, given / (1.0 + given), given)
+        slope = np.where(self.parity.factor, (1.0 + given) ** -2, 1.0)
         b = null.b - null.A @ beta
         c = null.c - (null.b + b) @ beta
         place = {column: i for i, column in enumerate(null.columns)}
@@ -69,8 +75,8 @@ class Moved:
         of = [place[self.columns[i]] for i in to]
         scale = inflation / self.parity.inflation
         out = Products(np.zeros((m, k, k)), np.zeros((m, k)), scale * c, self.columns)
-        out.A[np.ix_(range(m), to, to)] = scale * null.A[np.ix_(range(m), of, of)]
-        out.b[:, to] = scale * b[:, of]
+        out.A[np.ix_(range(m), to, to)] = scale * null.A[np.ix_(range(m), of, of)] * np.outer(slope[of], slope[of])
+        out.b[:, to] = scale * b[:, of] * slope[of]
         return out
 
 
@@ -210,13 +216,14 @@ def _weighted(stretches: Stretches, nominal: Array, traces: Array, columns: tupl
     scaled = (traces[..., keep, :] / sigma[:, None]).reshape(m, -1, k)
     inflation = _inflation(rows, scaled, free)
     gram = _gram(rows, scaled[..., free], tuple(columns[i] for i in free))
-    return Parity(rows, scaled, gram, columns, tuple(RELATIONS[i] for i in keep), tuple(sigma.tolist()), inflation, tuple(notes))
+    factor = np.array([stretches.plant.slots[c].effect in FACTORS for c in gram.columns], dtype=bool)
+    return Parity(rows, scaled, gram, factor, columns, tuple(RELATIONS[i] for i in keep), tuple(sigma.tolist()), inflation, tuple(notes))
 
 
 def _none(m: int, columns: tuple[int, ...], notes: tuple[str, ...]) -> Parity:
     """No rows at all."""
     rows, traces = np.zeros((m, 0)), np.zeros((m, 0, len(columns)))
-    return Parity(rows, traces, _gram(rows, traces[..., :0], ()), columns, (), (), 1.0, notes)
+    return Parity(rows, traces, _gram(rows, traces[..., :0], ()), np.zeros(0, dtype=bool), columns, (), (), 1.0, notes)
 
 
 def _gram(rows: Array, traces: Array, columns: tuple[int, ...]) -> Products:
