@@ -60,7 +60,7 @@ def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgem
         beside, instead = rest.evidence(axes) if holds else 0.0, general.evidence(axes)
         parity_led = float((problem.data.c - problem.dynamic.c).sum()) > float(problem.dynamic.c.sum())
         excess, strain = _excess(problem, final.point, axes), _strain(final.point)
-        outdone = problem.blocks >= FEW and instead > BETTER * total and general.share(problem.folds) > HOLDS
+        outdone = problem.blocks >= FEW and instead > BETTER * total
         least_bad = outdone or max(beside, excess) > form_share(problem.blocks) * total
         if parity_led or not least_bad:
             remains = (holds and rest.evidence() > max(REAL, REMAINS * total)) or strain > STRAINED
