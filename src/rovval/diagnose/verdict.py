@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rovval import effects
 from rovval.channels import AXES
 from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed
@@ -24,6 +25,7 @@ from rovval.diagnose.unknown import Forces, bare_forces, forces
 
 BETTER = 1.0  # times a cause's evidence: a generic force that has more is nearer to the truth
 ACTING = 0.15  # of what a cause closes: the axes on which it acts
+SKILL = 0.5  # of the squared motion: an axis on which more is left is not simulated at all (chosen)
 REAL = 100.0  # twice the log Bayes factor of a generic force from which it is not a healthy vehicle's form (tuning set)
 HOLDS = 0.02  # of what is left: a generic force that closes less on held-out windows is a fit to these windows (chosen)
 REMAINS = 0.10  # of a cause's evidence: less left over is form, not another cause
@@ -51,17 +53,19 @@ class Judgement:
 
 def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgement:
     """Weigh what was found against what could have been found; ``before`` are the nominal vehicle's residuals."""
-    named, final = selection.named, selection.final
+    named, final, skill = selection.named, selection.final, True
     general = forces(problem, selection.healthy)
     if named and final:
         rest, total = forces(problem, final.point), _gained(problem, selection.healthy, final.point)
-        axes = _acting(problem, before, final)
+        after = corrected_residuals(problem, final.beta)
+        axes = _acting(problem, before, after)
         holds = problem.blocks >= FEW and rest.share(problem.folds) > HOLDS
         beside, instead = rest.evidence(axes) if holds else 0.0, general.evidence(axes)
         parity_led = float((problem.data.c - problem.dynamic.c).sum()) > float(problem.dynamic.c.sum())
         excess, strain = _excess(problem, final.point, axes), _strain(final.point)
         outdone = problem.blocks >= FEW and instead > BETTER * total
-        least_bad = outdone or max(beside, excess) > form_share(problem.blocks) * total
+        skill = all(_of_sensor(n) for n in named) or _skill(problem, before, after)
+        least_bad = outdone or not skill or max(beside, excess) > form_share(problem.blocks) * total
         if parity_led or not least_bad:
             remains = (holds and rest.evidence() > max(REAL, REMAINS * total)) or strain > STRAINED
             left = _left(problem, rest, final.point) if remains else None
@@ -71,7 +75,7 @@ def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgem
     else:
         total = 0.0
     anything, strain = general.evidence(), _strain(selection.healthy)
-    real = bool(named) or (anything > REAL and general.share(problem.folds) > HOLDS) or strain > BROKEN
+    real = (bool(named) and skill) or (anything > REAL and general.share(problem.folds) > HOLDS) or strain > BROKEN
     left = _left(problem, bare_forces(problem), selection.healthy) if real else None
     return Judgement("unknown" if real else "no_gap", (), None, {}, {}, total, anything, anything, strain, left)
 
@@ -81,11 +85,30 @@ def _gained(problem: Problem, healthy: Point, point: Point) -> float:
     return float(evidence(problem, point, ones)[0] - evidence(problem, healthy, ones)[0])
 
 
-def _acting(problem: Problem, before: list[Array], final: Confirmed) -> tuple[str, ...]:
+def _closed(problem: Problem, before: list[Array], after: list[Array]) -> dict[str, float]:
+    """Squared residual that the causes take away, by axis."""
+    was, now = axis_squares(problem, before), axis_squares(problem, after)
+    return {axis: max(float(was[axis].sum() - now[axis].sum()), 0.0) for axis in was}
+
+
+def _acting(problem: Problem, before: list[Array], after: list[Array]) -> tuple[str, ...]:
     """Axes on which the causes close a good part of what they close."""
-    was, now = axis_squares(problem, before), axis_squares(problem, corrected_residuals(problem, final.beta))
-    closed = {axis: max(float(was[axis].sum() - now[axis].sum()), 0.0) for axis in was}
+    closed = _closed(problem, before, after)
     return tuple(axis for axis in AXES if closed.get(axis, 0.0) > ACTING * max(sum(closed.values()), 1e-300))
+
+
+def _of_sensor(named: Named) -> bool:
+    return effects.load(named.hypothesis.name.partition("[")[0]).place == "sensor"
+
+
+def _skill(problem: Problem, before: list[Array], after: list[Array]) -> bool:
+    """Whether on the axis where they close most the simulator, causes added, errs well less than the vehicle moves. Where it does not, it
+    replays an autopilot's answers to disturbances that nobody logged, which shows nothing about the vehicle."""
+    closed = _closed(problem, before, after)
+    axis = max(closed, key=lambda a: closed[a])
+    moved = [np.where(part.ok, part.y - (part.y * part.ok).sum((0, 1)) / np.maximum(part.ok.sum((0, 1)), 1), 0.0) for part in problem.parts]
+    left, motion = (float(axis_squares(problem, x)[axis].sum()) for x in (after, moved))
+    return left <= SKILL * motion
 
 
 def _strain(point: Point) -> float:
