@@ -64,7 +64,7 @@ def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgem
         parity_led = float((problem.data.c - problem.dynamic.c).sum()) > float(problem.dynamic.c.sum())
         excess, strain = _excess(problem, final.point, axes), _strain(final.point)
         outdone = problem.blocks >= FEW and instead > BETTER * total
-        skill = all(_of_sensor(n) for n in named) or _skill(problem, before, after)
+        skill = problem.blocks < FEW or all(_of_sensor(n) for n in named) or _skill(problem, before, after)
         least_bad = outdone or not skill or max(beside, excess) > form_share(problem.blocks) * total
         if parity_led or not least_bad:
             remains = (holds and rest.evidence() > max(REAL, REMAINS * total)) or strain > STRAINED
