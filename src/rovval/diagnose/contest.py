@@ -28,10 +28,6 @@ class Prior:
             merged[column] = max(value, merged.get(column, 0.0))
         return Prior(merged)
 
-    def scaled(self, factor: float) -> Prior:
-        """The same columns, each free within ``factor`` of its prior."""
-        return Prior({column: factor * value for column, value in self.sd.items()})
-
 
 @dataclass(frozen=True, slots=True)
 class Fold:

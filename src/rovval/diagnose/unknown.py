@@ -39,7 +39,7 @@ class Forces:
     def evidence(self, axes: Sequence[str] = AXES, feature: str = "") -> float:
         """Twice the log Bayes factor of forces on ``axes`` (and of one feature only) over none, at the best of the prior sizes."""
         chosen = [i for i, (axis, name) in enumerate(self.names) if axis in axes and feature in ("", name)]
-        return max((self._evidence(chosen, share) - self._evidence([], 1.0) for share in SHARES), default=0.0) if chosen else 0.0
+        return max(self._evidence(chosen, share) for share in SHARES) - self._evidence([], 1.0) if chosen else 0.0
 
     @property
     def features(self) -> tuple[str, ...]:

@@ -1,8 +1,8 @@
 """The verdict: explained, partly explained, unknown, or no gap. A library effect is not named for being the least bad.
 
-Three questions are asked of what was found. Does it do better than a generic force on the axes where it acts? What would such a force
-still gain beside it? And how far must healthy coefficients leave their tolerance so that it fits? A true cause passes all three;
-the nearest relative of an effect that the library lacks leaves one of them open.
+Four questions are asked of what was found. Does it do better than a generic force on the axes where it acts? What would such a force
+still gain beside it? How far must healthy coefficients leave their tolerance so that it fits? And does the simulator follow the
+vehicle there at all? A true cause passes all four; the nearest relative of an effect that the library lacks fails one of them.
 """
 
 from __future__ import annotations
@@ -58,13 +58,14 @@ def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgem
     if named and final:
         rest, total = forces(problem, final.point), _gained(problem, selection.healthy, final.point)
         after = corrected_residuals(problem, final.beta)
-        axes = _acting(problem, before, after)
+        closed = _closed(problem, before, after)
+        axes = _acting(closed)
         holds = problem.blocks >= FEW and rest.share(problem.folds) > HOLDS
         beside, instead = rest.evidence(axes) if holds else 0.0, general.evidence(axes)
         parity_led = float((problem.data.c - problem.dynamic.c).sum()) > float(problem.dynamic.c.sum())
         excess, strain = _excess(problem, final.point, axes), _strain(final.point)
         outdone = problem.blocks >= FEW and instead > BETTER * total
-        skill = problem.blocks < FEW or all(_of_sensor(n) for n in named) or _skill(problem, before, after)
+        skill = problem.blocks < FEW or all(_of_sensor(n) for n in named) or _skill(problem, closed, after)
         least_bad = outdone or not skill or max(beside, excess) > form_share(problem.blocks) * total
         if parity_led or not least_bad:
             remains = (holds and rest.evidence() > max(REAL, REMAINS * total)) or strain > STRAINED
@@ -91,9 +92,8 @@ def _closed(problem: Problem, before: list[Array], after: list[Array]) -> dict[s
     return {axis: max(float(was[axis].sum() - now[axis].sum()), 0.0) for axis in was}
 
 
-def _acting(problem: Problem, before: list[Array], after: list[Array]) -> tuple[str, ...]:
+def _acting(closed: Mapping[str, float]) -> tuple[str, ...]:
     """Axes on which the causes close a good part of what they close."""
-    closed = _closed(problem, before, after)
     return tuple(axis for axis in AXES if closed.get(axis, 0.0) > ACTING * max(sum(closed.values()), 1e-300))
 
 
@@ -101,10 +101,9 @@ def _of_sensor(named: Named) -> bool:
     return effects.load(named.hypothesis.name.partition("[")[0]).place == "sensor"
 
 
-def _skill(problem: Problem, before: list[Array], after: list[Array]) -> bool:
+def _skill(problem: Problem, closed: Mapping[str, float], after: list[Array]) -> bool:
     """Whether on the axis where they close most the simulator, causes added, errs well less than the vehicle moves. Where it does not, it
     replays an autopilot's answers to disturbances that nobody logged, which shows nothing about the vehicle."""
-    closed = _closed(problem, before, after)
     axis = max(closed, key=lambda a: closed[a])
     moved = [np.where(part.ok, part.y - (part.y * part.ok).sum((0, 1)) / np.maximum(part.ok.sum((0, 1)), 1), 0.0) for part in problem.parts]
     left, motion = (float(axis_squares(problem, x)[axis].sum()) for x in (after, moved))
