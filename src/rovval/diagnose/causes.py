@@ -6,7 +6,7 @@ import numpy as np
 
 from rovval import effects
 from rovval.data import Array
-from rovval.diagnose.confirm import Confirmed, confirm, errors, interval
+from rovval.diagnose.confirm import Confirmed, errors, interval, roughly
 from rovval.diagnose.library import Hypothesis
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.select import Named
@@ -48,7 +48,7 @@ def settings(problem: Problem, final: Confirmed | None) -> tuple[str, ...]:
 def _cause(problem: Problem, judgement: Judgement, named: Named, before: list[Array], seed: int) -> dict[str, object]:
     assert judgement.final is not None
     h, final = named.hypothesis, judgement.final
-    alone = final if len(judgement.named) == 1 else confirm(problem, only(problem, final, h), h.slots)
+    alone = final if len(judgement.named) == 1 else roughly(problem, only(problem, final, h), h.slots, final.point.linear)
     return {
         "effect": h.name,
         "title": effects.load(h.name.partition("[")[0]).title,

@@ -47,8 +47,6 @@ def roughly(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[
     return _scored(problem, settle(problem, start, slots, near, ROUGH), slots)
 
 
-
-
 def _onset_tuned(problem: Problem, point: Point, slots: tuple[int, ...]) -> Point:
     """An onset moved along the log in shrinking steps, since windows before it carry no slope towards it; then all settled again."""
     onsets = [s for s in slots if problem.plant.slots[s].parameter.name == "onset"]

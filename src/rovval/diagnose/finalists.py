@@ -12,7 +12,7 @@ from rovval.diagnose.library import PRIOR_WIDTH, Hypothesis
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import Products
 from rovval.diagnose.separate import PER_PARAMETER, Rival, alike, coherence, form_share
-from rovval.diagnose.settle import Point, evidence
+from rovval.diagnose.settle import Point, evidence, stays
 
 FINALISTS = 10  # hypotheses that are re-simulated in a round
 SCREENED = 0.15  # of the best linear evidence: less is not re-simulated
@@ -42,10 +42,11 @@ def finalists(
     fitted: dict[str, tuple[Hypothesis, Confirmed]] = {}
 
     def refit(h: Hypothesis) -> None:
-        start = _start(problem, data, h, step(data, ground.widened(prior_of(h)), problem.inflation), base.beta)
+        slots = tuple(dict.fromkeys((*chosen, *h.slots)))
+        start = _start(problem, data, h, step(data, ground.widened(prior_of(h)), problem.inflation), base.beta, slots)
         if h.name.startswith(REVERSED):
             start = _turned(problem, h, start)
-        fitted[h.name] = h, roughly(problem, start, tuple(dict.fromkeys((*chosen, *h.slots))), base.linear)
+        fitted[h.name] = h, roughly(problem, start, slots, base.linear)
 
     for h in ordered:
         if h.name not in fitted and len(fitted) < FINALISTS and detection.evidence[h.label] > least:
@@ -144,15 +145,16 @@ def _half_reversed(rival: Rival) -> bool:
     return h.name.startswith(REVERSED) and any(rival.fitted.beta[s] < HALF_REVERSED for s in h.slots)
 
 
-def _start(problem: Problem, data: Products, h: Hypothesis, moves: Array, beta: Array) -> Array:
-    """The linear answer as the starting point of the re-simulation, inside the parameters' bounds."""
+def _start(problem: Problem, data: Products, h: Hypothesis, moves: Array, beta: Array, own: tuple[int, ...]) -> Array:
+    """The linear answer as the starting point of the re-simulation, inside the parameters' bounds; tolerances of sensors stay in the tangent."""
     start = beta.copy()
+    still = {s for s in stays(problem.plant) if s not in own}
     for slot, value in h.at:
         start[slot] = value
     moved = {d.id: d.slot for d in h.directions}
     for column, move in zip(data.columns, moves, strict=True):
         slot = moved.get(column, column)
-        if move and 0 <= slot < len(start):
+        if move and 0 <= slot < len(start) and slot not in still:
             parameter = problem.plant.slots[slot].parameter
             start[slot] = float(np.clip(start[slot] + move, parameter.low, parameter.high))
     return start

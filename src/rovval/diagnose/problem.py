@@ -14,9 +14,9 @@ import numpy as np
 from rovval.data import Array
 from rovval.diagnose.contest import Fold, Prior, Ring, fit, folds_of, inflation_of
 from rovval.diagnose.library import Hypothesis
-from rovval.diagnose.linearise import Direction, Linear, linearise, state_spread
+from rovval.diagnose.linearise import Direction, Linear, linearise, residual, state_spread
 from rovval.diagnose.parity import Parity, parity
-from rovval.diagnose.products import Products, joined, products, start_corrected
+from rovval.diagnose.products import Products, elsewhere, joined, products, start_corrected
 from rovval.diagnose.steadied import discount, gains, loosened
 from rovval.diagnose.stretches import BELIEVED, Stretches
 from rovval.diagnose.tolerance import slop_prior
@@ -91,8 +91,11 @@ def at(problem: Problem, beta: Array, columns: tuple[int, ...], directions: Sequ
 
 def beside(linear: Linear, other: Linear, columns: tuple[int, ...]) -> Linear:
     """The same linearisation with further columns, whose slopes are taken from another one."""
-    place = [other.columns.index(c) for c in columns]
-    return replace(linear, S=np.concatenate([linear.S, other.S[..., place]], axis=-1), columns=(*linear.columns, *columns))
+    place, k = [other.columns.index(c) for c in columns], len(linear.columns)
+    S = np.empty((*linear.r.shape, k + len(columns)))
+    S[..., :k] = linear.S
+    np.take(other.S, place, axis=-1, out=S[..., k:])
+    return replace(linear, S=S, columns=(*linear.columns, *columns))
 
 
 def products_about(problem: Problem, beta: Array, linear: tuple[Linear, ...]) -> tuple[Products, Products]:
@@ -100,6 +103,20 @@ def products_about(problem: Problem, beta: Array, linear: tuple[Linear, ...]) ->
     dynamic = _joined(problem.parts, linear, problem.variance)
     moved = joined([check.moved(beta, dynamic.columns).products(problem.inflation) for check in problem.parity])
     return dynamic, dynamic + moved
+
+
+def carried(problem: Problem, beta: Array, linear: tuple[Linear, ...], there: Products) -> Products | None:
+    """Products about ``beta``, parity with them, by one simulation: the slopes are those of ``linear``, whose products are ``there``. None
+    where a window that ran there does not run here."""
+    b, c = list[Array](), list[Array]()
+    for part, one in zip(problem.parts, linear, strict=True):
+        r, fine = residual(part, beta)
+        if not fine[one.valid].all():
+            return None
+        for whole, share in zip((b, c), elsewhere(one, r, part.ok, problem.variance, state_spread(part)), strict=True):
+            whole.append(share)
+    moved = joined([check.moved(beta, there.columns).products(problem.inflation) for check in problem.parity])
+    return replace(there, b=np.concatenate(b), c=np.concatenate(c)) + moved
 
 
 def corrected_residuals(problem: Problem, beta: Array | None = None) -> list[Array]:

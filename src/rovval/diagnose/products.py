@@ -63,6 +63,19 @@ def products(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> 
     return Products(A, b, c, linear.columns)
 
 
+def elsewhere(linear: Linear, r: Array, ok: np.ndarray, variance: Array, spread: Array) -> tuple[Array, Array]:
+    """``b`` (m, k) and ``c`` (m,) of another residual ``r`` (m, n, c), the slopes as they were: a fifth of the work of `products`."""
+    m, k = len(r), linear.S.shape[-1]
+    b, c = np.zeros((m, k)), np.zeros(m)
+    root = 1.0 / np.sqrt(variance)
+    for w in np.flatnonzero(linear.valid):
+        weight = np.where(ok[w], root, 0.0).reshape(-1)
+        x, j = r[w].reshape(-1) * weight, linear.J[w].reshape(len(weight), -1) * weight[:, None] * spread
+        x = weight * (x - j @ np.linalg.solve(np.eye(j.shape[1]) + j.T @ j, j.T @ x))
+        b[w], c[w] = x @ linear.S[w].reshape(len(weight), k), x @ r[w].reshape(-1)
+    return b, c
+
+
 def start_corrected(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> Array:
     """Residual (m, n, c) with the best initial state of each window taken out."""
     out = np.array(linear.r)

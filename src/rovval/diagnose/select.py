@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rovval.diagnose.confirm import Confirmed, confirm
+from rovval.diagnose.confirm import Confirmed, confirm, roughly
 from rovval.diagnose.contest import Prior, Ring, contest, fit
 from rovval.diagnose.detect import Detection, detect
 from rovval.diagnose.finalists import admissible, finalists, freed, prior_of, sharpened, simplest
@@ -97,8 +97,9 @@ def _pruned(problem: Problem, named: list[Named]) -> list[Named]:
         slots = tuple(s for s in whole.slots if s not in one.hypothesis.slots)
         start = whole.beta.copy()
         start[list(one.hypothesis.slots)] = problem.origin[list(one.hypothesis.slots)]
-        without = confirm(problem, start, slots)
+        without = roughly(problem, start, slots, whole.point.linear)
         if without.evidence > whole.evidence - NEEDLESS:
+            without = confirm(problem, without.point.beta, slots)
             rest = [n for n in named if n is not one]
             named = [*rest[:-1], replace(rest[-1], fitted=without)]
     return named

@@ -76,10 +76,10 @@ def _saved(rival: Rival, best: Rival) -> int:
 
 def coherence(data: Products, a: tuple[int, ...], b: tuple[int, ...]) -> float:
     """Largest canonical correlation between the signatures of two hypotheses (0: orthogonal, 1: the same to this log)."""
-    A = data.A.sum(axis=0)
-    i, j = data.place(a), data.place(b)
-    left, right = _root(A[np.ix_(i, i)]), _root(A[np.ix_(j, j)])
-    return float(np.clip(np.linalg.svd(left @ A[np.ix_(i, j)] @ right, compute_uv=False).max(initial=0.0), 0.0, 1.0))
+    both, k = np.concatenate([data.place(a), data.place(b)]), len(a)
+    A = data.A[:, both[:, None], both].sum(axis=0)
+    left, right = _root(A[:k, :k]), _root(A[k:, k:])
+    return float(np.clip(np.linalg.svd(left @ A[:k, k:] @ right, compute_uv=False).max(initial=0.0), 0.0, 1.0))
 
 
 def interval(before: Array, after: Array, seed: int, block: int = 2) -> tuple[float, float, float]:

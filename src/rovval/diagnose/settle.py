@@ -7,7 +7,7 @@ tolerances, small and nearly linear, stay in the tangent.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,11 +16,13 @@ from rovval.data import Array
 from rovval.diagnose.contest import losses
 from rovval.diagnose.library import PRIOR_WIDTH
 from rovval.diagnose.linearise import Linear, linearise
-from rovval.diagnose.problem import Problem, beside, products_about
+from rovval.diagnose.problem import Problem, beside, carried, products_about
 from rovval.diagnose.products import Products
+from rovval.plant import Plant
 
 ROUNDS = 5
 LITTLE = 1.0  # twice the log posterior: a smaller gain is not worth another step
+FAR = 10.0  # the same, from which slop's slopes are made anew
 SHORTER = (1.0, 0.4, 0.1)  # shares of the Gauss-Newton step that are tried
 
 
@@ -90,18 +92,21 @@ class Point:
 def settle(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[Linear, ...] | None = None, rounds: int = ROUNDS) -> Point:
     """Fit ``slots`` and slop jointly from ``start``.
 
-    With ``near``, slop's slopes are taken from a linearisation nearby, which is quicker; slop moves in the simulation all the same.
+    With ``near``, slop's slopes are taken from a linearisation nearby; else they are made at ``start``, and made anew where the fit
+    ends far from it. Slop moves in the simulation all the same.
     """
     columns = (*slots, *(c for c in problem.slop.sd if c not in slots))
-    point = _about(problem, start, columns, len(slots), near)
+    begin = point = _about(problem, start, columns, len(slots), near)
+    slopes = point.linear if near is None else near
     for _ in range(rounds):
-        better = _better(problem, point, near)
+        better = _better(problem, point, slopes)
         if better is None:
             break
         gain, point = point.cost() - better.cost(), better
         if gain < LITTLE * problem.inflation:
             break
-    return point
+    far = near is None and begin.cost() - point.cost() > FAR * problem.inflation
+    return settle(problem, point.beta, slots, rounds=rounds) if far else point
 
 
 def moved(problem: Problem, point: Point, slot: int, value: float) -> Point:
@@ -126,6 +131,11 @@ def evidence(problem: Problem, point: Point, counts: Array) -> Array:
     return found
 
 
+def stays(plant: Plant) -> frozenset[int]:
+    """Slots that stay in the tangent as long as they are slop: those of the sensors."""
+    return frozenset(i for i, slot in enumerate(plant.slots) if effects.load(slot.effect).place == "sensor")
+
+
 def _about(problem: Problem, beta: Array, columns: tuple[int, ...], own: int, near: tuple[Linear, ...] | None) -> Point:
     """Linearise about ``beta``: all columns, or the own ones with slop's slopes from ``near``."""
     coarse = columns[own:] if near is None else ()
@@ -142,20 +152,21 @@ def _point(problem: Problem, beta: Array, own: int, linear: tuple[Linear, ...]) 
     width = np.array([PRIOR_WIDTH * p.typical for p in parameters[:own]] + [problem.slop.sd[s] for s in columns[own:]])
     at = beta[list(columns)]
     side = np.array([float(x >= p.high) - float(x <= p.low) for x, p in zip(at, parameters, strict=True)])
-    still = np.array([i >= own and effects.load(problem.plant.slots[s].effect).place == "sensor" for i, s in enumerate(columns)], dtype=bool)
+    sensors = stays(problem.plant)
+    still = np.array([i >= own and s in sensors for i, s in enumerate(columns)], dtype=bool)
     return Point(beta, columns, own, linear, dynamic, data, problem.inflation / width**2, at - problem.origin[list(columns)], side, still)
 
 
-def _better(problem: Problem, point: Point, near: tuple[Linear, ...] | None) -> Point | None:
+def _better(problem: Problem, point: Point, near: tuple[Linear, ...]) -> Point | None:
     """The next point of a damped Gauss-Newton iteration, None where no step gains more than a `LITTLE`."""
     step = np.where(point.still, 0.0, point.solved(point.curvature, point.slope))
-    moving, columns = np.flatnonzero(~point.still), tuple(point.columns[i] for i in np.flatnonzero(point.still))
     for share in SHORTER:
         beta = _clipped(problem, point, share * step)
-        bare = tuple(linearise(part, beta, ()) for part in problem.parts)
-        trial = _point(problem, beta, 0, tuple(beside(one, other, columns) for one, other in zip(bare, point.linear, strict=True)))
-        away = beta[[point.columns[i] for i in moving]] - problem.origin[[point.columns[i] for i in moving]]
-        if trial.profile() + float((point.precision[moving] * away**2).sum()) < point.cost() - LITTLE * problem.inflation:
+        data = carried(problem, beta, point.linear, point.dynamic)
+        if data is None:
+            continue
+        trial = replace(point, beta=beta, data=data, offset=point.offset + (beta - point.beta)[list(point.columns)])
+        if trial.cost() < point.cost() - LITTLE * problem.inflation:
             return _about(problem, beta, point.columns, point.own, near)
     return None
 

@@ -163,8 +163,11 @@ def in_contact(run: Run, driven: Drive) -> Flags:
 def predicted(stretches: Stretches, nu: Array, eta: Array) -> Array:
     """The residual channels of simulated motions: (b, steps + 1, 6) twice -> (b, steps + 1, c)."""
     names = (*VELOCITY_CHANNELS, "x", "y", "z", "phi", "theta", "psi")
-    both = np.concatenate([nu, eta], axis=2)
-    return np.asarray(both[:, :, [names.index(c) for c in stretches.channels]])
+    out = np.empty((*nu.shape[:2], len(stretches.channels)))
+    for i, channel in enumerate(stretches.channels):
+        whole, at = divmod(names.index(channel), 6)
+        out[..., i] = (nu, eta)[whole][..., at]
+    return out
 
 
 def difference(stretches: Stretches, a: Array, b: Array) -> Array:
