@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 import plant_cases as cases
 from rovval import vehicle as vehicles
+from rovval.effects import tether_drag
 from rovval.effects._lanes import reference_speed
 from rovval.frames import euler_from_quaternion, quaternion_from_euler, rotation_from_euler, rotation_from_quaternion, wrap
 from rovval.plant import Inputs, Plant, geometry, parse_settings
@@ -256,3 +257,21 @@ def test_every_thruster_stands_in_the_jet_that_reaches_it_or_beside_its_nearest(
         rows = np.flatnonzero(jets.pairs[:, 1] == vehicle_.thrusters.index(downstream))
         assert {vehicle_.thrusters[j] for j in jets.pairs[rows, 0]} == upstream
     assert set(jets.pairs[:, 1]) == set(range(len(vehicle_.thruster)))
+
+
+def test_a_tether_damps_a_turn_by_its_arm_and_never_gives_power():
+    """Tied aft it brakes a pure turn, N = -c |r| r |x|^3; tied at the origin it does not; what it takes is c |v|^3 at the attachment."""
+    rng = np.random.default_rng(41)
+    nu, (ax, az) = rng.normal(size=(200, 6)), rng.uniform(-2, 2, size=(2, 200))
+    u, v, w, p, q, r = nu.T
+    given = np.stack(tether_drag.wrench(30.0, 2.0, ax, az, 10.0, u, v, w, p, q, r), axis=-1)
+    speed = np.linalg.norm(nu[:, :3] + np.cross(nu[:, 3:], np.stack([ax, 0 * ax, az], axis=-1)), axis=1)
+    assert np.allclose((given * nu).sum(axis=1), -50.0 * speed**3, rtol=1e-12, atol=0)
+    assert tether_drag.wrench(30.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5)[5] == pytest.approx(-30.0 * 0.25)
+    plant = Plant(cases.merlin())
+    turns = []
+    for setting in ("x=0", "x=-1"):
+        beta = parse_settings(plant, [f"tether_drag:coefficient=400,{setting}"])
+        turns.append(cases.run(plant, seconds=5.0, nu=[0, 0, 0, 0, 0, 0.5], beta=beta).nu[0, -1, 5])
+    free = cases.run(plant, seconds=5.0, nu=[0, 0, 0, 0, 0, 0.5]).nu[0, -1, 5]
+    assert turns[0] == pytest.approx(free, rel=1e-3) and turns[1] < 0.97 * free
