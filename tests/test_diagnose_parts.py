@@ -122,7 +122,7 @@ def test_confirm_recovers_what_was_planted(name, truth):
         if p.name in truth:
             assert done.beta[slot] == pytest.approx(truth[p.name], abs=0.1 * p.typical)
     assert done.evidence > 20
-    assert done.dynamic_loss.sum() < 0.6 * problem.dynamic.c.sum()  # what is left is noise
+    assert done.dynamic_loss.sum() < 0.6 * problem.gap.c.sum()  # what is left is noise
 
 
 # -- parity ------------------------------------------------------------------------------------------------------------------------

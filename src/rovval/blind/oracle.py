@@ -16,7 +16,7 @@ from rovval.blind.spec import Array
 from rovval.data import Run
 from rovval.diagnose.confirm import confirm
 from rovval.diagnose.library import Hypothesis, hypotheses
-from rovval.diagnose.problem import Problem, at, pose
+from rovval.diagnose.problem import Problem, gap_at, pose
 from rovval.diagnose.stretches import cut
 from rovval.vehicle.model import Vehicle
 
@@ -38,11 +38,11 @@ def oracle(
         if found is None:
             return {}
         problem, beta, slots = found
-        dynamic, data = at(problem, beta, slots)
+        dynamic, data = gap_at(problem, beta, slots)
     except (RovvalError, ArithmeticError, ValueError):
         return {}
     shares = [
-        float(1.0 - after.c.sum() / before.c.sum()) for after, before in ((dynamic, problem.dynamic), (data, problem.data))
+        float(1.0 - after.c.sum() / before.c.sum()) for after, before in ((dynamic, problem.gap), (data, problem.gap_data))
     ]
     return {"dynamic": shares[0], "seen": max(shares)}
 
@@ -74,7 +74,7 @@ def _fit(
     problem = pose((part,), library, calibration_slop)
     slots = tuple(dict.fromkeys(s for starts in wanted for s in starts[0].slots))
     tried = [_from(problem, wanted, rank, onsets, slots) for rank in range(min(STARTS, max(map(len, wanted))))]
-    return problem, min(tried, key=lambda beta: float(at(problem, beta, slots)[1].c.sum())), slots
+    return problem, min(tried, key=lambda beta: float(gap_at(problem, beta, slots)[1].c.sum())), slots
 
 
 def _from(

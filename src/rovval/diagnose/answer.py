@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from rovval import __version__
+from rovval.channels import AXES
 from rovval.data import Array
 from rovval.diagnose import Diagnosis, next_flight
 from rovval.diagnose.causes import causes, settings
@@ -43,6 +44,7 @@ def answer(
         **next_flight.rows(problem, next_flight.advise(problem, judgement)),
         "detection": _detection(problem, selection, judgement),
         "finalists": [[{"effect": n, "evidence": e, "gain": g} for n, e, g in one] for one in selection.rounds],
+        "disturbance": _disturbance(problem),
         "left": judgement.left,
         "harm": harm(shrunk),
         "parity": [row for check, part in zip(problem.parity, problem.parts, strict=True) for row in faults(check, part)],
@@ -73,6 +75,13 @@ def _head(problem: Problem, slop: float) -> dict[str, object]:
         "calibration_slop": slop,
         "synthetic": next((p.run.properties["synthetic"] for p in problem.parts if "synthetic" in p.run.properties), ""),
     }
+
+
+def _disturbance(problem: Problem) -> dict[str, dict[str, float | str]]:
+    """What pushed the vehicle that nobody logged: rms force of each axis and the seconds in which it forgets itself."""
+    found, units = problem.disturbance, ("N", "N", "N", "N m", "N m", "N m")
+    rows = zip(AXES, units, found.rms, found.memory_s, strict=True)
+    return {axis: {"rms": float(rms), "unit": unit, "memory_s": float(memory)} for axis, unit, rms, memory in rows}
 
 
 def _detection(problem: Problem, selection: Selection, judgement: Judgement) -> dict[str, float]:

@@ -14,7 +14,7 @@ from scipy import stats
 from rovval.data import Array
 from rovval.diagnose.contest import Fold, losses
 from rovval.diagnose.linearise import Linear
-from rovval.diagnose.problem import Problem, at
+from rovval.diagnose.problem import Problem, gap_at
 from rovval.diagnose.settle import Point, evidence, moved, settle
 
 INTERVAL = 0.90
@@ -62,7 +62,7 @@ def _onset_tuned(problem: Problem, point: Point, slots: tuple[int, ...]) -> Poin
 def _scored(problem: Problem, point: Point, slots: tuple[int, ...]) -> Confirmed:
     beta = problem.origin.copy()
     beta[list(slots)] = point.beta[list(slots)]
-    dynamic, data = at(problem, beta, slots)
+    dynamic, data = gap_at(problem, beta, slots)
     own = np.arange(len(slots))
     loss, dynamic_loss = data.c.copy(), dynamic.c.copy()
     bounds = [(problem.plant.slots[s].parameter.low, problem.plant.slots[s].parameter.high) for s in slots]

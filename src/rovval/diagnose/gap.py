@@ -25,7 +25,7 @@ def axis_squares(problem: Problem, residuals: Sequence[Array]) -> dict[str, Arra
 def axis_rows(problem: Problem, residuals: Sequence[Array]) -> dict[str, dict[str, object]]:
     """The ``gap.axes`` table: rms, iae, noise floor and share of the weighted gap of each measured axis."""
     rows: dict[str, dict[str, object]] = {}
-    weight = _axis_weight(problem, residuals)
+    weight = axis_weight(problem, residuals)
     total = sum(weight.values()) or 1.0
     for axis, channel in axis_channels(problem.parts[0]).items():
         error = np.concatenate([r[..., channel][p.ok[..., channel]] for r, p in zip(residuals, problem.parts, strict=True)])
@@ -44,7 +44,7 @@ def axis_rows(problem: Problem, residuals: Sequence[Array]) -> dict[str, dict[st
     return rows
 
 
-def _axis_weight(problem: Problem, residuals: Sequence[Array]) -> dict[str, float]:
+def axis_weight(problem: Problem, residuals: Sequence[Array]) -> dict[str, float]:
     """Each axis's part of the gap in the metric of the contest (roll and pitch with their angles)."""
     weight: dict[str, float] = {}
     for part, error in zip(problem.parts, residuals, strict=True):

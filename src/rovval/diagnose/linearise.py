@@ -36,8 +36,9 @@ class Direction:
 
 @dataclass(frozen=True, slots=True)
 class Linear:
-    """At one parameter point: residual measured - simulated ``r`` (m, n, c), sensitivities of the prediction to parameters
-    ``S`` (m, n, c, k) of ``columns`` and to initial states ``J`` (m, n, c, s). Windows whose simulation stopped have ``valid`` False."""
+    """At one parameter point: residual measured - simulated ``r`` (m, n, c), sensitivities of the prediction to parameters ``S`` (m, n, c, k)
+    of ``columns`` and to nuisances ``J`` (m, n, c, s): initial states, then disturbances once these are known. Windows whose simulation
+    stopped have ``valid`` False."""
 
     r: Array
     S: Array
@@ -83,6 +84,8 @@ def linearise(
             J[..., lane.state] = difference(stretches, out[i], nominal) / lane.step
         elif lane.column >= 0 and lane.step:
             S[..., place[lane.column]] = difference(stretches, out[i], out[lane.against]) / lane.step
+    if stretches.pushed is not None:
+        J = np.concatenate([J, stretches.pushed], axis=-1)
     r = np.where(stretches.ok, difference(stretches, stretches.y, nominal), 0.0)
     return Linear(r, S, J, ids, np.asarray(fine.reshape(len(lanes), windows).all(axis=0)))
 
@@ -176,18 +179,24 @@ def _drifting(stretches: Stretches) -> list[int]:
     return [i for i, c in enumerate(stretches.channels) if c in ("phi", "theta")]
 
 
+def spread(stretches: Stretches) -> Array:
+    """Standard error of each nuisance of a window (s,): start states and sensors' drift, then disturbances, whose answers are scaled to it."""
+    pushed = 0 if stretches.pushed is None else stretches.pushed.shape[-1]
+    return np.concatenate([state_spread(stretches), np.ones(pushed)])
+
+
 def state_spread(stretches: Stretches) -> Array:
-    """Standard error of each nuisance of a window (s,): start states (the channel's noise, or a stated value where it was not measured),
+    """Standard error of what a window's start adds (s,): start states (the channel's noise, or a stated value where it was not measured),
     then the attitude sensors' drift."""
     noise = dict(zip(stretches.channels, stretches.noise, strict=True))
     run = stretches.run
-    spread = []
+    found = []
     for index, _ in _state_steps(stretches):
         name = (*VELOCITY_CHANNELS, "phi", "theta", "z", "psi")[index]
         if run.measured(name):
             least = 0.01 if name in ANGLES else 0.005
-            spread.append(max(noise.get(name, 0.0), least))
+            found.append(max(noise.get(name, 0.0), least))
         else:
             pose = POSE_SLOPE.get(name, "")
-            spread.append(max(3.0 * noise.get(pose, 0.0), FROM_SLOPE) if run.measured(pose) else UNLOGGED)
-    return np.array([*spread, *[ATTITUDE_DRIFT] * len(_drifting(stretches))])
+            found.append(max(3.0 * noise.get(pose, 0.0), FROM_SLOPE) if run.measured(pose) else UNLOGGED)
+    return np.array([*found, *[ATTITUDE_DRIFT] * len(_drifting(stretches))])

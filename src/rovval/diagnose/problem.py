@@ -6,15 +6,16 @@ per cent off would do) and what no hypothesis of the library explains (model for
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rovval.data import Array
 from rovval.diagnose.contest import Fold, Prior, Ring, fit, folds_of, inflation_of
+from rovval.diagnose.disturbance import Disturbance, answers, disturbance, shown, undisturbed
 from rovval.diagnose.library import Hypothesis
-from rovval.diagnose.linearise import Direction, Linear, linearise, residual, state_spread
+from rovval.diagnose.linearise import Direction, Linear, linearise, residual, spread, state_spread
 from rovval.diagnose.parity import Parity, parity
 from rovval.diagnose.products import Products, elsewhere, joined, products, start_corrected
 from rovval.diagnose.steadied import discount, gains, loosened
@@ -23,25 +24,32 @@ from rovval.diagnose.tolerance import slop_prior
 from rovval.plant import Plant, parse_settings
 from rovval.simulate import carried_effects
 
+PASSES = 5  # disturbances are found in what the whole library leaves, and that again in the metric that knows them
 SMOOTH = 11  # samples over which the unexplained variance is smoothed along the window (1 s at 10 Hz)
 
 
 @dataclass(frozen=True, slots=True)
 class Problem:
     """``parts`` one per run; ``origin`` (k,) the parameters it starts from; ``variance`` (n, c); ``at_null`` the linearisation
-    and ``data`` the products (with parity) at the nominal vehicle; ``inflation`` the design effect of autocorrelated residuals."""
+    and ``dynamic`` and ``data`` the products (without and with parity) at the nominal vehicle, ``gap`` and ``gap_data`` the same in the metric
+    in which the gap is told, with no disturbance taken out; ``inflation`` the design effect of autocorrelated residuals; ``disturbance``
+    what pushed the vehicle that nobody logged."""
 
     parts: tuple[Stretches, ...]
     origin: Array
     variance: Array
+    white: Array
     slop: Prior
     at_null: tuple[Linear, ...]
     dynamic: Products
     data: Products
+    gap: Products
+    gap_data: Products
     parity: tuple[Parity, ...]
     folds: tuple[Fold, ...]
     inflation: float
     run_of_window: np.ndarray
+    disturbance: Disturbance
 
     @property
     def plant(self) -> Plant:
@@ -62,19 +70,36 @@ def pose(parts: tuple[Stretches, ...], library: Sequence[Hypothesis], slop: floa
     prior = loosened(slop_prior(plant, slop), plant, gain)
     columns, directions = columns_of(library, prior)
     linear = tuple(linearise(part, origin, columns, directions) for part in parts)
-    first = _variance(parts, linear, prior)
+    first, floor = _variance(parts, linear, prior), _variance(parts, linear, Prior({}))
     run_of_window = np.concatenate([np.full(part.count, i) for i, part in enumerate(parts)])
     folds = folds_of(run_of_window)
     checks = tuple(parity(part, columns) for part in parts)
-    early = _joined(parts, linear, first)
     everything = Prior({c: plant.slots[c].parameter.typical for c in columns})
+    early = _joined(parts, linear, first, state_spread)
     inflation = inflation_of(early, fit(Ring.of(early, folds), everything, 10.0).step)
     best = fit(Ring.of(early, folds), everything, inflation).step
-    variance = (first + _unexplained(parts, linear, first, best)) * discount(parts, gain)
-    dynamic = _joined(parts, linear, variance)
-    inflation = inflation_of(dynamic, fit(Ring.of(dynamic, folds), everything, inflation).step)
-    data = dynamic + joined([check.moved(origin, dynamic.columns).products(inflation) for check in checks])
-    return Problem(parts, origin, variance, prior, linear, dynamic, data, checks, folds, inflation, run_of_window)
+    white, steady = first + _unexplained(parts, linear, first, best), discount(parts, gain)
+    variance, to = white * steady, answers(parts, origin)
+    pushed = undisturbed(to)
+    plain = tuple(replace(one, S=one.S[..., : len(columns)], columns=columns) for one in linear)
+    for _ in range(PASSES):
+        left = [replace(one, r=np.where(part.ok, one.r - one.S @ best[: len(columns)], 0.0)) for part, one in zip(parts, plain, strict=True)]
+        pushed = disturbance(parts, to, left, white, inflation, pushed)
+        swayed = tuple(replace(part, pushed=one) for part, one in zip(parts, pushed.pushed, strict=True))
+        loose = tuple(replace(one, J=np.concatenate([one.J, part.pushed], axis=-1)) for one, part in zip(plain, swayed, strict=True))
+        white = floor + _unexplained(swayed, loose, first, best[: len(columns)])
+        seen = _joined(swayed, loose, white * steady, spread)
+        best = fit(Ring.of(seen, folds), everything, inflation).step
+        inflation = inflation_of(seen, best)
+    parts = tuple(replace(part, pushed=one) for part, one in zip(parts, shown(parts, pushed.pushed, white), strict=True))
+    linear = tuple(replace(one, J=np.concatenate([one.J, part.pushed], axis=-1)) for one, part in zip(linear, parts, strict=True))
+    dynamic = _joined(parts, linear, white * steady, spread)
+    kinematic = joined([check.moved(origin, dynamic.columns).products(inflation) for check in checks])
+    gap = _joined(parts, linear, variance, state_spread)
+    return Problem(
+        parts, origin, variance, white * steady, prior, linear, dynamic, dynamic + kinematic, gap, gap + kinematic, checks, folds, inflation,
+        run_of_window, pushed,
+    )  # fmt: skip
 
 
 def columns_of(library: Sequence[Hypothesis], slop: Prior) -> tuple[tuple[int, ...], tuple[Direction, ...]]:
@@ -84,9 +109,15 @@ def columns_of(library: Sequence[Hypothesis], slop: Prior) -> tuple[tuple[int, .
     return tuple(sorted({*plain, *slop.sd})), directions
 
 
-def at(problem: Problem, beta: Array, columns: tuple[int, ...], directions: Sequence[Direction] = ()) -> tuple[Products, Products]:
-    """Products of every window about ``beta`` for the given columns: (dynamics alone, dynamics and parity)."""
-    return products_about(problem, beta, tuple(linearise(part, beta, columns, directions) for part in problem.parts))
+def at(problem: Problem, beta: Array, columns: tuple[int, ...], directions: Sequence[Direction] = ()) -> Products:
+    """Products of every window about ``beta`` for the given columns, parity with them."""
+    return products_about(problem, beta, tuple(linearise(part, beta, columns, directions) for part in problem.parts))[1]
+
+
+def gap_at(problem: Problem, beta: Array, columns: tuple[int, ...]) -> tuple[Products, Products]:
+    """(Dynamics alone, dynamics and parity) about ``beta`` in the metric in which the gap is told."""
+    dynamic = _joined(problem.parts, [linearise(part, beta, columns) for part in problem.parts], problem.variance, state_spread)
+    return dynamic, dynamic + _kinematic(problem, beta, columns)
 
 
 def beside(linear: Linear, other: Linear, columns: tuple[int, ...]) -> Linear:
@@ -100,9 +131,8 @@ def beside(linear: Linear, other: Linear, columns: tuple[int, ...]) -> Linear:
 
 def products_about(problem: Problem, beta: Array, linear: tuple[Linear, ...]) -> tuple[Products, Products]:
     """Products of linearisations about ``beta``: (dynamics alone, dynamics and parity)."""
-    dynamic = _joined(problem.parts, linear, problem.variance)
-    moved = joined([check.moved(beta, dynamic.columns).products(problem.inflation) for check in problem.parity])
-    return dynamic, dynamic + moved
+    dynamic = _joined(problem.parts, linear, problem.white, spread)
+    return dynamic, dynamic + _kinematic(problem, beta, dynamic.columns)
 
 
 def carried(problem: Problem, beta: Array, linear: tuple[Linear, ...], there: Products) -> Products | None:
@@ -113,10 +143,9 @@ def carried(problem: Problem, beta: Array, linear: tuple[Linear, ...], there: Pr
         r, fine = residual(part, beta)
         if not fine[one.valid].all():
             return None
-        for whole, share in zip((b, c), elsewhere(one, r, part.ok, problem.variance, state_spread(part)), strict=True):
+        for whole, share in zip((b, c), elsewhere(one, r, part.ok, problem.white, spread(part)), strict=True):
             whole.append(share)
-    moved = joined([check.moved(beta, there.columns).products(problem.inflation) for check in problem.parity])
-    return replace(there, b=np.concatenate(b), c=np.concatenate(c)) + moved
+    return replace(there, b=np.concatenate(b), c=np.concatenate(c)) + _kinematic(problem, beta, there.columns)
 
 
 def corrected_residuals(problem: Problem, beta: Array | None = None) -> list[Array]:
@@ -127,10 +156,12 @@ def corrected_residuals(problem: Problem, beta: Array | None = None) -> list[Arr
     ]
 
 
-def _joined(parts: Sequence[Stretches], linear: Sequence[Linear], variance: Array) -> Products:
-    return joined(
-        [products(one, part.ok, variance, state_spread(part)) for part, one in zip(parts, linear, strict=True)]
-    )
+def _kinematic(problem: Problem, beta: Array, columns: tuple[int, ...]) -> Products:
+    return joined([check.moved(beta, columns).products(problem.inflation) for check in problem.parity])
+
+
+def _joined(parts: Sequence[Stretches], linear: Sequence[Linear], variance: Array, nuisances: Callable[[Stretches], Array]) -> Products:
+    return joined([products(one, part.ok, variance, nuisances(part)) for part, one in zip(parts, linear, strict=True)])
 
 
 def _variance(parts: Sequence[Stretches], linear: Sequence[Linear], slop: Prior) -> Array:
@@ -151,7 +182,7 @@ def _unexplained(parts: Sequence[Stretches], linear: Sequence[Linear], variance:
     total, count = np.zeros_like(variance), np.zeros_like(variance)
     for part, one in zip(parts, linear, strict=True):
         left = replace(one, r=np.where(part.ok, one.r - one.S @ step, 0.0))
-        rest = start_corrected(left, part.ok, variance, state_spread(part))
+        rest = start_corrected(left, part.ok, variance, spread(part))
         total += (rest**2 * part.ok).sum(axis=0)
         count += part.ok.sum(axis=0)
     kernel = np.ones(SMOOTH) / SMOOTH

@@ -46,7 +46,7 @@ def joined(parts: list[Products]) -> Products:
 
 
 def products(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> Products:
-    """Products of every window; ``variance`` (n, c), ``spread`` (s,) standard error of the initial states."""
+    """Products of every window; ``variance`` (n, c), ``spread`` (s,) standard error of its first nuisances, which are marginalised."""
     m, k = len(linear.r), linear.S.shape[-1]
     A, b, c = np.zeros((m, k, k)), np.zeros((m, k)), np.zeros(m)
     root = 1.0 / np.sqrt(variance)
@@ -55,7 +55,7 @@ def products(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> 
             continue
         weight = np.where(ok[w], root, 0.0).reshape(-1, 1)
         x = np.concatenate([linear.S[w].reshape(len(weight), k), linear.r[w].reshape(-1, 1)], axis=1) * weight
-        j = linear.J[w].reshape(len(weight), -1) * weight * spread
+        j = linear.J[w].reshape(len(weight), -1)[:, : len(spread)] * weight * spread
         gram = x.T @ x
         cross = j.T @ x
         gram -= cross.T @ np.linalg.solve(np.eye(j.shape[1]) + j.T @ j, cross)
@@ -77,12 +77,12 @@ def elsewhere(linear: Linear, r: Array, ok: np.ndarray, variance: Array, spread:
 
 
 def start_corrected(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> Array:
-    """Residual (m, n, c) with the best initial state of each window taken out."""
+    """Residual (m, n, c) with the best of the first nuisances of each window, as many as ``spread`` has, taken out."""
     out = np.array(linear.r)
     root = 1.0 / np.sqrt(variance)
     for w in range(len(out)):
         weight = np.where(ok[w], root, 0.0).reshape(-1, 1)
-        j = linear.J[w].reshape(len(weight), -1)
+        j = linear.J[w].reshape(len(weight), -1)[:, : len(spread)]
         jw = j * weight * spread
         x0 = np.linalg.solve(np.eye(jw.shape[1]) + jw.T @ jw, jw.T @ (linear.r[w].reshape(-1, 1) * weight))
         out[w] = (linear.r[w].reshape(-1, 1) - (j * spread) @ x0).reshape(out[w].shape)

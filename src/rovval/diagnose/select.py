@@ -60,7 +60,7 @@ class Selection:
 
 def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Callable[[str, float], None]) -> Selection:
     """Search for the effects that explain the gap; see the module."""
-    chosen, loss = tuple[int, ...](), (problem.data.c, problem.dynamic.c)
+    chosen, loss = tuple[int, ...](), (problem.gap_data.c, problem.gap.c)
     healthy = base = settle(problem, problem.origin, ())
     named: list[Named] = []
     rounds: list[tuple[tuple[str, float, float], ...]] = []
@@ -77,7 +77,8 @@ def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Cal
         weighed = finalists(problem, data, open_now, detection, base, chosen, loss)
         able = admissible(problem, sharpened(problem, admissible(problem, weighed), base, loss))
         rounds.append(tuple((r.hypothesis.name, r.evidence, r.gain) for r in able or weighed))
-        if not able or able[0].gain < (LATER_GAIN if named else LEAST_GAIN) or able[0].evidence < LEAST_EVIDENCE:
+        able = [r for r in able if r.gain >= (LATER_GAIN if named else LEAST_GAIN) and r.evidence >= LEAST_EVIDENCE]
+        if not able:
             break
         members = group(problem, able, seed)
         best = simplest(problem, able)
@@ -108,7 +109,7 @@ def _pruned(problem: Problem, named: list[Named]) -> list[Named]:
 def _bank(problem: Problem, library: list[Hypothesis], base: Point) -> Products:
     """Linearise everything about the point reached."""
     columns, directions = columns_of(library, problem.slop)
-    data = at(problem, base.beta, tuple(sorted({*columns, *base.columns})), directions)[1]
+    data = at(problem, base.beta, tuple(sorted({*columns, *base.columns})), directions)
     offset = np.array([base.beta[c] - problem.origin[c] if c < len(base.beta) else 0.0 for c in data.columns])
     return replace(data, offset=offset)
 
@@ -127,8 +128,8 @@ def _ranking(
 ) -> tuple[tuple[str, float], ...]:
     """Every hypothesis with the held-out share of the gap that it closes by itself, slop standing still: the named ones, the finalists by
     evidence, then the others by their share in the linearised model."""
-    _, fits = contest(Ring.of(problem.data, problem.folds), Prior({}), {h.label: prior_of(h) for h in library}, problem.inflation)
-    gap, share = float(problem.data.c.sum()), dict[str, float]()
+    _, fits = contest(Ring.of(problem.gap_data, problem.folds), Prior({}), {h.label: prior_of(h) for h in library}, problem.inflation)
+    gap, share = float(problem.gap_data.c.sum()), dict[str, float]()
     for h in library:
         share[h.name] = max(1.0 - fits[h.label].loss / gap, share.get(h.name, -np.inf))
     share |= {name: gain for name, _, gain in (rounds[0] if rounds else ())}

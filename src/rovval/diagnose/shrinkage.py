@@ -30,7 +30,7 @@ def shrinkage(problem: Problem, fitted: Confirmed | None, before: list[Array], s
     """
     if fitted is None:
         return dict(NONE)
-    value, low, high = interval(problem.dynamic.c, fitted.dynamic_loss, seed)
+    value, low, high = interval(problem.gap.c, fitted.dynamic_loss, seed)
     nominal, now = axis_squares(problem, before), axis_squares(problem, held_out(problem, fitted))
     measured = {axis: square > 0 for axis, square in nominal.items() if square.sum() > 0}
     axes = {axis: interval(nominal[axis][seen], now[axis][seen], seed) for axis, seen in measured.items()}
@@ -71,5 +71,5 @@ def held_linear(problem: Problem, fitted: Confirmed) -> list[Linear]:
 
 def _explainable(problem: Problem, fitted: Confirmed) -> float:
     """Share of the gap above the noise floor that is closed, on held-out windows."""
-    gap, floor = float(problem.dynamic.c.sum()), float(noise_loss(problem).sum())
+    gap, floor = float(problem.gap.c.sum()), float(noise_loss(problem).sum())
     return float(min((gap - float(fitted.dynamic_loss.sum())) / max(gap - floor, 1e-12), 1.0))

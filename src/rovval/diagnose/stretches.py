@@ -39,7 +39,8 @@ OUTLIER_SIGMA = 8.0  # chosen: a sample this far from its neighbours' line is an
 class Stretches:
     """Windows of one run: ``start`` (m,) grid index, ``steps`` per window, measured start states (m, 6), and the measured channels
     ``y`` (m, steps + 1, c) with ``ok`` where they hold a value. ``noise`` (c,) is the white part of each channel's error; ``contact_s``
-    seconds left out because the vehicle was held or aground."""
+    seconds left out because the vehicle was held or aground. ``pushed`` (m, steps + 1, c, d) is what disturbances of one standard deviation
+    do to the windows (`disturbance`), once their size is known."""
 
     run: Run
     plant: Plant
@@ -54,6 +55,7 @@ class Stretches:
     noise: Array
     outliers: int
     contact_s: float
+    pushed: Array | None = None
 
     @property
     def count(self) -> int:

@@ -8,17 +8,22 @@ from __future__ import annotations
 
 import numpy as np
 
+from rovval.channels import AXES
 from rovval.diagnose.contest import Prior
-from rovval.effects._lanes import reference_drag_force
+from rovval.effects._lanes import reference_drag, reference_drag_force
 from rovval.plant import Plant
+from rovval.vehicle.model import square
 
-RELATIVE = ("added_mass", "linear_drag", "quadratic_drag", "inertia_error", "thruster_degraded", "reverse_asymmetry", "rpm_scale")
-ASTERN = 0.5  # of the slop: how far the gains ahead and astern of one thruster are off apart from each other (chosen)
+RELATIVE = ("added_mass", "quadratic_drag", "inertia_error", "thruster_degraded", "reverse_asymmetry", "rpm_scale")
+ASTERN = 1.4  # of the slop: ahead and astern are two numbers of the file, each off by the slop, so apart by the root of two times it
 MOUNTING = 0.3  # rad per unit of slop: 5 % slop goes with thrusters mounted to within a degree
 TRIM = 0.02  # of the weight per unit of slop: 5 % slop goes with a vehicle trimmed to a thousandth of its weight,
-TRIM_FORCE = 0.05  # or of the drag at 1 m/s ahead, whichever is more: a light vehicle is trimmed to what its drives hardly notice (chosen)
+TRIM_FORCE = 0.1  # or of the drag at 1 m/s ahead, whichever is more: a light vehicle is trimmed to what its drives hardly notice (chosen)
 LEVEL = 0.4  # of the metacentric height per unit of slop: 5 % slop goes with a vehicle that floats level to a degree,
 CENTRE, CENTRE_LEVEL = 0.1, 0.04  # or of the longest thruster arm, for height and level: centres are known to 0.5 % of it (chosen)
+CURVE = 4.0  # of the typical dead band per unit of slop: 5 % slop goes with a curve that is off by as much at small commands (chosen)
+SPLIT = 0.3  # m/s, rad/s: drag is known as a whole at this speed; how much of it is linear is off by as much as that (chosen)
+UNKNOWN = 1.0  # m/s, rad/s: the same for an axis without linear drag in the file, where nobody has measured it
 SENSORS = {
     "attitude_bias": 0.01,  # rad: AHRS of the class give 0.2 to 0.5 degrees static (Xsens MTi data sheets)
     "gyro_bias": 0.002,  # rad/s: 0.1 degree a second, MEMS in-run bias with temperature
@@ -39,10 +44,18 @@ def slop_prior(plant: Plant, slop: float) -> Prior:
     body, sd = plant.vehicle.body, dict[int, float]()
     height = abs(body.centre_of_gravity[2] - body.centre_of_buoyancy[2])
     arm = max(float(np.linalg.norm(t.position)) for t in plant.vehicle.thruster)
+    linear, quadratic = reference_drag(plant.vehicle)
+    body_linear = np.diag(square(body.linear_drag))
     for i, slot in enumerate(plant.slots):
         name = slot.parameter.name
-        if slot.effect in RELATIVE:
+        if slot.effect == "linear_drag":
+            axis = AXES.index(slot.hypothesis.partition("[")[2].rstrip("]"))
+            known = body_linear[axis] > 0
+            sd[i] = slop * (1.0 + (SPLIT if known else UNKNOWN) * quadratic[axis] / linear[axis])
+        elif slot.effect in RELATIVE:
             sd[i] = slop * (0.5 if slot.effect == "rpm_scale" else 1.0)
+        elif slot.effect == "thruster_deadband":
+            sd[i] = CURVE * slop * slot.parameter.typical
         elif slot.effect == "thruster_astern":
             sd[i] = ASTERN * slop
         elif slot.effect == "thruster_misaligned":

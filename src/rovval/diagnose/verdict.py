@@ -16,15 +16,16 @@ from rovval import effects
 from rovval.channels import AXES
 from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed
-from rovval.diagnose.gap import axis_squares
+from rovval.diagnose.gap import axis_weight
 from rovval.diagnose.problem import Problem, corrected_residuals
 from rovval.diagnose.select import FALSE_ALARM, Named, Selection
-from rovval.diagnose.separate import FEW, form_share
+from rovval.diagnose.separate import FEW, form_share, interval
 from rovval.diagnose.settle import Point, evidence
 from rovval.diagnose.unknown import Forces, bare_forces, forces
 
-BETTER = 1.0  # times a cause's evidence: a generic force that has more is nearer to the truth
+BETTER = 0.8  # of a cause's evidence: a generic force that has more is as near to the truth (chosen)
 ACTING = 0.15  # of what a cause closes: the axes on which it acts
+HARMS = 0.25  # of what causes close in all: a cause that opens more on one axis is the least bad (chosen)
 SKILL = 0.5  # of the squared motion: an axis on which more is left is not simulated at all (chosen)
 REAL = 100.0  # twice the log Bayes factor of a generic force from which it is not a healthy vehicle's form (tuning set)
 HOLDS = 0.02  # of what is left: a generic force that closes less on held-out windows is a fit to these windows (chosen)
@@ -62,11 +63,12 @@ def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgem
         axes = _acting(closed)
         holds = problem.blocks >= FEW and rest.share(problem.folds) > HOLDS
         beside, instead = rest.evidence(axes) if holds else 0.0, general.evidence(axes)
-        parity_led = float((problem.data.c - problem.dynamic.c).sum()) > float(problem.dynamic.c.sum())
+        parity_led = float((problem.gap_data.c - problem.gap.c).sum()) > float(problem.gap.c.sum())
         excess, strain = _excess(problem, final.point, axes), _strain(final.point)
         outdone = problem.blocks >= FEW and instead > BETTER * total
         skill = problem.blocks < FEW or all(_of_sensor(n) for n in named) or _skill(problem, closed, after)
-        least_bad = outdone or not skill or max(beside, excess) > form_share(problem.blocks) * total
+        unsure = interval(problem.gap.c, final.dynamic_loss, 0)[1] <= 0 or _harmful(problem, before, after)
+        least_bad = outdone or unsure or not skill or strain > BROKEN or max(beside, excess) > form_share(problem.blocks) * total
         if parity_led or not least_bad:
             remains = (holds and rest.evidence() > max(REAL, REMAINS * total)) or strain > STRAINED
             left = _left(problem, rest, final.point) if remains else None
@@ -76,7 +78,7 @@ def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgem
     else:
         total = 0.0
     anything, strain = general.evidence(), _strain(selection.healthy)
-    real = (bool(named) and skill) or (anything > REAL and general.share(problem.folds) > HOLDS) or strain > BROKEN
+    real = (total > REAL and skill) or (anything > REAL and general.share(problem.folds) > HOLDS) or strain > BROKEN
     left = _left(problem, bare_forces(problem), selection.healthy) if real else None
     return Judgement("unknown" if real else "no_gap", (), None, {}, {}, total, anything, anything, strain, left)
 
@@ -87,9 +89,15 @@ def _gained(problem: Problem, healthy: Point, point: Point) -> float:
 
 
 def _closed(problem: Problem, before: list[Array], after: list[Array]) -> dict[str, float]:
-    """Squared residual that the causes take away, by axis."""
-    was, now = axis_squares(problem, before), axis_squares(problem, after)
-    return {axis: max(float(was[axis].sum() - now[axis].sum()), 0.0) for axis in was}
+    """What the causes take away of the weighted gap, by axis."""
+    was, now = axis_weight(problem, before), axis_weight(problem, after)
+    return {axis: max(was[axis] - now[axis], 0.0) for axis in was}
+
+
+def _harmful(problem: Problem, before: list[Array], after: list[Array]) -> bool:
+    """Whether some axis gets worse by a good part of what the causes take away in all."""
+    was, now = axis_weight(problem, before), axis_weight(problem, after)
+    return max(now[a] - was[a] for a in was) > HARMS * (sum(was.values()) - sum(now.values()))
 
 
 def _acting(closed: Mapping[str, float]) -> tuple[str, ...]:
@@ -106,7 +114,7 @@ def _skill(problem: Problem, closed: Mapping[str, float], after: list[Array]) ->
     replays an autopilot's answers to disturbances that nobody logged, which shows nothing about the vehicle."""
     axis = max(closed, key=lambda a: closed[a])
     moved = [np.where(part.ok, part.y - (part.y * part.ok).sum((0, 1)) / np.maximum(part.ok.sum((0, 1)), 1), 0.0) for part in problem.parts]
-    left, motion = (float(axis_squares(problem, x)[axis].sum()) for x in (after, moved))
+    left, motion = (axis_weight(problem, x)[axis] for x in (after, moved))
     return left <= SKILL * motion
 
 
@@ -119,7 +127,7 @@ def _excess(problem: Problem, point: Point, axes: tuple[str, ...]) -> float:
     """What coefficients beyond tolerance cost, in twice the log of their prior, each as far as it moves the motion on ``axes``."""
     moves = np.zeros((2, len(point.columns)))
     for part, one in zip(problem.parts, point.linear, strict=True):
-        by_channel = np.einsum("wtck,tc->ck", np.where(part.ok[..., None], one.S, 0.0) ** 2, 1.0 / problem.variance)
+        by_channel = np.einsum("wtck,tc->ck", np.where(part.ok[..., None], one.S, 0.0) ** 2, 1.0 / problem.white)
         here = np.array([axis in axes for axis in part.axes], dtype=bool)
         moves += by_channel[here].sum(axis=0), by_channel.sum(axis=0)
     share = moves[0] / np.maximum(moves[1], 1e-300)
