@@ -36,7 +36,7 @@ def test_every_format_gives_the_answer() -> None:
     for text in formats(make_diagnosis()):
         for fact in ("inflow_loss", "quadratic_drag[surge]", "66 % (58 % to 72 %)", "surge staircase", "ground_effect", "0.310", "gyro_bias"):
             assert fact in text
-        assert diagnosis_words.SCOPE in text
+        assert diagnosis_words.SCOPE in text and diagnosis_words.SQUARED in text
 
 
 def test_the_sentence_of_the_engine_comes_first() -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rovval.diagnose.words import chance, open_gap
+from rovval.diagnose.words import chance, moved, open_gap, undecided, unmoved
 from rovval.report import diagnosis_parts as parts
 from rovval.report import diagnosis_words as dw
 from rovval.report import page, plots, tried
@@ -30,7 +30,7 @@ def text(document: dw.Document, recording: bool = False) -> str:
             parts.tiles(_answers(d)),
             _where(d),
             page.section(worst, page.switches(keys) if places else "", places),
-            page.section("Which effect", *(_cause(c) for c in d.get("causes") or ()), _paragraph(_which(d))),
+            page.section("Which effect", *(_cause(c, (d.get("gap") or {}).get("axes") or {}) for c in d.get("causes") or ()), _paragraph(_which(d))),
             tried.section(d),
             page.section("What this log cannot tell apart", parts.matrix(d.get("coherence") or {}), lead=_COHERENCE),
             page.section("Sensors first, by kinematics alone", _parity(d), lead=_PARITY),
@@ -39,7 +39,7 @@ def text(document: dw.Document, recording: bool = False) -> str:
             page.section("What to fly next", *_flight(d)),
             page.section("Not testable in this log", _not_testable(d), lead="Neither blamed nor cleared."),
             page.section("Recording", _RECORDING if recording else ""),
-            page.footer(" · ".join([dw.SCOPE, *(f"{k} {v}" for k, v in versions().items())])),
+            page.footer(" · ".join([dw.SCOPE, dw.SQUARED, *(f"{k} {v}" for k, v in versions().items())])),
         ]
     )
     return page.page(f"{dw.run(d)} · rovval diagnosis", body, {"x": axes, "plots": pictures})
@@ -54,10 +54,11 @@ _WHICH = {
     "no_gap": "Nothing to blame: what is left is within noise and calibration slop.",
 }
 _OPEN = "None is named. Most of the gap is neither noise nor slop; what it is, this log does not show."
+_SEEN = "None is named; the answer at the top says what was seen all the same."
 
 
 def _which(d: dw.Document) -> str:
-    return _OPEN if open_gap(d) else _WHICH.get(d.get("verdict", ""), "")
+    return _OPEN if open_gap(d) else _SEEN if undecided(d) else _WHICH.get(d.get("verdict", ""), "")
 
 
 def _answers(d: dw.Document) -> dict[str, tuple[str, str]]:
@@ -75,8 +76,8 @@ def _answers(d: dw.Document) -> dict[str, tuple[str, str]]:
     more = [f"or {dw.names(first[1:])}"] if first[1:] else []
     more += [f"and {', '.join(str(c['effect']) for c in causes[1:])}"] if causes[1:] else []
     named = (first[0], "; ".join(more)) if first else which.get(d.get("verdict", ""), ("", ""))
-    span = f"{per_cent(s.get('low'))} to {per_cent(s.get('high'))}{', held out' if s.get('held_out') else ''}"
-    far = (f"{per_cent(s['total'])} smaller", span) if s.get("total") is not None and causes else ("", "")
+    span = f"squared gap, {per_cent(s.get('low'))} to {per_cent(s.get('high'))}{', held out' if s.get('held_out') else ''}"
+    far = ("unchanged" if unmoved(s) else f"{per_cent(s['total'])} smaller", span) if s.get("total") is not None and causes else ("", "")
     flight = d.get("manoeuvre") or {}
     fly = (str(flight.get("name") or (d.get("next_experiment") or {}).get("manoeuvre") or ""), "")
     return {"Where": where, "Which": named, "How far": far, "Next": fly}
@@ -101,26 +102,26 @@ def _axes(d: dw.Document) -> str:
     return page.table(["axis", "gap, rms", "sensor noise", "IAE", "share of the gap"], rows, left=(0, 4)) if rows else ""
 
 
-def _cause(cause: dw.Document) -> str:
+def _cause(cause: dw.Document, gap: dw.Document) -> str:
     members, s = dw.group(cause), cause.get("shrinkage") or {}
     alike = " or ".join(f"<code>{escape(m)}</code>" for m in members[1:])
     others = f' <span class="lead">or {alike}</span>' if alike else ""
     said = [f"probability {chance(cause['probability'])}"] if cause.get("probability") is not None else []
     said += [f"begins at {number(cause['onset_s'])} s"] if cause.get("onset_s") is not None else []
-    said += [f"the gap shrinks by {dw.interval(s)}"] if s.get("total") is not None else []
+    said += [dw.shrinks(cause)]
     rows = []
-    for name, entry in (cause.get("parameters") or {}).items():
+    for name, entry in moved(cause.get("parameters") or {}).items():
         factor, unit = in_degrees(1.0, entry.get("unit", "1"))
         value, low, high = (None if entry.get(k) is None else entry[k] * factor for k in ("value", "low", "high"))
         drawn = parts.whisker(value, low, high, (entry.get("null") or 0.0) * factor)
         span = f"{number(low)} to {number(high)}" if low is not None and high is not None else "–"
         rows.append([f"<code>{escape(name)}</code>", number(value), span, "" if unit == "1" else unit, drawn])
     spans = s.get("axes_interval") or {}
-    axes = [[escape(a), parts.axis_bar(v), dw.span(spans.get(a))] for a, v in (s.get("axes") or {}).items() if v is not None]
+    axes = [[escape(a), parts.axis_bar(v), dw.span(spans.get(a)), dw.rms_change(gap.get(a), v)] for a, v in (s.get("axes") or {}).items() if v is not None]
     tables = page.table(["parameter", "value", "interval", "unit", ""], rows, left=(0, 3, 4)) if rows else ""
-    gains = page.table(["axis", "gap shrinks by, held out", "interval"], axes, left=(0, 1, 2)) if axes else ""
+    gains = page.table(["axis", "squared gap less by", "interval", "rms"], axes, left=(0, 1, 2, 3)) if axes else ""
     title = f"<h3><code>{escape(members[0])}</code>{others}</h3>"
-    return f'{title}<p class="lead">{escape(", ".join(said))}</p><div class="two"><div>{tables}</div><div>{gains}</div></div>'
+    return f'{title}<p class="lead">{escape(", ".join(filter(None, said)))}</p><div class="two"><div>{tables}</div><div>{gains}</div></div>'
 
 
 def _parity(d: dw.Document) -> str:
@@ -158,7 +159,7 @@ def _flight(d: dw.Document) -> tuple[str, str, str]:
 
 
 def _harm(d: dw.Document) -> list[str]:
-    return [f"{h.get('axis')}: the error grows by {per_cent(h.get('change'))} with the effects found" for h in d.get("harm") or ()]
+    return [f"{h.get('axis')}: the squared error grows by {per_cent(h.get('change'))} with the effects found" for h in d.get("harm") or ()]
 
 
 def _not_testable(d: dw.Document) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from rovval.diagnose.words import chance
+from rovval.diagnose.words import chance, moved
 from rovval.report import diagnosis_words as dw
 from rovval.report.markdown import bullets, grid
 from rovval.report.tried import rounds
@@ -23,20 +23,20 @@ def text(document: dw.Document) -> str:
     parts += [f"**{said[0]}**", *said[1:], bullets(f"{k}: {v}" for k, v in dw.facts(d).items() if v)]
     parts += _under("## Where the gap lies", _axes(d), bullets(dw.where(d, 99)), _changes(d))
     for cause in d.get("causes") or ():
-        parts += _under(f"## Cause: {' or '.join(f'`{e}`' for e in dw.group(cause))}", *_cause(cause))
+        parts += _under(f"## Cause: {' or '.join(f'`{e}`' for e in dw.group(cause))}", *_cause(cause, (d.get("gap") or {}).get("axes") or {}))
     for title, rows in rounds(d):
         weighed = [[f"`{r['effect']}`", per_cent(r.get("gain")), number(r.get("evidence"), 2)] for r in rows]
-        parts += _under(f"## Weighed by re-simulation: {title[0].lower()}{title[1:]}", grid(["effect", "closes of the gap", "evidence"], weighed))
+        parts += _under(f"## Weighed by re-simulation: {title[0].lower()}{title[1:]}", grid(["effect", "closes of the squared gap", "evidence"], weighed))
     ranking = [[f"`{r['effect']}`", number(r.get("score"))] for r in (d.get("ranking") or ())[:MOST_RANKED]]
     parts += _under("## Screen of the library", grid(["effect", "score"], ranking) if ranking else "")
     parts += _under("## Sensors, by kinematics alone", _parity(d))
-    harm = [f"{h.get('axis')}: error changes by {per_cent(h.get('change'))}" for h in d.get("harm") or ()]
+    harm = [f"{h.get('axis')}: squared error changes by {per_cent(h.get('change'))}" for h in d.get("harm") or ()]
     parts += _under("## What gets worse", bullets(harm))
     flight = d.get("manoeuvre") or {}
     parts += _under("## What to fly next", dw.next_flight(d), flight.get("text", ""), _schedule(flight))
     why = [f"`{names}`: {why}" for names, why in not_testable(d)]
     parts += _under("## Not testable in this log", bullets(why))
-    return "\n\n".join(p for p in [*parts, f"*{dw.SCOPE}*"] if p) + "\n"
+    return "\n\n".join(p for p in [*parts, f"*{dw.SCOPE} {dw.SQUARED}*"] if p) + "\n"
 
 
 def _under(title: str, *parts: str) -> list[str]:
@@ -58,15 +58,15 @@ def _changes(d: dw.Document) -> str:
     return f"The gap changes at {', '.join(f'{number(t, 4)} s' for t in points)}." if points else ""
 
 
-def _cause(cause: dw.Document) -> list[str]:
+def _cause(cause: dw.Document, gap: dw.Document) -> list[str]:
     s = cause.get("shrinkage") or {}
-    lines = [dw.parameter(name, entry) for name, entry in (cause.get("parameters") or {}).items()]
+    lines = [dw.parameter(name, entry) for name, entry in moved(cause.get("parameters") or {}).items()]
     lines += [f"begins at {number(cause['onset_s'])} s"] if cause.get("onset_s") is not None else []
     lines += [f"probability {chance(cause['probability'])}"] if cause.get("probability") is not None else []
-    lines += [f"the gap shrinks by {dw.interval(s)}"] if s.get("total") is not None else []
+    lines += [said] if (said := dw.shrinks(cause)) else []
     spans = s.get("axes_interval") or {}
-    axes = [[a, per_cent(v), dw.span(spans.get(a))] for a, v in (s.get("axes") or {}).items() if v is not None]
-    return [bullets(lines), grid(["axis", "shrinks by", "interval"], axes) if axes else ""]
+    axes = [[a, per_cent(v), dw.span(spans.get(a)), dw.rms_change(gap.get(a), v)] for a, v in (s.get("axes") or {}).items() if v is not None]
+    return [bullets(lines), grid(["axis", "squared gap less by", "interval", "rms"], axes) if axes else ""]
 
 
 def _parity(d: dw.Document) -> str:

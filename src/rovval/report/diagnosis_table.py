@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from textwrap import wrap
 
-from rovval.diagnose.words import chance
+from rovval.diagnose.words import chance, moved
 from rovval.report import diagnosis_words as dw
 from rovval.report.tried import rounds
 from rovval.report.untestable import not_testable
@@ -32,7 +32,7 @@ def text(document: dw.Document) -> str:
     ranking = () if weighed else d.get("ranking") or ()
     parts += _block("screen of the library", [f"{number(r.get('score')):>7}  {r['effect']}" for r in ranking[:8]])
     parts += _block("not testable in this log", [f"{names}: {why}" for names, why in not_testable(d)])
-    return "\n".join([*parts, "", dw.SCOPE]) + "\n"
+    return "\n".join([*parts, "", dw.SCOPE, dw.SQUARED]) + "\n"
 
 
 def _block(title: str, lines: list[str]) -> list[str]:
@@ -50,11 +50,11 @@ def _axes(d: dw.Document) -> list[str]:
 
 
 def _cause(cause: dw.Document) -> list[str]:
-    lines = [dw.parameter(name, entry) for name, entry in (cause.get("parameters") or {}).items()]
+    lines = [dw.parameter(name, entry) for name, entry in moved(cause.get("parameters") or {}).items()]
     s = cause.get("shrinkage") or {}
-    lines += [f"gap shrinks by {dw.interval(s)}"] if s.get("total") is not None else []
+    lines += [said] if (said := dw.shrinks(cause)) else []
     axes = {a: v for a, v in (s.get("axes") or {}).items() if v is not None}
-    lines += ["by axis, held out: " + ", ".join(f"{a} {per_cent(v)}" for a, v in axes.items())] if axes else []
+    lines += ["by axis, squared, held out: " + ", ".join(f"{a} {per_cent(v)}" for a, v in axes.items())] if axes else []
     lines += [f"probability {chance(cause['probability'])}"] if cause.get("probability") is not None else []
     lines += [f"begins at {number(cause['onset_s'])} s"] if cause.get("onset_s") is not None else []
     return lines
