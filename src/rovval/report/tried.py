@@ -12,8 +12,8 @@ from rovval.report.diagnosis_words import group
 from rovval.report.words import number
 
 MOST, MOST_RANKED = 8, 16  # of a round, of the screen
-_WEIGHED = "Each was fitted by re-simulation. Bar: the part of the gap that it closes on held-out windows. Evidence: twice the log Bayes factor."
-_SCREEN = "Score: the part of the gap that is gone on held-out windows"
+_WEIGHED = "Each was fitted by re-simulation. Bar: the part of the squared gap that it closes on held-out windows. Evidence: twice the log Bayes factor."
+_SCREEN = "Score: the part of the squared gap that is gone on held-out windows"
 
 
 def section(d: Mapping[str, Any]) -> str:
@@ -49,7 +49,7 @@ def finalists(document: Mapping[str, Any]) -> list[str]:
             name = str(row["effect"])
             said = "<b>named</b>" if name in causes else f"cannot be told from {escape(alike[name])}" if name in alike else ""
             cells.append([f"<code>{escape(name)}</code>", axis_bar(row.get("gain")), number(row.get("evidence"), 2), said])
-        tables.append(f"<h3>{escape(title)}</h3>" + page.table(["effect", "closes of the gap", "evidence", ""], cells, left=(0, 1, 3)))
+        tables.append(f"<h3>{escape(title)}</h3>" + page.table(["effect", "closes of the squared gap", "evidence", ""], cells, left=(0, 1, 3)))
     return tables
 
 
