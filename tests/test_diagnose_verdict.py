@@ -70,7 +70,7 @@ def test_evidence_is_linear_in_copies_of_the_log_but_for_the_prior():
 
 
 RELATIVES = {  # withheld with the effect: the same law, or one that is it at some value of its parameters
-    "current_constant:north=0.15": ("current_constant", "current_varying", "current_shear", "tether_tension"),
+    "current_constant:north=0.15": ("current_constant", "current_varying", "current_shear", "tether_tension", "tether_snag"),
     "thruster_degraded[HFP]:loss=0.5": (
         "thruster_degraded",
         "thruster_fault_onset",

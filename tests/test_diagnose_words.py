@@ -35,7 +35,7 @@ def weighed(gain: float, evidence: float) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("gain", "evidence", "slop", "said", "seen"),
     [
-        (0.4, 4.44, 0.45, "but its evidence of 4.4 is short of the 10 asked for, and calibration slop of the stated size explains 45 %.", False),
+        (0.4, 4.44, 0.45, "but its evidence of 4.4 is short of the 6 asked for, and calibration slop of the stated size explains 45 %.", False),
         (0.6, 30.0, 0.55, "but it does not pass all the checks that a cause must pass.", True),
         (0.2, 8.0, 0.7, "", False),
         (0.5, 1.0, 0.7, "", False),

@@ -90,7 +90,7 @@ def _detection(problem: Problem, selection: Selection, judgement: Judgement) -> 
     of its tolerance the most strained healthy coefficient is off."""
     gap = float(problem.dynamic.c.sum())
     return {
-        "noise": min(float(noise_loss(problem).sum()) / gap, 1.0),
+        "noise": min(float(noise_loss(problem).sum()) / float(problem.gap.c.sum()), 1.0),
         "slop": 1.0 - float(selection.healthy.left().sum()) / gap,
         "p_value": selection.named[0].p_value if selection.named else selection.last_p,
         "last_p": selection.last_p,

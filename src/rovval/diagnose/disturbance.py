@@ -60,6 +60,11 @@ def answers(parts: Sequence[Stretches], beta: Array) -> Answers:
     return Answers(wrench, pushed, tuple(generic(parts, beta, ENVIRONMENT)[1]))
 
 
+def calm() -> Disturbance:
+    """No disturbance, because none was looked for."""
+    return Disturbance(np.zeros(len(AXES)), np.zeros(len(AXES)), ())
+
+
 def undisturbed(to: Answers) -> Disturbance:
     """What the search for disturbances begins with."""
     return Disturbance(FIRST * to.wrench, np.full(len(AXES), FIRST_S), ())

@@ -113,14 +113,15 @@ def _beyond_tolerance(problem: Problem, rival: Rival) -> bool:
 
 
 def simplest(problem: Problem, rivals: list[Rival]) -> Rival:
-    """Of the rivals that the form of an equation may set apart, the one with the fewest parameters, if it closes nearly as much as the best."""
+    """Of the rivals that the form of an equation may set apart, the one with the fewest parameters, if it closes nearly as much as the best;
+    one that rests on a bound comes last."""
     most, least = len(rivals[0].hypothesis.slots), (1.0 - form_share(problem.blocks)) * rivals[0].evidence
     tied = [
         r for r in rivals
         if alike(problem, r, rivals[0])
         or (r.evidence >= least and r.gain >= (NEARLY - PER_PARAMETER * max(most - len(r.hypothesis.slots), 0)) * rivals[0].gain)
     ]  # fmt: skip
-    return min(tied, key=lambda r: (len(r.hypothesis.slots), -r.evidence))
+    return min(tied, key=lambda r: (bool(r.fitted.at_bound), len(r.hypothesis.slots), -r.evidence))
 
 
 def _from_the_start(problem: Problem, rival: Rival) -> bool:

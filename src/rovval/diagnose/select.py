@@ -28,7 +28,7 @@ NEEDLESS = 6.0  # twice the log Bayes factor below which an effect is dropped ag
 LEAST_GAIN = 0.06  # of the gap, on held-out windows: less is not worth a name
 LATER_GAIN = 0.10  # of what is left, the same for a second and third effect: the forms of equations alone leave structure of this size
 PROMISING = 0.5  # of `LEAST_EVIDENCE`, in the linearised model: less is not re-simulated
-LEAST_EVIDENCE = 10.0  # over slop: "very strong" (Kass & Raftery 1995); no healthy log of the tuning set got as far as finalists
+LEAST_EVIDENCE = 6.0  # over slop: "strong" (Kass & Raftery 1995); no healthy Merlin log of the tuning set got as far as finalists
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,7 @@ from rovval.plant import Plant
 
 ROUNDS = 5
 LITTLE = 1.0  # twice the log posterior: a smaller gain is not worth another step
-FAR = 10.0  # the same, from which slop's slopes are made anew
+FAR, ANEW = 10.0, 2  # the same, from which slop's slopes are made anew, and how often at most
 SHORTER = (1.0, 0.4, 0.1)  # shares of the Gauss-Newton step that are tried
 
 
@@ -92,12 +92,26 @@ class Point:
 def settle(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[Linear, ...] | None = None, rounds: int = ROUNDS) -> Point:
     """Fit ``slots`` and slop jointly from ``start``.
 
-    With ``near``, slop's slopes are taken from a linearisation nearby; else they are made at ``start``, and made anew where the fit
-    ends far from it. Slop moves in the simulation all the same.
+    With ``near``, slop's slopes are taken from a linearisation nearby; else they are made at ``start``, and made anew, `ANEW` times at
+    most, where the fit ends far from it. Slop moves in the simulation all the same.
     """
-    columns = (*slots, *(c for c in problem.slop.sd if c not in slots))
-    begin = point = _about(problem, start, columns, len(slots), near)
-    slopes = point.linear if near is None else near
+    if near is not None:
+        return _descended(problem, _about(problem, start, _columns(problem, slots), len(slots), near), near, rounds)
+    point = _about(problem, start, _columns(problem, slots), len(slots), None)
+    for _ in range(ANEW):
+        reached = _descended(problem, point, point.linear, rounds)
+        if point.cost() - reached.cost() < FAR * problem.inflation:
+            return reached
+        point = _about(problem, reached.beta, point.columns, point.own, None)
+    return _descended(problem, point, point.linear, rounds)
+
+
+def _columns(problem: Problem, slots: tuple[int, ...]) -> tuple[int, ...]:
+    return (*slots, *(c for c in problem.slop.sd if c not in slots))
+
+
+def _descended(problem: Problem, point: Point, slopes: tuple[Linear, ...], rounds: int) -> Point:
+    """The point that damped steps reach, slop's ``slopes`` kept."""
     for _ in range(rounds):
         better = _better(problem, point, slopes)
         if better is None:
@@ -105,8 +119,7 @@ def settle(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[L
         gain, point = point.cost() - better.cost(), better
         if gain < LITTLE * problem.inflation:
             break
-    far = near is None and begin.cost() - point.cost() > FAR * problem.inflation
-    return settle(problem, point.beta, slots, rounds=rounds) if far else point
+    return point
 
 
 def moved(problem: Problem, point: Point, slot: int, value: float) -> Point:

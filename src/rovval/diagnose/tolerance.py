@@ -18,12 +18,12 @@ RELATIVE = ("added_mass", "quadratic_drag", "inertia_error", "thruster_degraded"
 ASTERN = 1.4  # of the slop: ahead and astern are two numbers of the file, each off by the slop, so apart by the root of two times it
 MOUNTING = 0.3  # rad per unit of slop: 5 % slop goes with thrusters mounted to within a degree
 TRIM = 0.02  # of the weight per unit of slop: 5 % slop goes with a vehicle trimmed to a thousandth of its weight,
-TRIM_FORCE = 0.1  # or of the drag at 1 m/s ahead, whichever is more: a light vehicle is trimmed to what its drives hardly notice (chosen)
+TRIM_FORCE = 0.075  # or of the drag at 1 m/s ahead, whichever is more: a light vehicle is trimmed to what its drives hardly notice (chosen)
 LEVEL = 0.4  # of the metacentric height per unit of slop: 5 % slop goes with a vehicle that floats level to a degree,
 CENTRE, CENTRE_LEVEL = 0.1, 0.04  # or of the longest thruster arm, for height and level: centres are known to 0.5 % of it (chosen)
 CURVE = 4.0  # of the typical dead band per unit of slop: 5 % slop goes with a curve that is off by as much at small commands (chosen)
-SPLIT = 0.3  # m/s, rad/s: drag is known as a whole at this speed; how much of it is linear is off by as much as that (chosen)
-UNKNOWN = 1.0  # m/s, rad/s: the same for an axis without linear drag in the file, where nobody has measured it
+SPLIT = 0.1  # m/s, rad/s: drag is known as a whole at this speed; how much of it is linear is off by as much as that (chosen)
+UNKNOWN = 0.5  # m/s, rad/s: the same for an axis without linear drag in the file, where nobody has measured it (chosen)
 SENSORS = {
     "attitude_bias": 0.01,  # rad: AHRS of the class give 0.2 to 0.5 degrees static (Xsens MTi data sheets)
     "gyro_bias": 0.002,  # rad/s: 0.1 degree a second, MEMS in-run bias with temperature

@@ -18,12 +18,13 @@ from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed
 from rovval.diagnose.gap import axis_weight
 from rovval.diagnose.problem import Problem, corrected_residuals
-from rovval.diagnose.select import FALSE_ALARM, Named, Selection
-from rovval.diagnose.separate import FEW, form_share, interval
+from rovval.diagnose.select import FALSE_ALARM, LEAST_GAIN, Named, Selection
+from rovval.diagnose.separate import FEW, form_share
 from rovval.diagnose.settle import Point, evidence
+from rovval.diagnose.shrinkage import shrinkage
 from rovval.diagnose.unknown import Forces, bare_forces, forces
 
-BETTER = 0.8  # of a cause's evidence: a generic force that has more is as near to the truth (chosen)
+BETTER = 1.0  # times a cause's evidence: a generic force that has more is nearer to the truth
 ACTING = 0.15  # of what a cause closes: the axes on which it acts
 HARMS = 0.25  # of what causes close in all: a cause that opens more on one axis is the least bad (chosen)
 SKILL = 0.5  # of the squared motion: an axis on which more is left is not simulated at all (chosen)
@@ -67,10 +68,11 @@ def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgem
         excess, strain = _excess(problem, final.point, axes), _strain(final.point)
         outdone = problem.blocks >= FEW and instead > BETTER * total
         skill = problem.blocks < FEW or all(_of_sensor(n) for n in named) or _skill(problem, closed, after)
-        unsure = interval(problem.gap.c, final.dynamic_loss, 0)[1] <= 0 or _harmful(problem, before, after)
-        least_bad = outdone or unsure or not skill or strain > BROKEN or max(beside, excess) > form_share(problem.blocks) * total
+        broken = not skill or strain > BROKEN or _harmful(problem, before, after)
+        least_bad = outdone or broken or max(beside, excess) > form_share(problem.blocks) * total
         if parity_led or not least_bad:
-            remains = (holds and rest.evidence() > max(REAL, REMAINS * total)) or strain > STRAINED
+            sure = _shrinks(problem, final, before, axes) and strain <= STRAINED
+            remains = not sure or (holds and rest.evidence() > max(REAL, REMAINS * total))
             left = _left(problem, rest, final.point) if remains else None
             groups = {n.hypothesis.name: n.group for n in named}
             verdict = "partly_explained" if remains else "explained"
@@ -78,7 +80,8 @@ def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgem
     else:
         total = 0.0
     anything, strain = general.evidence(), _strain(selection.healthy)
-    real = (total > REAL and skill) or (anything > REAL and general.share(problem.folds) > HOLDS) or strain > BROKEN
+    tried = max((worth for _, worth, gain in selection.rounds[0] if gain > LEAST_GAIN), default=0.0) if selection.rounds else 0.0
+    real = (max(total, tried) > REAL and skill) or (anything > REAL and general.share(problem.folds) > HOLDS) or strain > BROKEN
     left = _left(problem, bare_forces(problem), selection.healthy) if real else None
     return Judgement("unknown" if real else "no_gap", (), None, {}, {}, total, anything, anything, strain, left)
 
@@ -92,6 +95,12 @@ def _closed(problem: Problem, before: list[Array], after: list[Array]) -> dict[s
     """What the causes take away of the weighted gap, by axis."""
     was, now = axis_weight(problem, before), axis_weight(problem, after)
     return {axis: max(was[axis] - now[axis], 0.0) for axis in was}
+
+
+def _shrinks(problem: Problem, final: Confirmed, before: list[Array], axes: tuple[str, ...]) -> bool:
+    """Whether the gap surely shrinks on held-out windows, in all or on an axis where the causes act."""
+    shrunk = shrinkage(problem, final, before, 0)
+    return shrunk["low"] > 0 or any(shrunk["axes_interval"][axis]["low"] > 0 for axis in axes if axis in shrunk["axes_interval"])
 
 
 def _harmful(problem: Problem, before: list[Array], after: list[Array]) -> bool:
