@@ -1,8 +1,9 @@
 """The verdict: explained, partly explained, unknown, or no gap. A library effect is not named for being the least bad.
 
-Four questions are asked of what was found. Does it do better than a generic force on the axes where it acts? What would such a force
-still gain beside it? How far must healthy coefficients leave their tolerance so that it fits? And does the simulator follow the
-vehicle there at all? A true cause passes all four; the nearest relative of an effect that the library lacks fails one of them.
+Five questions are asked of what was found. Does it do better than a generic force on the axes where it acts? What would such a force
+still gain beside it? How far must healthy coefficients leave their tolerance so that it fits? Does the simulator follow the vehicle
+there at all? And does no axis get worse by much? A true cause passes all; the nearest relative of an effect that the library lacks
+fails one of them.
 """
 
 from __future__ import annotations
@@ -55,35 +56,54 @@ class Judgement:
 
 def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgement:
     """Weigh what was found against what could have been found; ``before`` are the nominal vehicle's residuals."""
-    named, final, skill = selection.named, selection.final, True
     general = forces(problem, selection.healthy)
-    if named and final:
-        rest, total = forces(problem, final.point), _gained(problem, selection.healthy, final.point)
-        after = corrected_residuals(problem, final.beta)
-        closed = _closed(problem, before, after)
-        axes = _acting(closed)
-        holds = problem.blocks >= FEW and rest.share(problem.folds) > HOLDS
-        beside, instead = rest.evidence(axes) if holds else 0.0, general.evidence(axes)
-        parity_led = float((problem.gap_data.c - problem.gap.c).sum()) > float(problem.gap.c.sum())
-        excess, strain = _excess(problem, final.point, axes), _strain(final.point)
-        outdone = problem.blocks >= FEW and instead > BETTER * total
-        skill = problem.blocks < FEW or all(_of_sensor(n) for n in named) or _skill(problem, closed, after)
-        broken = not skill or strain > BROKEN or _harmful(problem, before, after)
-        least_bad = outdone or broken or max(beside, excess) > form_share(problem.blocks) * total
-        if parity_led or not least_bad:
-            sure = _shrinks(problem, final, before, axes) and strain <= STRAINED
-            remains = not sure or (holds and rest.evidence() > max(REAL, REMAINS * total))
-            left = _left(problem, rest, final.point) if remains else None
-            groups = {n.hypothesis.name: n.group for n in named}
-            verdict = "partly_explained" if remains else "explained"
-            return Judgement(verdict, named, final, groups, {n.hypothesis.name: _probability(n) for n in named}, total, instead, beside, strain, left)
-    else:
-        total = 0.0
+    weighed = _weighed(problem, selection, selection.final, general, before) if selection.final else None
+    if selection.final and weighed and weighed.stands:
+        left = _left(problem, weighed.rest, selection.final.point) if weighed.remains else None
+        groups = {n.hypothesis.name: n.group for n in selection.named}
+        probability = {n.hypothesis.name: _probability(n) for n in selection.named}
+        verdict = "partly_explained" if weighed.remains else "explained"
+        figures = weighed.total, weighed.instead, weighed.beside, weighed.strain
+        return Judgement(verdict, selection.named, selection.final, groups, probability, *figures, left)
+    total, skill = (weighed.total, weighed.skill) if weighed else (0.0, True)
     anything, strain = general.evidence(), _strain(selection.healthy)
     tried = max((worth for _, worth, gain in selection.rounds[0] if gain > LEAST_GAIN), default=0.0) if selection.rounds else 0.0
     real = (max(total, tried) > REAL and skill) or (anything > REAL and general.share(problem.folds) > HOLDS) or strain > BROKEN
     left = _left(problem, bare_forces(problem), selection.healthy) if real else None
     return Judgement("unknown" if real else "no_gap", (), None, {}, {}, total, anything, anything, strain, left)
+
+
+@dataclass(frozen=True, slots=True)
+class _Weighed:
+    """What causes were asked: their evidence, that of generic forces instead and beside them, the strain, whether the simulator follows the
+    vehicle; whether they stand, and whether something remains."""
+
+    total: float
+    instead: float
+    beside: float
+    strain: float
+    skill: bool
+    stands: bool
+    remains: bool
+    rest: Forces
+
+
+def _weighed(problem: Problem, selection: Selection, final: Confirmed, general: Forces, before: list[Array]) -> _Weighed:
+    rest, total = forces(problem, final.point), _gained(problem, selection.healthy, final.point)
+    after, many = corrected_residuals(problem, final.beta), problem.blocks >= FEW
+    closed = _closed(problem, before, after)
+    axes = _acting(closed)
+    holds = many and rest.share(problem.folds) > HOLDS
+    beside, instead = rest.evidence(axes) if holds else 0.0, general.evidence(axes)
+    excess, strain = _excess(problem, final.point, axes), _strain(final.point)
+    skill = not many or all(_of_sensor(n) for n in selection.named) or _skill(problem, closed, after)
+    outdone = many and instead > BETTER * total
+    broken = not skill or strain > BROKEN or _harmful(problem, before, after)
+    least_bad = outdone or broken or max(beside, excess) > form_share(problem.blocks) * total
+    parity_led = float((problem.gap_data.c - problem.gap.c).sum()) > float(problem.gap.c.sum())
+    sure = _shrinks(problem, final, before, axes) and strain <= STRAINED
+    remains = not sure or (holds and rest.evidence() > max(REAL, REMAINS * total))
+    return _Weighed(total, instead, beside, strain, skill, parity_led or not least_bad, remains, rest)
 
 
 def _gained(problem: Problem, healthy: Point, point: Point) -> float:
