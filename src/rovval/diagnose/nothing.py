@@ -1,0 +1,88 @@
+"""What is said where no cause is named: an open gap, what the sensors' own check shows, and what came nearest to a cause."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from rovval.diagnose.phrases import family, value, whole
+from rovval.diagnose.select import LEAST_EVIDENCE
+from rovval.diagnose.tolerance import SENSORS
+
+OPEN = 0.5  # chosen: share of a gap that neither noise nor slop accounts for, from which "no gap" would say too much
+NEAR_GAIN, NEAR_EVIDENCE = 0.3, 2.0  # chosen: what closes as much of the gap, with evidence at all, is told though it is not named
+
+
+def open_gap(document: Mapping[str, Any]) -> bool:
+    """Whether nothing is named and yet most of the gap is neither noise nor slop: not explained is not the same as not there."""
+    found = document.get("detection") or {}
+    known = "slop" in found and "noise" in found
+    return document.get("verdict") == "no_gap" and known and float(1.0 - found["slop"] - found["noise"]) > OPEN
+
+
+def undecided(document: Mapping[str, Any]) -> bool:
+    """Whether nothing is named and yet something was seen: an open gap, an effect that closes more than slop does, a sensor beyond its tolerance."""
+    near, row, slop = _nearest(document), _sensor(document), (document.get("detection") or {}).get("slop") or 0.0
+    seen = (near is not None and near["gain"] > slop) or (row is not None and _tolerances(row) > 1.0)
+    return open_gap(document) or (document.get("verdict") == "no_gap" and seen)
+
+
+def nothing(document: Mapping[str, Any]) -> str:
+    """That no cause is named, and what was seen all the same: what the sensors' own check shows, and what came nearest."""
+    slop = document.get("calibration_slop")
+    known = f"noise and a calibration slop of {100 * slop:g} %" if slop else "noise"
+    sensors, near = _sensors(document), _near(document)
+    if open_gap(document):
+        accounted = whole(document["detection"]["slop"] + document["detection"]["noise"])
+        first = (
+            f"No cause is named, though {known} account for only {accounted} % of the squared gap: no effect of the library and no smooth force "
+            "is shown to close the rest. It may be a disturbance, an effect in events, or motion that this log shows too little of"
+        )
+        sensors = sensors and f". {sensors[0].upper()}{sensors[1:]}"
+    elif near or sensors:
+        first = f"No gap beyond {known} is shown in the simulated motion"
+        sensors = sensors and f"{', but' if undecided(document) else ';'} {sensors}"
+    else:
+        first = f"No gap beyond {known}: no effect of the library explains anything that {'such slop' if slop else 'noise'} does not"
+    return f"{first}{sensors}.{f' {near}.' if near else ''}"
+
+
+def _nearest(document: Mapping[str, Any]) -> Mapping[str, Any] | None:
+    """Of what was weighed first, the best that closes much of the gap and was not named."""
+    rounds = document.get("finalists") or ()
+    if document.get("verdict") != "no_gap" or not rounds:
+        return None
+    near = [r for r in rounds[0] if (r.get("gain") or 0.0) >= NEAR_GAIN and (r.get("evidence") or 0.0) > NEAR_EVIDENCE]
+    return max(near, key=lambda r: float(r["evidence"]), default=None)
+
+
+def _near(document: Mapping[str, Any]) -> str:
+    best, found = _nearest(document), document.get("detection") or {}
+    if best is None:
+        return ""
+    gain, evidence, slop = best["gain"], best["evidence"], found.get("slop") or 0.0
+    short = [f"its evidence of {evidence:.1f} is short of the {LEAST_EVIDENCE:g} asked for"] if evidence < LEAST_EVIDENCE else []
+    short += [f"calibration slop of the stated size explains {whole(slop)} %"] if slop >= gain else []
+    why = ", and ".join(short) or "it does not pass all the checks that a cause must pass"
+    return f"Nearest to a cause, and not shown to be one, is {best['effect']}: by itself it would close {whole(gain)} % of the squared gap, but {why}"
+
+
+def _sensor(document: Mapping[str, Any]) -> Mapping[str, Any] | None:
+    """The significant row of the sensors' own check that accounts for most of it; of several, the one furthest beyond its tolerance."""
+    rows = [r for r in document.get("parity") or () if r.get("significant") and r.get("value") is not None]
+    return max(rows, key=lambda r: (round(r.get("share") or 0.0, 2), _tolerances(r)), default=None)
+
+
+def _sensors(document: Mapping[str, Any]) -> str:
+    row = _sensor(document)
+    if row is None:
+        return ""
+    times, name = _tolerances(row), str(row.get("fault") or row.get("check"))
+    beyond = f", {times:.2g} times its tolerance" if times > 1.0 else ", within its tolerance" if family(name) in SENSORS else ""
+    return f"the sensors' own check, without any dynamics, shows {value(name, row)}{beyond}"
+
+
+def _tolerances(row: Mapping[str, Any]) -> float:
+    """How many tolerances of a healthy sensor a row of the check is off; 0 where none is stated."""
+    tolerance = SENSORS.get(family(str(row.get("fault") or "")))
+    return abs(row["value"]) / tolerance if tolerance else 0.0
