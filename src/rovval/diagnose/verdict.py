@@ -9,14 +9,14 @@ fails one of them.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rovval import effects
 from rovval.channels import AXES
 from rovval.data import Array
-from rovval.diagnose.confirm import Confirmed
+from rovval.diagnose.confirm import Confirmed, roughly
 from rovval.diagnose.gap import axis_weight
 from rovval.diagnose.problem import Problem, corrected_residuals
 from rovval.diagnose.select import FALSE_ALARM, LEAST_GAIN, Named, Selection
@@ -58,7 +58,10 @@ def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgem
     """Weigh what was found against what could have been found; ``before`` are the nominal vehicle's residuals."""
     general = forces(problem, selection.healthy)
     weighed = _weighed(problem, selection, selection.final, general, before) if selection.final else None
-    if selection.final and weighed and weighed.stands:
+    if selection.final and weighed and weighed.parity_led and weighed.least_bad:
+        selection = _sensors_alone(problem, selection, selection.final)
+        weighed = replace(weighed, remains=True)
+    if selection.final and weighed and (weighed.parity_led or not weighed.least_bad):
         left = _left(problem, weighed.rest, selection.final.point) if weighed.remains else None
         groups = {n.hypothesis.name: n.group for n in selection.named}
         probability = {n.hypothesis.name: _probability(n) for n in selection.named}
@@ -76,14 +79,15 @@ def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgem
 @dataclass(frozen=True, slots=True)
 class _Weighed:
     """What causes were asked: their evidence, that of generic forces instead and beside them, the strain, whether the simulator follows the
-    vehicle; whether they stand, and whether something remains."""
+    vehicle; whether kinematics carry most of the gap, whether they are only the least bad, and whether something remains."""
 
     total: float
     instead: float
     beside: float
     strain: float
     skill: bool
-    stands: bool
+    parity_led: bool
+    least_bad: bool
     remains: bool
     rest: Forces
 
@@ -103,7 +107,18 @@ def _weighed(problem: Problem, selection: Selection, final: Confirmed, general: 
     parity_led = float((problem.gap_data.c - problem.gap.c).sum()) > float(problem.gap.c.sum())
     sure = _shrinks(problem, final, before, axes) and strain <= STRAINED
     remains = not sure or (holds and rest.evidence() > max(REAL, REMAINS * total))
-    return _Weighed(total, instead, beside, strain, skill, parity_led or not least_bad, remains, rest)
+    return _Weighed(total, instead, beside, strain, skill, parity_led, least_bad, remains, rest)
+
+
+def _sensors_alone(problem: Problem, selection: Selection, final: Confirmed) -> Selection:
+    """Where kinematics carry most of the gap they vouch for faults of sensors, not for what else was found beside them."""
+    kept = tuple(n for n in selection.named if _of_sensor(n))
+    if not kept or len(kept) == len(selection.named):
+        return selection
+    slots = tuple(s for n in kept for s in n.hypothesis.slots)
+    start = problem.origin.copy()
+    start[list(slots)] = final.beta[list(slots)]
+    return replace(selection, named=kept, final=roughly(problem, start, slots, final.point.linear))
 
 
 def _gained(problem: Problem, healthy: Point, point: Point) -> float:
@@ -172,7 +187,8 @@ def _left(problem: Problem, left: Forces, point: Point) -> dict[str, object]:
     share = left.share(problem.folds)
     text = f"a systematic force on {', '.join(axes)}"
     text += f" that varies with {', '.join(depends)}" if depends else ""
-    text += f" would close {100 * share:.0f} % of it; no effect of the library is it" if share > 0 else " is at work; no effect of the library is it"
+    text += f" would close {100 * share:.0f} % of it" if share >= 0.005 else " is at work"
+    text += "; no effect of the library is shown to be it"
     strained = [(problem.plant.slots[c].key, z) for c, z in zip(point.columns[point.own :], point.sigmas(), strict=True) if abs(z) > STRAINED]
     if strained:
         name, z = max(strained, key=lambda item: abs(item[1]))
