@@ -200,6 +200,12 @@ def make_diagnosis() -> dict[str, Any]:
                 "note": "little vertical motion",
             },
         ],
+        "disturbance": {
+            "surge": {"rms": 0.18, "unit": "N", "memory_s": 1.5},
+            "sway": {"rms": 4.0, "unit": "N", "memory_s": 0.62},
+            "heave": {"rms": 0.0, "unit": "N", "memory_s": 0.0},
+            "yaw": {"rms": 0.012, "unit": "N m", "memory_s": 2.0},
+        },
         "harm": [{"axis": "yaw", "change": 0.08}],
         "left": {"axes": ["yaw"], "depends_on": ["turn rate"], "text": "0.9 deg/s rms in yaw that grows with the turn rate"},
         "manoeuvre": {

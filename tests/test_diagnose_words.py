@@ -28,6 +28,17 @@ def test_a_gap_that_nothing_accounts_for_is_not_called_none(noise, slop, still_o
     assert ("is neither noise nor slop" in page) is still_open and "</i>with the effects found" not in page
 
 
+def test_an_open_gap_may_be_what_pushed_unlogged():
+    """The largest force and the largest moment; a document that knows of none says only that it may be."""
+    d = null(0.04, 0.26)
+    assert "a disturbance that nobody logged (the fit allows for some, largest: sway 4 N and yaw 0.012 N m rms), an effect" in sentence(d)
+    d["disturbance"] = {"surge": {"rms": 1234.5, "unit": "N", "memory_s": 1.0}, "yaw": {"rms": 0.0, "unit": "N m", "memory_s": 0.0}}
+    assert "largest: surge 1234 N rms)" in sentence(d)
+    for old in (d | {"disturbance": {}}, {k: v for k, v in d.items() if k != "disturbance"}):
+        assert "It may be a disturbance, an effect in events" in sentence(old)
+    assert "nobody logged" not in sentence(null(0.9, 0.0))
+
+
 def weighed(gain: float, evidence: float) -> dict[str, Any]:
     return {"finalists": [[{"effect": "inflow_loss", "gain": gain, "evidence": evidence}, {"effect": "waves", "gain": 0.1, "evidence": 9.0}]]}
 

@@ -39,6 +39,18 @@ def test_every_format_gives_the_answer() -> None:
         assert diagnosis_words.SCOPE in text and diagnosis_words.SQUARED in text
 
 
+def test_what_pushed_unlogged_is_one_line_and_silent_where_nothing_was_fitted() -> None:
+    d = make_diagnosis()
+    surge, yaw = "the fit allows for, rms: surge 0.18 N (forgotten in 1.5 s), sway 4.0 N", "yaw 0.012 N m (forgotten in 2.0 s)."
+    for text in formats(d):
+        said = " ".join(text.split())
+        assert surge in said and yaw in said and "heave 0 N" not in said
+    for row in d["disturbance"].values():
+        row |= {"rms": 0.0, "memory_s": 0.0}
+    for old in (d, {k: v for k, v in d.items() if k != "disturbance"}):
+        assert not any("Unlogged" in text for text in formats(old))
+
+
 def test_the_sentence_of_the_engine_comes_first() -> None:
     d = make_diagnosis() | {"sentence": "Surge is 0.07 m/s too fast because of inflow loss."}
     assert diagnosis_words.sentences(d)[0] == d["sentence"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from rovval.diagnose.phrases import family, value, whole
+from rovval.diagnose.phrases import family, size, value, whole
 from rovval.diagnose.select import LEAST_EVIDENCE
 from rovval.diagnose.tolerance import SENSORS
 
@@ -36,7 +36,7 @@ def nothing(document: Mapping[str, Any]) -> str:
         accounted = whole(document["detection"]["slop"] + document["detection"]["noise"])
         first = (
             f"No cause is named, though {known} account for only {accounted} % of the squared gap: no effect of the library and no smooth force "
-            "is shown to close the rest. It may be a disturbance, an effect in events, or motion that this log shows too little of"
+            f"is shown to close the rest. It may be a disturbance{_largest(document)}, an effect in events, or motion that this log shows too little of"
         )
         sensors = sensors and f". {sensors[0].upper()}{sensors[1:]}"
     elif near or sensors:
@@ -45,6 +45,14 @@ def nothing(document: Mapping[str, Any]) -> str:
     else:
         first = f"No gap beyond {known}: no effect of the library explains anything that {'such slop' if slop else 'noise'} does not"
     return f"{first}{sensors}.{f' {near}.' if near else ''}"
+
+
+def _largest(document: Mapping[str, Any]) -> str:
+    """The largest force and the largest moment that nobody logged, as the fits allow for them; the two units do not compare."""
+    rows = [(axis, p) for axis, p in (document.get("disturbance") or {}).items() if (p.get("rms") or 0.0) > 0.0]
+    most = [max(same, key=lambda row: float(row[1]["rms"])) for unit in ("N", "N m") if (same := [row for row in rows if row[1]["unit"] == unit])]
+    said = " and ".join(f"{axis} {size(p['rms'])} {p['unit']}" for axis, p in most)
+    return f" that nobody logged (the fit allows for some, largest: {said} rms)" if said else ""
 
 
 def _nearest(document: Mapping[str, Any]) -> Mapping[str, Any] | None:

@@ -30,6 +30,11 @@ def whole(share: float) -> str:
     return str(round(100 * share))
 
 
+def size(amount: float) -> str:
+    """Two digits that mean something, and no exponent for a large vehicle's forces."""
+    return f"{amount:.0f}" if amount >= 100.0 else f"{amount:.2g}"
+
+
 def family(name: str) -> str:
     """An effect's name without its target."""
     return name.partition(".")[0].partition("[")[0]

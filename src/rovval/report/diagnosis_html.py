@@ -12,6 +12,7 @@ from rovval.report import diagnosis_parts as parts
 from rovval.report import diagnosis_words as dw
 from rovval.report import page, plots, tried
 from rovval.report.json import versions
+from rovval.report.unlogged import disturbances
 from rovval.report.untestable import not_testable
 from rovval.report.words import number, per_cent, quantity
 from rovval.units import in_degrees
@@ -84,11 +85,11 @@ def _answers(d: dw.Document) -> dict[str, tuple[str, str]]:
 
 
 def _where(d: dw.Document) -> str:
-    """Axis by axis, axis by regime, the slices in words, and the times at which the gap changes."""
+    """Axis by axis, axis by regime, the slices in words, the times at which the gap changes, and what pushed unlogged."""
     points = ", ".join(f"{number(t, 4)} s" for t in (d.get("gap") or {}).get("change_points_s") or ())
     changes = _paragraph(f"The gap changes at {points}." if points else "")
     title = _WHERE.get(d.get("verdict", ""), "Where the gap lies")
-    return page.section(title, _axes(d), parts.heat_maps(d), page.listing(dw.where(d)), changes)
+    return page.section(title, _axes(d), parts.heat_maps(d), page.listing(dw.where(d)), changes, _paragraph(disturbances(d)))
 
 
 def _axes(d: dw.Document) -> str:

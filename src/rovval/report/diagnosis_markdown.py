@@ -8,6 +8,7 @@ from rovval.diagnose.words import chance, moved
 from rovval.report import diagnosis_words as dw
 from rovval.report.markdown import bullets, grid
 from rovval.report.tried import rounds
+from rovval.report.unlogged import disturbances
 from rovval.report.untestable import not_testable
 from rovval.report.words import number, per_cent
 from rovval.units import in_degrees
@@ -21,7 +22,7 @@ def text(document: dw.Document) -> str:
     parts = [f"# {dw.run(d)}: diagnosis", f"> **SYNTHETIC DATA: {d['synthetic']}**" if d.get("synthetic") else ""]
     said = dw.headline(d)
     parts += [f"**{said[0]}**", *said[1:], bullets(f"{k}: {v}" for k, v in dw.facts(d).items() if v)]
-    parts += _under("## Where the gap lies", _axes(d), bullets(dw.where(d, 99)), _changes(d))
+    parts += _under("## Where the gap lies", _axes(d), bullets(dw.where(d, 99)), _changes(d), disturbances(d))
     for cause in d.get("causes") or ():
         parts += _under(f"## Cause: {' or '.join(f'`{e}`' for e in dw.group(cause))}", *_cause(cause, (d.get("gap") or {}).get("axes") or {}))
     for title, rows in rounds(d):

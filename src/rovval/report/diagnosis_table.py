@@ -8,6 +8,7 @@ from textwrap import wrap
 from rovval.diagnose.words import chance, moved
 from rovval.report import diagnosis_words as dw
 from rovval.report.tried import rounds
+from rovval.report.unlogged import disturbances
 from rovval.report.untestable import not_testable
 from rovval.report.words import number, per_cent
 from rovval.units import in_degrees
@@ -21,6 +22,7 @@ def text(document: dw.Document) -> str:
     for sentence in dw.sentences(d):
         parts += wrap(sentence, 100)
     parts += _block("gap by axis", _axes(d)) + _block("where", dw.where(d))
+    parts += ["", *wrap(pushed, 100)] if (pushed := disturbances(d)) else []
     for cause in d.get("causes") or ():
         parts += _block("cause: " + " | ".join(dw.group(cause)), _cause(cause))
     checks = [c for c in d.get("parity") or () if c.get("significant")]
