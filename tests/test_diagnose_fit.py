@@ -35,7 +35,7 @@ def test_planted_parameters_come_back():
     assert all(row["low"] < row["value"] < row["high"] and row["differs"] for row in rows.values())
     assert list(seen) == sorted(seen)
     assert done.document["shrinkage"]["low"] > 0.6
-    assert "[" in done.text and "held-out" in done.text
+    assert "The squared gap shrinks by" in done.text and "[" in done.text and "held-out" in done.text
 
 
 def test_the_written_vehicle_closes_the_gap_in_compare():

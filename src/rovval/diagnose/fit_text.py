@@ -11,7 +11,7 @@ def text(document: dict[str, Any]) -> str:
     lines = [f"{document['run']}: {document['vehicle']}, model {document['model']}, {document['windows']} windows of {document['window_s']:g} s"]
     if rows:
         lines.append(
-            f"The gap shrinks by {100 * shrunk['total']:.0f} % [{100 * shrunk['low']:.0f}, {100 * shrunk['high']:.0f}] on held-out windows with "
+            f"The squared gap shrinks by {100 * shrunk['total']:.0f} % [{100 * shrunk['low']:.0f}, {100 * shrunk['high']:.0f}] on held-out windows with "
             f"{len(rows)} parameter{'s' if len(rows) > 1 else ''} tuned."
         )
         width = max(map(len, rows))
@@ -23,7 +23,7 @@ def text(document: dict[str, Any]) -> str:
     if document["undetermined"]:
         lines += ["", "These logs cannot determine (left as they were):", *(f"  {u['parameter']}: {u['why']}" for u in document["undetermined"])]
     if document["harm"]:
-        lines += ["", "Worse with it: " + ", ".join(f"{h['axis']} by {100 * h['change']:.0f} %" for h in document["harm"]) + "."]
+        lines += ["", "Worse with it, in squared error: " + ", ".join(f"{h['axis']} by {100 * h['change']:.0f} %" for h in document["harm"]) + "."]
     if rows and shrunk["low"] <= 0:
         lines += ["", "Not shown to be better on held-out windows: use fewer parameters, shorter windows or more logs before using this vehicle."]
     lines += [f"Left out: {why}" for why in document["left_out"]]
