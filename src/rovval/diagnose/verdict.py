@@ -25,7 +25,7 @@ from rovval.diagnose.settle import Point, evidence
 from rovval.diagnose.shrinkage import shrinkage
 from rovval.diagnose.unknown import Forces, bare_forces, forces
 
-BETTER = 1.0  # times a cause's evidence: a generic force that has more is nearer to the truth
+BETTER = 0.9  # of a cause's evidence: a generic force that has more is as near to the truth (chosen)
 ACTING = 0.15  # of what a cause closes: the axes on which it acts
 HARMS = 0.25  # of what causes close in all: a cause that opens more on one axis is the least bad (chosen)
 SKILL = 0.5  # of the squared motion: an axis on which more is left is not simulated at all (chosen)
@@ -100,8 +100,9 @@ def _weighed(problem: Problem, selection: Selection, final: Confirmed, general: 
     holds = many and rest.share(problem.folds) > HOLDS
     beside, instead = rest.evidence(axes) if holds else 0.0, general.evidence(axes)
     excess, strain = _excess(problem, final.point, axes), _strain(final.point)
-    skill = not many or all(_of_sensor(n) for n in selection.named) or _skill(problem, closed, after)
-    outdone = many and instead > BETTER * total
+    sensors = all(_of_sensor(n) for n in selection.named)  # a force imitates a bias of the sensor that shows what it does
+    skill = not many or sensors or _skill(problem, closed, after)
+    outdone = many and not sensors and instead > BETTER * total
     broken = not skill or strain > BROKEN or _harmful(problem, before, after)
     least_bad = outdone or broken or max(beside, excess) > form_share(problem.blocks) * total
     parity_led = float((problem.gap_data.c - problem.gap.c).sum()) > float(problem.gap.c.sum())
