@@ -24,6 +24,7 @@ from rovval.diagnose.settle import Point, settle
 
 MOST = 3  # effects at once
 FALSE_ALARM = 0.05  # family-wise, over the whole library
+PLAIN = 20.0  # twice the log Bayes factor that needs no p-value: where a strong effect is left of the log, null draws hold some of it
 NEEDLESS = 6.0  # twice the log Bayes factor below which an effect is dropped again (Kass & Raftery 1995: positive evidence)
 LEAST_GAIN = 0.06  # of the gap, on held-out windows: less is not worth a name
 LATER_GAIN = 0.10  # of what is left, the same for a second and third effect: the forms of equations alone leave structure of this size
@@ -71,7 +72,7 @@ def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Cal
         open_now = [h for h in library if h.name not in {n.hypothesis.name for n in named}]
         detection = _detect(problem, data, open_now, chosen, seed + round_number)
         p, last, null = detection.p_value(detection.best), detection.evidence[detection.best], float(np.quantile(detection.null, 0.95))
-        if p > FALSE_ALARM or last < PROMISING * LEAST_EVIDENCE:
+        if last < PROMISING * LEAST_EVIDENCE or (p > FALSE_ALARM and last < PLAIN):
             break
         progress("re-simulating the finalists", 0.4 + 0.2 * round_number)
         weighed = finalists(problem, data, open_now, detection, base, chosen, loss)

@@ -19,7 +19,7 @@ from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed, roughly
 from rovval.diagnose.gap import axis_weight
 from rovval.diagnose.problem import Problem, corrected_residuals
-from rovval.diagnose.select import FALSE_ALARM, LEAST_GAIN, Named, Selection
+from rovval.diagnose.select import FALSE_ALARM, Named, Selection
 from rovval.diagnose.separate import FEW, form_share
 from rovval.diagnose.settle import Point, evidence
 from rovval.diagnose.shrinkage import shrinkage
@@ -70,7 +70,7 @@ def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgem
         return Judgement(verdict, selection.named, selection.final, groups, probability, *figures, left)
     total, skill = (weighed.total, weighed.skill) if weighed else (0.0, True)
     anything, strain = general.evidence(), _strain(selection.healthy)
-    tried = max((worth for _, worth, gain in selection.rounds[0] if gain > LEAST_GAIN), default=0.0) if selection.rounds else 0.0
+    tried = max((worth if gain > 0 else worth / 3 for _, worth, gain in selection.rounds[0]), default=0.0) if selection.rounds else 0.0
     real = (max(total, tried) > REAL and skill) or (anything > REAL and general.share(problem.folds) > HOLDS) or strain > BROKEN
     left = _left(problem, bare_forces(problem), selection.healthy) if real else None
     return Judgement("unknown" if real else "no_gap", (), None, {}, {}, total, anything, anything, strain, left)
