@@ -24,10 +24,10 @@ from rovval.simulate import carried_effects
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """``parts`` one per run; ``origin`` (k,) the parameters it starts from; ``variance`` (n, c); ``at_null`` the linearisation
-    and ``dynamic`` and ``data`` the products (without and with parity) at the nominal vehicle, ``gap`` and ``gap_data`` the same in the metric
-    in which the gap is told, with no disturbance taken out; ``inflation`` the design effect of autocorrelated residuals; ``disturbance``
-    what pushed the vehicle that nobody logged."""
+    """``parts`` one per run; ``origin`` (k,) the parameters it starts from; ``at_null`` the linearisation at the nominal vehicle, ``dynamic`` and
+    ``data`` the products there (without and with parity) in the metric of ``white`` (n, c) and disturbances, ``gap`` and ``gap_data`` the same in
+    that of ``variance`` (n, c), in which the gap is told and no disturbance taken out; ``inflation`` the design effect of autocorrelated
+    residuals; ``disturbance`` what pushed the vehicle that nobody logged."""
 
     parts: tuple[Stretches, ...]
     origin: Array
