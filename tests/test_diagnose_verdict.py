@@ -13,9 +13,10 @@ from rovval import vehicle
 from rovval.data import Run
 from rovval.diagnose import diagnose
 from rovval.diagnose.library import hypotheses
+from rovval.diagnose.point import evidence
 from rovval.diagnose.problem import Problem, pose
 from rovval.diagnose.separate import FORM, MOST_FORM, form_share
-from rovval.diagnose.settle import evidence, settle
+from rovval.diagnose.settle import settle
 from rovval.diagnose.steadied import discount, gains, loop_gain, loosened
 from rovval.diagnose.stretches import cut, cut_all
 from rovval.diagnose.tolerance import slop_prior

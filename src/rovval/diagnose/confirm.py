@@ -14,8 +14,9 @@ from scipy import stats
 from rovval.data import Array
 from rovval.diagnose.contest import Fold, losses
 from rovval.diagnose.linearise import Linear
+from rovval.diagnose.point import Point, evidence
 from rovval.diagnose.problem import Problem, gap_at
-from rovval.diagnose.settle import Point, evidence, moved, settle
+from rovval.diagnose.settle import moved, settle
 
 INTERVAL = 0.90
 ROUGH = 3  # rounds

@@ -9,10 +9,11 @@ from rovval.diagnose.confirm import Confirmed, confirm, roughly, significance
 from rovval.diagnose.contest import Prior, step
 from rovval.diagnose.detect import Detection
 from rovval.diagnose.library import PRIOR_WIDTH, Hypothesis
+from rovval.diagnose.point import Point, evidence
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import Products
 from rovval.diagnose.separate import PER_PARAMETER, Rival, alike, coherence, form_share
-from rovval.diagnose.settle import Point, evidence, stays
+from rovval.diagnose.settle import stays
 
 FINALISTS = 10  # hypotheses that are re-simulated in a round
 SCREENED = 0.15  # of the best linear evidence: less is not re-simulated

@@ -17,10 +17,11 @@ from rovval.diagnose.contest import Prior, Ring, contest, fit
 from rovval.diagnose.detect import Detection, detect
 from rovval.diagnose.finalists import admissible, finalists, freed, prior_of, sharpened, simplest
 from rovval.diagnose.library import Hypothesis
+from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem, at, columns_of
 from rovval.diagnose.products import Products
 from rovval.diagnose.separate import group
-from rovval.diagnose.settle import Point, settle
+from rovval.diagnose.settle import settle
 
 MOST = 3  # effects at once
 FALSE_ALARM = 0.05  # family-wise, over the whole library

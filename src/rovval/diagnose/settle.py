@@ -7,86 +7,22 @@ tolerances, small and nearly linear, stay in the tangent.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from rovval import effects
 from rovval.data import Array
-from rovval.diagnose.contest import losses
 from rovval.diagnose.library import PRIOR_WIDTH
 from rovval.diagnose.linearise import Linear, linearise
+from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem, beside, carried, products_about
-from rovval.diagnose.products import Products
 from rovval.plant import Plant
 
 ROUNDS = 5
 LITTLE = 1.0  # twice the log posterior: a smaller gain is not worth another step
 FAR, ANEW = 10.0, 2  # the same, from which slop's slopes are made anew, and how often at most
 SHORTER = (1.0, 0.4, 0.1)  # shares of the Gauss-Newton step that are tried
-
-
-@dataclass(frozen=True, slots=True)
-class Point:
-    """Parameters ``beta`` (k,), slop moved; ``columns`` the ``own`` slots of the effects, then slop; the linearisation and its products there;
-    ``precision`` of each column's prior, ``offset`` from where that stands, ``side``: -1 and 1 on a lower and upper bound, else 0, and
-    ``still``: which columns stay in the tangent."""
-
-    beta: Array
-    columns: tuple[int, ...]
-    own: int
-    linear: tuple[Linear, ...]
-    dynamic: Products
-    data: Products
-    precision: Array
-    offset: Array
-    side: Array
-    still: np.ndarray
-
-    @property
-    def slope(self) -> Array:
-        """Descent of loss and prior along each column."""
-        return np.asarray(self.data.b.sum(axis=0) - self.precision * self.offset)
-
-    @property
-    def curvature(self) -> Array:
-        """Second derivative of loss and prior."""
-        return np.asarray(self.data.A.sum(axis=0) + np.diag(self.precision))
-
-    def cost(self) -> float:
-        """Loss and prior here, what stays in the tangent at its best."""
-        return self._below(self.still)
-
-    def profile(self) -> float:
-        """Loss and prior once one more linear step of every column is taken."""
-        return self._below(np.ones(len(self.columns), dtype=bool))
-
-    def step(self, which: np.ndarray) -> Array:
-        """Gauss-Newton step (len(columns),) that the windows ``which`` ask for."""
-        slope = self.data.b[which].sum(axis=0) - self.precision * self.offset
-        return self.solved(self.data.A[which].sum(axis=0) + np.diag(self.precision), slope)
-
-    def solved(self, H: Array, slope: Array, among: np.ndarray | None = None) -> Array:
-        """H^-1 slope for the columns that are free to go that way; columns pushed against a bound stay."""
-        free = (self.side * slope <= 0) if among is None else (self.side * slope <= 0) & among
-        step = np.zeros(len(slope))
-        step[free] = np.linalg.solve(H[np.ix_(free, free)], slope[free])
-        return step
-
-    def sigmas(self) -> Array:
-        """Departure of each slop column in standard deviations of its tolerance, one linear step ahead."""
-        step = self.solved(self.curvature, self.slope)
-        return np.asarray((self.offset + step)[self.own :] * np.sqrt(self.precision[self.own :]))
-
-    def left(self) -> Array:
-        """Loss of the dynamics per window (m,), what stays in the tangent at its best."""
-        step = self.solved(self.curvature, self.slope, self.still)
-        return losses(self.dynamic, np.arange(len(step)), step, np.ones(len(self.dynamic.c), dtype=bool))
-
-    def _below(self, among: np.ndarray) -> float:
-        slope = self.slope
-        whole = float(self.data.c.sum()) + float((self.precision * self.offset**2).sum())
-        return whole - float(slope @ self.solved(self.curvature, slope, among))
 
 
 def settle(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[Linear, ...] | None = None, rounds: int = ROUNDS) -> Point:
@@ -127,21 +63,6 @@ def moved(problem: Problem, point: Point, slot: int, value: float) -> Point:
     beta = point.beta.copy()
     beta[slot] = value
     return _about(problem, beta, point.columns, point.own, point.linear)
-
-
-def evidence(problem: Problem, point: Point, counts: Array) -> Array:
-    """Twice the log evidence (d,) of a point on windows weighted by ``counts`` (d, m), over the vehicle as it is (Laplace; MacKay 1992)."""
-    found = np.empty(len(counts))
-    k = len(point.columns)
-    flat = point.data.A.reshape(len(point.data.A), -1)
-    volume = -float(np.log(point.precision).sum())
-    pull = point.precision * point.offset
-    for i, count in enumerate(counts):
-        H = (count @ flat).reshape(k, k) + np.diag(point.precision)
-        slope = count @ point.data.b - pull
-        loss = float(count @ point.data.c) + float(pull @ point.offset) - float(slope @ point.solved(H, slope))
-        found[i] = (float(count @ problem.data.c) - loss) / problem.inflation - (np.linalg.slogdet(H)[1] + volume)
-    return found
 
 
 def stays(plant: Plant) -> frozenset[int]:

@@ -17,9 +17,9 @@ from rovval.data import Array
 from rovval.diagnose.contest import Fold, Prior, heldout
 from rovval.diagnose.forced import generic
 from rovval.diagnose.linearise import Linear, spread
+from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import Products, joined, products
-from rovval.diagnose.settle import Point
 
 SHARES = (0.01, 0.1, 1.0)  # prior sizes tried for a generic force, as a share of the thrusters' own rms on that axis
 

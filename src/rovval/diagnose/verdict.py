@@ -18,10 +18,10 @@ from rovval.channels import AXES
 from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed, roughly
 from rovval.diagnose.gap import axis_weight
+from rovval.diagnose.point import Point, evidence
 from rovval.diagnose.problem import Problem, corrected_residuals
 from rovval.diagnose.select import FALSE_ALARM, Named, Selection
 from rovval.diagnose.separate import FEW, form_share
-from rovval.diagnose.settle import Point, evidence
 from rovval.diagnose.shrinkage import shrinkage
 from rovval.diagnose.unknown import Forces, bare_forces, forces
 
