@@ -105,7 +105,8 @@ def _weighed(problem: Problem, selection: Selection, final: Confirmed, general: 
     outdone = many and not sensors and instead > BETTER * total
     broken = not skill or strain > BROKEN or _harmful(problem, before, after)
     least_bad = outdone or broken or max(beside, excess) > form_share(problem.blocks) * total
-    parity_led = float((problem.gap_data.c - problem.gap.c).sum()) > float(problem.gap.c.sum())
+    kinematic = float((problem.gap_data.c - problem.gap.c).sum()) > float(problem.gap.c.sum())
+    parity_led = kinematic and any(_of_sensor(n) for n in selection.named)
     sure = _shrinks(problem, final, before, axes) and strain <= STRAINED
     remains = not sure or (holds and rest.evidence() > max(REAL, REMAINS * total))
     return _Weighed(total, instead, beside, strain, skill, parity_led, least_bad, remains, rest)
