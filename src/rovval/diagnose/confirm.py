@@ -14,7 +14,7 @@ from scipy import stats
 from rovval.data import Array
 from rovval.diagnose.contest import Fold, losses
 from rovval.diagnose.linearise import Linear
-from rovval.diagnose.point import Point, evidence
+from rovval.diagnose.point import Point, whole_evidence
 from rovval.diagnose.problem import Problem, gap_at
 from rovval.diagnose.settle import moved, settle
 
@@ -68,7 +68,7 @@ def _scored(problem: Problem, point: Point, slots: tuple[int, ...]) -> Confirmed
     loss, dynamic_loss = data.c.copy(), dynamic.c.copy()
     bounds = [(problem.plant.slots[s].parameter.low, problem.plant.slots[s].parameter.high) for s in slots]
     resting = tuple(s for s, (low, high) in zip(slots, bounds, strict=True) if not low < beta[s] < high and (low, high) != (0.0, 1.0))
-    found = float(evidence(problem, point, np.ones((1, problem.blocks)))[0])
+    found = whole_evidence(problem, point)
     fitted = Confirmed(slots, beta, point, found, loss, dynamic_loss, resting)
     for fold, step in held_steps(problem, fitted):
         loss[fold.test] = losses(data, own, step, fold.test)

@@ -9,7 +9,7 @@ from rovval.diagnose.confirm import Confirmed, confirm, roughly, significance
 from rovval.diagnose.contest import Prior, step
 from rovval.diagnose.detect import Detection
 from rovval.diagnose.library import PRIOR_WIDTH, Hypothesis
-from rovval.diagnose.point import Point, evidence
+from rovval.diagnose.point import Point, whole_evidence
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import Products
 from rovval.diagnose.separate import PER_PARAMETER, Rival, alike, coherence, form_share
@@ -72,7 +72,7 @@ def sharpened(problem: Problem, rivals: list[Rival], base: Point, loss: Losses) 
 def _weighed(problem: Problem, fitted: list[tuple[Hypothesis, Confirmed]], base: Point, loss: Losses) -> list[Rival]:
     """Finalists with what they add to what stands: evidence over slop, and the share that they close of what is left of the gap, with or
     without the kinematic checks, whichever is more."""
-    ground = float(evidence(problem, base, np.ones((1, problem.blocks)))[0])
+    ground = whole_evidence(problem, base)
     rivals = [
         Rival(h, c, c.evidence - ground, max(float((was - now).sum() / was.sum()) for was, now in zip(loss, (c.loss, c.dynamic_loss), strict=True)))
         for h, c in fitted

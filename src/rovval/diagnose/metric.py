@@ -47,11 +47,11 @@ def metric(
     early = joined_of(parts, linear, first, state_spread)
     inflation = inflation_of(early, fit(Ring.of(early, folds), everything, 10.0).step)
     best = fit(Ring.of(early, folds), everything, inflation).step[: len(columns)]
-    white = first + _unexplained(parts, linear, first, np.concatenate([best, np.zeros(linear[0].S.shape[-1] - len(best))]))
+    plain = tuple(replace(one, S=one.S[..., : len(columns)], columns=columns) for one in linear)
+    white = first + _unexplained(parts, plain, first, best)
     variance = white * steadied
     if sum(part.count for part in parts) < ENOUGH:
         return Metric(parts, linear, variance, variance, _inflation(parts, linear, variance, everything, folds, inflation)[0], calm())
-    plain = tuple(replace(one, S=one.S[..., : len(columns)], columns=columns) for one in linear)
     to = answers(parts, origin)
     pushed = undisturbed(to)
     for _ in range(PASSES):

@@ -89,3 +89,8 @@ def evidence(problem: Problem, point: Point, counts: Array) -> Array:
         loss = float(count @ point.data.c) + float(pull @ point.offset) - float(slope @ point.solved(H, slope))
         found[i] = (float(count @ problem.data.c) - loss) / problem.inflation - (np.linalg.slogdet(H)[1] + volume)
     return found
+
+
+def whole_evidence(problem: Problem, point: Point) -> float:
+    """Evidence of a point on every window once."""
+    return float(evidence(problem, point, np.ones((1, problem.blocks)))[0])

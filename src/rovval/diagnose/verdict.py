@@ -18,7 +18,7 @@ from rovval.channels import AXES
 from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed, roughly
 from rovval.diagnose.gap import axis_weight
-from rovval.diagnose.point import Point, evidence
+from rovval.diagnose.point import Point, whole_evidence
 from rovval.diagnose.problem import Problem, corrected_residuals
 from rovval.diagnose.select import FALSE_ALARM, Named, Selection
 from rovval.diagnose.separate import FEW, form_share
@@ -93,17 +93,19 @@ class _Weighed:
 
 
 def _weighed(problem: Problem, selection: Selection, final: Confirmed, general: Forces, before: list[Array]) -> _Weighed:
-    rest, total = forces(problem, final.point), _gained(problem, selection.healthy, final.point)
+    rest, total = forces(problem, final.point), whole_evidence(problem, final.point) - whole_evidence(problem, selection.healthy)
     after, many = corrected_residuals(problem, final.beta), problem.blocks >= FEW
-    closed = _closed(problem, before, after)
+    was, now = axis_weight(problem, before), axis_weight(problem, after)
+    closed = {axis: max(was[axis] - now[axis], 0.0) for axis in was}  # of the weighted gap
+    harmful = max(now[axis] - was[axis] for axis in was) > HARMS * (sum(was.values()) - sum(now.values()))
     axes = _acting(closed)
     holds = many and rest.share(problem.folds) > HOLDS
     beside, instead = rest.evidence(axes) if holds else 0.0, general.evidence(axes)
     excess, strain = _excess(problem, final.point, axes), _strain(final.point)
     sensors = all(_of_sensor(n) for n in selection.named)  # a force imitates a bias of the sensor that shows what it does
-    skill = not many or sensors or _skill(problem, closed, after)
+    skill = not many or sensors or _skill(problem, closed, now)
     outdone = many and not sensors and instead > BETTER * total
-    broken = not skill or strain > BROKEN or _harmful(problem, before, after)
+    broken = not skill or strain > BROKEN or harmful
     least_bad = outdone or broken or max(beside, excess) > form_share(problem.blocks) * total
     kinematic = float((problem.gap_data.c - problem.gap.c).sum()) > float(problem.gap.c.sum())
     parity_led = kinematic and any(_of_sensor(n) for n in selection.named)
@@ -123,27 +125,10 @@ def _sensors_alone(problem: Problem, selection: Selection, final: Confirmed) -> 
     return replace(selection, named=kept, final=roughly(problem, start, slots, final.point.linear))
 
 
-def _gained(problem: Problem, healthy: Point, point: Point) -> float:
-    ones = np.ones((1, problem.blocks))
-    return float(evidence(problem, point, ones)[0] - evidence(problem, healthy, ones)[0])
-
-
-def _closed(problem: Problem, before: list[Array], after: list[Array]) -> dict[str, float]:
-    """What the causes take away of the weighted gap, by axis."""
-    was, now = axis_weight(problem, before), axis_weight(problem, after)
-    return {axis: max(was[axis] - now[axis], 0.0) for axis in was}
-
-
 def _shrinks(problem: Problem, final: Confirmed, before: list[Array], axes: tuple[str, ...]) -> bool:
     """Whether the gap surely shrinks on held-out windows, in all or on an axis where the causes act."""
     shrunk = shrinkage(problem, final, before, 0)
     return shrunk["low"] > 0 or any(shrunk["axes_interval"][axis]["low"] > 0 for axis in axes if axis in shrunk["axes_interval"])
-
-
-def _harmful(problem: Problem, before: list[Array], after: list[Array]) -> bool:
-    """Whether some axis gets worse by a good part of what the causes take away in all."""
-    was, now = axis_weight(problem, before), axis_weight(problem, after)
-    return max(now[a] - was[a] for a in was) > HARMS * (sum(was.values()) - sum(now.values()))
 
 
 def _acting(closed: Mapping[str, float]) -> tuple[str, ...]:
@@ -155,13 +140,12 @@ def _of_sensor(named: Named) -> bool:
     return effects.load(named.hypothesis.name.partition("[")[0]).place == "sensor"
 
 
-def _skill(problem: Problem, closed: Mapping[str, float], after: list[Array]) -> bool:
+def _skill(problem: Problem, closed: Mapping[str, float], left: Mapping[str, float]) -> bool:
     """Whether on the axis where they close most the simulator, causes added, errs well less than the vehicle moves. Where it does not, it
     replays an autopilot's answers to disturbances that nobody logged, which shows nothing about the vehicle."""
     axis = max(closed, key=lambda a: closed[a])
     moved = [np.where(part.ok, part.y - (part.y * part.ok).sum((0, 1)) / np.maximum(part.ok.sum((0, 1)), 1), 0.0) for part in problem.parts]
-    left, motion = (axis_weight(problem, x)[axis] for x in (after, moved))
-    return left <= SKILL * motion
+    return left[axis] <= SKILL * axis_weight(problem, moved)[axis]
 
 
 def _strain(point: Point) -> float:
