@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -66,9 +67,25 @@ def command(
         runs, vehicle_of(runs[0], vehicle), model=model.value, window_s=window, calibration_slop=calibration_slop, seed=seed,
         progress=output.progress(quiet),
     )  # fmt: skip
+    typed = {"--window": None if window == 10.0 else f"{window:g}", "--profile": profile, "--archive": None if str(archive) == "archive" else str(archive)}
+    _as_typed(found, dict(zip((run.id for run in runs), sources, strict=True)), vehicle, typed)
     folder = Path("reports") / runs[0].id / "diagnosis" if out is None and json_ is None else out
     _print(found, json_, quiet)
     _write(found, folder, write_vehicle, quiet)
+
+
+def _as_typed(found: Diagnosis, sources: dict[str, str], vehicle: str | None, options: dict[str, str | None]) -> None:
+    """Logs (``sources`` by run id), vehicle and options in the command that writes the calibrated vehicle, as they were typed here."""
+    tuned = found.document["calibration"]
+    if not tuned:
+        return
+    said = tuned["command"]
+    for run, source in sources.items():
+        said = said.replace(shlex.quote(run), shlex.quote(source))
+    if vehicle:
+        said = said.replace(f"--vehicle {found.document['vehicle']} ", f"--vehicle {shlex.quote(vehicle)} ")
+    extra = "".join(f" {flag} {shlex.quote(value)}" for flag, value in options.items() if value)
+    tuned["command"] = said.replace(" --vehicle ", f"{extra} --vehicle ")
 
 
 def _print(found: Diagnosis, json_: Path | None, quiet: bool) -> None:

@@ -61,4 +61,4 @@ def diagnose(
     library, silent = excited(problem, library)
     selection = select(problem, library, seed, say)
     say("asking how much any systematic cause could explain", 0.85)
-    return answer(problem, untestable | silent, left_out, selection, calibration_slop, seed)
+    return answer(problem, untestable | silent, left_out, selection, calibration_slop, seed, say)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -13,21 +13,23 @@ from rovval.diagnose import Diagnosis, next_flight
 from rovval.diagnose.causes import causes, settings
 from rovval.diagnose.gap import axis_rows, noise_loss
 from rovval.diagnose.localise import change_points, slices, worst
+from rovval.diagnose.miscalibrated import calibration
 from rovval.diagnose.parity import faults
 from rovval.diagnose.pictures import coherence_matrix, heat_map, traces
 from rovval.diagnose.problem import Problem, corrected_residuals
 from rovval.diagnose.select import Selection
 from rovval.diagnose.shrinkage import harm, shrinkage
 from rovval.diagnose.verdict import Judgement, judge
-from rovval.diagnose.words import cause, sentence
+from rovval.diagnose.words import first, sentence
 from rovval.vehicle.write import with_effects
 
 MOST_SLICES = 5  # named of where the gap lies
 
 
 def answer(
-    problem: Problem, untestable: Mapping[str, str], left_out: tuple[str, ...], selection: Selection, slop: float, seed: int
-) -> Diagnosis:
+    problem: Problem, untestable: Mapping[str, str], left_out: tuple[str, ...], selection: Selection, slop: float, seed: int,
+    progress: Callable[[str, float], None],
+) -> Diagnosis:  # fmt: skip
     """Put everything that was found into one document."""
     before = corrected_residuals(problem)
     axes = axis_rows(problem, before)
@@ -46,6 +48,7 @@ def answer(
         "finalists": [[{"effect": n, "evidence": e, "gain": g} for n, e, g in one] for one in selection.rounds],
         "disturbance": _disturbance(problem),
         "left": judgement.left,
+        "calibration": calibration(problem, selection, judgement, before, slop, seed, progress),
         "harm": harm(shrunk),
         "parity": [row for check, part in zip(problem.parity, problem.parts, strict=True) for row in faults(check, part)],
         "heatmap": heat_map(problem.parts[0], before[0], seed),
@@ -56,7 +59,7 @@ def answer(
         "left_out_s": sum(part.contact_s for part in problem.parts),
         "outliers": sum(part.outliers for part in problem.parts),
     }
-    document |= {"answer": cause(document), "sentence": sentence(document)}
+    document |= {"answer": first(document), "sentence": sentence(document)}
     found = settings(problem, judgement.final)
     return Diagnosis(document, found, with_effects(problem.plant.vehicle, found) if found else "")
 

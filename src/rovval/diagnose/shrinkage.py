@@ -30,15 +30,20 @@ def shrinkage(problem: Problem, fitted: Confirmed | None, before: list[Array], s
     """
     if fitted is None:
         return dict(NONE)
-    value, low, high = interval(problem.gap.c, fitted.dynamic_loss, seed)
-    nominal, now = axis_squares(problem, before), axis_squares(problem, held_out(problem, fitted))
+    return told(problem, fitted.dynamic_loss, held_out(problem, fitted), before, seed)
+
+
+def told(problem: Problem, loss: Array, after: list[Array], before: list[Array], seed: int) -> dict[str, Any]:
+    """The shrinkage of held-out losses (m,) and residuals ``after`` over the nominal vehicle's ``before``."""
+    value, low, high = interval(problem.gap.c, loss, seed)
+    nominal, now = axis_squares(problem, before), axis_squares(problem, after)
     measured = {axis: square > 0 for axis, square in nominal.items() if square.sum() > 0}
     axes = {axis: interval(nominal[axis][seen], now[axis][seen], seed) for axis, seen in measured.items()}
     return {
         "total": value,
         "low": low,
         "high": high,
-        "of_explainable": _explainable(problem, fitted),
+        "of_explainable": _explainable(problem, loss),
         "axes": {axis: share for axis, (share, _, _) in axes.items()},
         "axes_interval": {axis: {"low": bottom, "high": top} for axis, (_, bottom, top) in axes.items()},
         "held_out": True,
@@ -69,7 +74,7 @@ def held_linear(problem: Problem, fitted: Confirmed) -> list[Linear]:
     return found
 
 
-def _explainable(problem: Problem, fitted: Confirmed) -> float:
+def _explainable(problem: Problem, loss: Array) -> float:
     """Share of the gap above the noise floor that is closed, on held-out windows."""
     gap, floor = float(problem.gap.c.sum()), float(noise_loss(problem).sum())
-    return float(min((gap - float(fitted.dynamic_loss.sum())) / max(gap - floor, 1e-12), 1.0))
+    return float(min((gap - float(loss.sum())) / max(gap - floor, 1e-12), 1.0))

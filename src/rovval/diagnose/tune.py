@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from rovval.data import Array
-from rovval.diagnose.confirm import Confirmed, confirm, errors, interval
+from rovval.diagnose.confirm import Confirmed, confirm, errors, interval, roughly
 from rovval.diagnose.library import PRIOR_WIDTH
+from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.separate import coherence
 
@@ -22,7 +23,7 @@ def determinable(problem: Problem, wanted: Sequence[int]) -> tuple[tuple[int, ..
     """Which slots these logs can determine, and why not the others; the least determined leaves first."""
     out, left = dict[int, dict[str, Any]](), list(wanted)
     information = problem.data.A.sum(axis=0) / problem.inflation
-    typical = {s: problem.plant.slots[s].parameter.typical for s in problem.data.columns}
+    typical = {s: problem.plant.slots[s].parameter.typical for s in (*wanted, *problem.slop.sd)}
     for slot in wanted:
         at = int(problem.data.place((slot,))[0])
         if (seen := float(np.sqrt(information[at, at])) * typical[slot]) < EXCITED:
@@ -49,14 +50,20 @@ def _confused(problem: Problem, slot: int, others: Sequence[int], why: str) -> d
     return undetermined(f"{why}; most like {named}" if named else why, beside[:2])
 
 
-def tuned(problem: Problem, slots: tuple[int, ...]) -> tuple[Confirmed | None, Array, Array, dict[int, dict[str, Any]]]:
-    """The joint fit with its 90 % intervals; slots whose interval says nothing at the fitted point are put back and the rest refitted."""
+def tuned(
+    problem: Problem, slots: tuple[int, ...], near: Point | None = None, kept: Sequence[int] = ()
+) -> tuple[Confirmed | None, Array, Array, dict[int, dict[str, Any]]]:
+    """The joint fit with its 90 % intervals; slots whose interval says nothing at the fitted point are put back and the rest refitted.
+
+    With ``near``, quickly, from there and with slop's slopes there; ``kept`` are fitted whatever their interval.
+    """
     out = dict[int, dict[str, Any]]()
     while slots:
-        fitted = confirm(problem, problem.origin, slots)
+        fitted = confirm(problem, problem.origin, slots) if near is None else roughly(problem, near.beta, slots, near.linear)
         bounds = [interval(float(fitted.beta[s]), float(e), problem.blocks) for s, e in zip(slots, errors(problem, fitted), strict=True)]
         low, high = np.array(bounds).T
         half = 0.5 * (high - low) / [problem.plant.slots[s].parameter.typical for s in slots]
+        half[[s in kept for s in slots]] = 0.0
         if half.max() <= WIDEST:
             return fitted, low, high, out
         worst = slots[int(half.argmax())]

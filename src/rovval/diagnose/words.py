@@ -5,20 +5,27 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from rovval.diagnose.calibration_words import calibration
 from rovval.diagnose.nothing import nothing, open_gap, undecided
 from rovval.diagnose.phrases import chance, family, span, value, whole
 from rovval.diagnose.tolerance import SENSORS
 from rovval.units import in_degrees
 
-__all__ = ["alone", "cause", "chance", "moved", "nothing", "open_gap", "sentence", "undecided", "unmoved"]
+__all__ = ["alone", "calibration", "cause", "chance", "first", "moved", "nothing", "open_gap", "sentence", "undecided", "unmoved"]
 MOST_VALUES = 3  # parameters of a cause that fit a sentence
 UNMOVED = 0.005  # of the gap: less rounds to nothing
 
 
 def sentence(document: dict[str, Any]) -> str:
-    """Gap, where, cause or group, shrinkage with its interval, what is left and what to fly next."""
-    parts = [_gap(document), _where(document), cause(document), _harm(document), _left(document), _next(document)]
+    """Gap, where, cause or group, shrinkage with its interval, what is left, the file's calibration and what to fly next."""
+    parts = [_gap(document), _where(document), cause(document), _harm(document), _left(document), calibration(document), _next(document)]
     return " ".join(p for p in parts if p)
+
+
+def first(document: dict[str, Any]) -> str:
+    """The answer itself: the cause; where there is none and many coefficients are off, these."""
+    named = cause(document)
+    return f"{named} {calibration(document)}".rstrip() if document["verdict"] == "unknown" else named
 
 
 def moved(parameters: Mapping[str, Any]) -> dict[str, Any]:

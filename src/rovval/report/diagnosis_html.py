@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from rovval.diagnose.words import chance, moved, open_gap, undecided, unmoved
+from rovval.report import calibration, page, plots, tried
 from rovval.report import diagnosis_parts as parts
 from rovval.report import diagnosis_words as dw
-from rovval.report import page, plots, tried
 from rovval.report.json import versions
 from rovval.report.unlogged import disturbances
 from rovval.report.untestable import not_testable
@@ -32,6 +32,7 @@ def text(document: dw.Document, recording: bool = False) -> str:
             _where(d),
             page.section(worst, page.switches(keys) if places else "", places),
             page.section("Which effect", *(_cause(c, (d.get("gap") or {}).get("axes") or {}) for c in d.get("causes") or ()), _paragraph(_which(d))),
+            calibration.section(d),
             tried.section(d),
             page.section("What this log cannot tell apart", parts.matrix(d.get("coherence") or {}), lead=_COHERENCE),
             page.section("Sensors first, by kinematics alone", _parity(d), lead=_PARITY),
@@ -72,12 +73,15 @@ def _answers(d: dw.Document) -> dict[str, tuple[str, str]]:
     spot = (d.get("gap") or {}).get("where") or ()
     at = f", most at {spot[0].get('regime')}" if spot else ""
     where = (worst, f"{per_cent(row.get('share'))} of the gap{at}")
-    which = {"unknown": ("unknown", "no library effect explains it")}
+    off = f"; {len(tuned['beyond'])} coefficients of the file are off together" if (tuned := d.get("calibration")) else ""
+    which = {"unknown": ("unknown", f"no library effect explains it{off}")}
     first = dw.group(causes[0]) if causes else []
     more = [f"or {dw.names(first[1:])}"] if first[1:] else []
     more += [f"and {', '.join(str(c['effect']) for c in causes[1:])}"] if causes[1:] else []
+    more += [f"beside {len(tuned['beyond'])} coefficients of the file"] if tuned else []
     named = (first[0], "; ".join(more)) if first else which.get(d.get("verdict", ""), ("", ""))
     span = f"squared gap, {per_cent(s.get('low'))} to {per_cent(s.get('high'))}{', held out' if s.get('held_out') else ''}"
+    span += f"; {per_cent(tuned['shrinkage']['total'])} smaller with the coefficients tuned" if tuned else ""
     far = ("unchanged" if unmoved(s) else f"{per_cent(s['total'])} smaller", span) if s.get("total") is not None and causes else ("", "")
     flight = d.get("manoeuvre") or {}
     fly = (str(flight.get("name") or (d.get("next_experiment") or {}).get("manoeuvre") or ""), "")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from rovval.diagnose.words import chance, moved
+from rovval.report import calibration
 from rovval.report import diagnosis_words as dw
 from rovval.report.markdown import bullets, grid
 from rovval.report.tried import rounds
@@ -25,6 +26,7 @@ def text(document: dw.Document) -> str:
     parts += _under("## Where the gap lies", _axes(d), bullets(dw.where(d, 99)), _changes(d), disturbances(d))
     for cause in d.get("causes") or ():
         parts += _under(f"## Cause: {' or '.join(f'`{e}`' for e in dw.group(cause))}", *_cause(cause, (d.get("gap") or {}).get("axes") or {}))
+    parts += _under(f"## {calibration.TITLE}", *calibration.markdown(d))
     for title, rows in rounds(d):
         weighed = [[f"`{r['effect']}`", per_cent(r.get("gain")), number(r.get("evidence"), 2)] for r in rows]
         parts += _under(f"## Weighed by re-simulation: {title[0].lower()}{title[1:]}", grid(["effect", "closes of the squared gap", "evidence"], weighed))

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from textwrap import wrap
 
 from rovval.diagnose.words import chance, moved
+from rovval.report import calibration
 from rovval.report import diagnosis_words as dw
 from rovval.report.tried import rounds
 from rovval.report.unlogged import disturbances
@@ -25,6 +26,7 @@ def text(document: dw.Document) -> str:
     parts += ["", *wrap(pushed, 100)] if (pushed := disturbances(d)) else []
     for cause in d.get("causes") or ():
         parts += _block("cause: " + " | ".join(dw.group(cause)), _cause(cause))
+    parts += _block(calibration.TITLE.lower(), calibration.lines(d))
     checks = [c for c in d.get("parity") or () if c.get("significant")]
     parts += _block("sensors", [f"{c.get('fault') or c.get('check')}: {dw.parameter('value', c)[8:]}" for c in checks])
     parts += _block("harm", [f"{h.get('axis')}: {per_cent(h.get('change'))}" for h in d.get("harm") or ()])
