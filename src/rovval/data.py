@@ -35,6 +35,7 @@ class Reason(IntEnum):
     OUT_OF_RANGE = 5
     STUCK = 6
     STOPPED = 7  # simulated only: the state left sane limits or an input was missing
+    SATURATED = 8  # the sensor was at its stop
 
 
 def frozen_array(values: Any, dtype: Any = np.float64) -> NDArray[Any]:

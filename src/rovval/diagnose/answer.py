@@ -18,6 +18,7 @@ from rovval.diagnose.parity import faults
 from rovval.diagnose.pictures import coherence_matrix, heat_map, traces
 from rovval.diagnose.problem import Problem, corrected_residuals
 from rovval.diagnose.select import Selection
+from rovval.diagnose.sensed import NO_MEASUREMENT
 from rovval.diagnose.shrinkage import harm, shrinkage
 from rovval.diagnose.verdict import Judgement, judge
 from rovval.diagnose.words import first, sentence
@@ -55,6 +56,7 @@ def answer(
         "traces": traces(problem, judgement.final, before),
         "coherence": coherence_matrix(problem, selection, judgement),
         "inputs": problem.parts[0].driven.source,
+        "log": _log(problem),
         "runs_left_out": list(left_out),
         "left_out_s": sum(part.contact_s for part in problem.parts),
         "outliers": sum(part.outliers for part in problem.parts),
@@ -78,6 +80,12 @@ def _head(problem: Problem, slop: float) -> dict[str, object]:
         "calibration_slop": slop,
         "synthetic": next((p.run.properties["synthetic"] for p in problem.parts if "synthetic" in p.run.properties), ""),
     }
+
+
+def _log(problem: Problem) -> list[dict[str, str]]:
+    """What of the logs was found to be no measurement, and how it was taken (`sensed`)."""
+    found = [(part.run.id, f) for part in problem.parts for f in part.run.findings if f.code in NO_MEASUREMENT]
+    return [{"run": run, "channel": f.where, "finding": f.code, "detail": f.detail} for run, f in found]
 
 
 def _disturbance(problem: Problem) -> dict[str, dict[str, float | str]]:

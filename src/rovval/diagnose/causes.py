@@ -9,8 +9,8 @@ from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed, errors, interval, roughly
 from rovval.diagnose.library import Hypothesis
 from rovval.diagnose.problem import Problem
-from rovval.diagnose.select import Named
 from rovval.diagnose.shrinkage import shrinkage
+from rovval.diagnose.together import Named
 from rovval.diagnose.verdict import Judgement
 
 FORM = 0.07  # of a parameter's departure, one standard error: equations that are only nearly right (logs of the independent plant ask for it)

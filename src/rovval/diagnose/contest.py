@@ -14,6 +14,8 @@ import numpy as np
 from rovval.data import Array
 from rovval.diagnose.products import Products
 
+PAIR = 2  # neighbouring windows that are held out together: 20 s, beyond the memory of hull and thrusters
+
 
 @dataclass(frozen=True, slots=True)
 class Prior:
@@ -38,11 +40,12 @@ class Fold:
 
 
 def folds_of(run_of_window: np.ndarray, count: int = 5) -> tuple[Fold, ...]:
-    """One log held out at a time where there are three logs or more, else contiguous fifths of the windows."""
-    runs = np.unique(run_of_window)
+    """One log held out at a time where there are three logs or more, else fifths of the windows: pairs of neighbours in turn, so that what
+    changes along the log is not extrapolated beyond what was seen; in short logs, contiguous."""
+    runs, m = np.unique(run_of_window), len(run_of_window)
     if len(runs) >= 3:
         return tuple(Fold(run_of_window != r, run_of_window == r) for r in runs)
-    part = np.arange(len(run_of_window)) * count // len(run_of_window)
+    part = np.arange(m) // PAIR % count if m >= PAIR * count else np.arange(m) * count // m
     return tuple(Fold(part != p, part == p) for p in np.unique(part))
 
 

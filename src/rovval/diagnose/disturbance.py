@@ -85,13 +85,15 @@ def disturbance(
 
 def pushes(part: Stretches) -> list[tuple[str, Array]]:
     """Unit force on each axis, on in one piece of every window: (axis, series on the run's grid)."""
+    return [(axis, on) for axis in AXES for on in pieces(part)]
+
+
+def pieces(part: Stretches) -> list[Array]:
+    """One in a piece of every window and nothing elsewhere, piece by piece, on the run's grid."""
     edges = np.linspace(0, part.steps + 1, PIECES + 1).round().astype(int)
-    found = []
-    for axis in AXES:
-        for low, high in pairwise(edges):
-            series = np.zeros(len(part.run))
-            series[(part.start[:, None] + np.arange(low, high)).reshape(-1)] = 1.0
-            found.append((axis, series))
+    found = [np.zeros(len(part.run)) for _ in range(PIECES)]
+    for on, (low, high) in zip(found, pairwise(edges), strict=True):
+        on[(part.start[:, None] + np.arange(low, high)).reshape(-1)] = 1.0
     return found
 
 

@@ -12,7 +12,7 @@ from rovval.diagnose.library import PRIOR_WIDTH, Hypothesis
 from rovval.diagnose.point import Point, whole_evidence
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import Products
-from rovval.diagnose.separate import PER_PARAMETER, Rival, alike, coherence, form_share
+from rovval.diagnose.separate import PER_PARAMETER, Losses, Rival, alike, closed, coherence, form_share
 from rovval.diagnose.settle import stays
 
 FINALISTS = 10  # hypotheses that are re-simulated in a round
@@ -27,7 +27,6 @@ SERIOUS = 0.5  # share of the best evidence from which a rival's gain counts
 NEARLY = 0.9  # of the best's gain
 LEAST_OF_BEST = 0.5  # of the gain of the best serious rival
 REVERSED, DEGRADED = "thruster_reversed", "thruster_degraded"  # one imitates the other up to a dead thruster, and no further
-Losses = tuple[Array, Array]
 
 
 def finalists(
@@ -73,32 +72,31 @@ def _weighed(problem: Problem, fitted: list[tuple[Hypothesis, Confirmed]], base:
     """Finalists with what they add to what stands: evidence over slop, and the share that they close of what is left of the gap, with or
     without the kinematic checks, whichever is more."""
     ground = whole_evidence(problem, base)
-    rivals = [
-        Rival(h, c, c.evidence - ground, max(float((was - now).sum() / was.sum()) for was, now in zip(loss, (c.loss, c.dynamic_loss), strict=True)))
-        for h, c in fitted
-    ]
+    rivals = [Rival(h, c, c.evidence - ground, *closed(loss, (c.loss, c.dynamic_loss))) for h, c in fitted]
     return sorted(rivals, key=lambda r: -r.evidence)
 
 
 def admissible(problem: Problem, weighed: list[Rival]) -> list[Rival]:
-    """Finalists that could be the cause, best evidence first.
-
-    Evidence alone is not enough: what a hypothesis achieves only with slop's help leaves the gap itself open. It must close, by itself
-    and on held-out windows, at least half of what the best of its serious rivals closes, and its size must be beyond what slop of
-    all other coefficients could feign. A thruster counts as reversed only where it pushes the other way (up to half-reversed it is
-    a degraded one), and what begins before the log does has no onset in it.
-    """
-    rivals = [r for r in weighed if not _half_reversed(r) and not _from_the_start(problem, r)]
-    if not rivals or rivals[0].evidence <= 0:
+    """Of the `possible` those that could be the cause by themselves: they close on held-out windows at least half of what the best of the
+    serious rivals closes. What a hypothesis achieves only with slop's help leaves the gap itself open."""
+    rivals = _in_form(problem, weighed)
+    if not rivals:
         return []
     serious = max(r.gain for r in rivals if r.evidence >= SERIOUS * rivals[0].evidence)
-    return [
-        r for r in rivals
-        if r.gain >= LEAST_OF_BEST * serious
-        and r.gain > 0
-        and significance(problem, r.fitted, r.hypothesis.slots) >= LEAST_SIGMA
-        and _beyond_tolerance(problem, r)
-    ]  # fmt: skip
+    return [r for r in possible(problem, weighed) if r.gain >= LEAST_OF_BEST * serious and r.gain > 0]
+
+
+def possible(problem: Problem, weighed: list[Rival]) -> list[Rival]:
+    """Finalists whose size is beyond what slop of all other coefficients could feign, best evidence first."""
+    rivals = _in_form(problem, weighed)
+    return [r for r in rivals if significance(problem, r.fitted, r.hypothesis.slots) >= LEAST_SIGMA and _beyond_tolerance(problem, r)]
+
+
+def _in_form(problem: Problem, weighed: list[Rival]) -> list[Rival]:
+    """Finalists that are what their name says, where the best has evidence at all: a thruster counts as reversed only where it pushes the
+    other way (up to half-reversed it is a degraded one), and what begins before the log does has no onset in it."""
+    rivals = [r for r in weighed if not _half_reversed(r) and not _from_the_start(problem, r)]
+    return rivals if rivals and rivals[0].evidence > 0 else []
 
 
 def _beyond_tolerance(problem: Problem, rival: Rival) -> bool:
@@ -119,7 +117,8 @@ def simplest(problem: Problem, rivals: list[Rival]) -> Rival:
     most, least = len(rivals[0].hypothesis.slots), (1.0 - form_share(problem.blocks)) * rivals[0].evidence
     tied = [
         r for r in rivals
-        if alike(problem, r, rivals[0])
+        if r is rivals[0]
+        or alike(problem, r, rivals[0])
         or (r.evidence >= least and r.gain >= (NEARLY - PER_PARAMETER * max(most - len(r.hypothesis.slots), 0)) * rivals[0].gain)
     ]  # fmt: skip
     return min(tied, key=lambda r: (bool(r.fitted.at_bound), len(r.hypothesis.slots), -r.evidence))

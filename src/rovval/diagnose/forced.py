@@ -53,23 +53,27 @@ def features_of(stretches: Stretches) -> dict[str, Array]:
 
 
 def forced(part: Stretches, beta: Array, forces: Sequence[tuple[str, Array]]) -> Array:
-    """Sensitivity (m, n, c, f) to additional body forces given as sequences on the run's grid."""
+    """Sensitivity (m, n, c, f) to additional body forces given as an axis and a sequence on the run's grid."""
     bank = np.zeros((len(forces), len(part.run), 6))
     for i, (axis, sequence) in enumerate(forces):
         bank[i, :, AXES.index(axis)] = sequence
+    return answered(part, beta, bank)
+
+
+def answered(part: Stretches, beta: Array, bank: Array) -> Array:
+    """Sensitivity (m, n, c, f) to additional body forces and moments (f, run, 6), N and N m."""
     pushed = replace(part, driven=replace(part.driven, inputs=replace(part.driven.inputs, extra=bank)))
-    m = part.count
-    which = np.arange(m)
+    m, which = part.count, np.arange(part.count)
     base, _ = simulate_windows(part, np.tile(beta, (m, 1)), part.nu0, part.eta0, which)
-    S = np.zeros((*base.shape, len(forces)))
+    S = np.zeros((*base.shape, len(bank)))
     each = max(1, LANES // m)
-    for begin in range(0, len(forces), each):
-        chosen = np.arange(begin, min(begin + each, len(forces)))
+    for begin in range(0, len(bank), each):
+        chosen = np.arange(begin, min(begin + each, len(bank)))
         lanes = len(chosen) * m
         motion = pushed.plant.simulate(
             pushed.driven.inputs, np.tile(part.start, len(chosen)), part.steps, np.tile(part.nu0, (len(chosen), 1)),
             np.tile(part.eta0, (len(chosen), 1)), np.tile(beta, (lanes, 1)), np.repeat(chosen, m), np.full(lanes, STEP),
-        )
+        )  # fmt: skip
         out = predicted(part, motion.nu, motion.eta).reshape(len(chosen), *base.shape)
         S[..., chosen] = np.moveaxis(difference(part, out, base[None]) / STEP, 0, -1)
     return S

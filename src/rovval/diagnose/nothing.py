@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from rovval.diagnose.phrases import family, size, value, whole
-from rovval.diagnose.select import LEAST_EVIDENCE
+from rovval.diagnose.together import LEAST_EVIDENCE
 from rovval.diagnose.tolerance import SENSORS
 
 OPEN = 0.5  # chosen: share of a gap that neither noise nor slop accounts for, from which "no gap" would say too much

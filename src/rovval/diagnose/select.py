@@ -7,7 +7,7 @@ is not real or too small to matter; an effect that later ones make needless is d
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,34 +15,22 @@ import numpy as np
 from rovval.diagnose.confirm import Confirmed, confirm, roughly
 from rovval.diagnose.contest import Prior, Ring, contest, fit
 from rovval.diagnose.detect import Detection, detect
-from rovval.diagnose.finalists import admissible, finalists, freed, prior_of, sharpened, simplest
+from rovval.diagnose.finalists import admissible, finalists, freed, possible, prior_of, sharpened, simplest
 from rovval.diagnose.library import Hypothesis
 from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem, at, columns_of
 from rovval.diagnose.products import Products
-from rovval.diagnose.separate import group
+from rovval.diagnose.separate import Losses, Rival, group
 from rovval.diagnose.settle import settle
+from rovval.diagnose.together import LEAST_EVIDENCE, Named, together, worthy
 
 MOST = 3  # effects at once
+ROUNDS = 5  # of the search: an effect that later ones make needless leaves its place
 FALSE_ALARM = 0.05  # family-wise, over the whole library
 PLAIN = 20.0  # twice the log Bayes factor that needs no p-value: where a strong effect is left of the log, null draws hold some of it
 NEEDLESS = 6.0  # twice the log Bayes factor below which an effect is dropped again (Kass & Raftery 1995: positive evidence)
-LEAST_GAIN = 0.06  # of the gap, on held-out windows: less is not worth a name
-LATER_GAIN = 0.10  # of what is left, the same for a second and third effect: the forms of equations alone leave structure of this size
 PROMISING = 0.5  # of `LEAST_EVIDENCE`, in the linearised model: less is not re-simulated
-LEAST_EVIDENCE = 6.0  # over slop: "strong" (Kass & Raftery 1995); no healthy Merlin log of the tuning set got as far as finalists
-
-
-@dataclass(frozen=True, slots=True)
-class Named:
-    """One effect that was found: its hypothesis, the group that this log cannot tell apart with probabilities (itself first), the joint
-    fit after it was added, the detection that let it in and its evidence over what was there before."""
-
-    hypothesis: Hypothesis
-    group: tuple[tuple[str, float], ...]
-    fitted: Confirmed
-    p_value: float
-    evidence: float
+WAITING = 60.0  # evidence from which an effect that closes little by itself may wait for another (chosen)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,35 +50,71 @@ class Selection:
 
 def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Callable[[str, float], None]) -> Selection:
     """Search for the effects that explain the gap; see the module."""
-    chosen, loss = tuple[int, ...](), (problem.gap_data.c, problem.gap.c)
-    healthy = base = settle(problem, problem.origin, ())
-    named: list[Named] = []
-    rounds: list[tuple[tuple[str, float, float], ...]] = []
-    p, last, null = 1.0, 0.0, 0.0
-    for round_number in range(MOST):
-        progress(f"screening {len(library)} hypotheses, round {round_number + 1}", 0.3 + 0.2 * round_number)
-        data = _bank(problem, library, base)
-        open_now = [h for h in library if h.name not in {n.hypothesis.name for n in named}]
-        detection = _detect(problem, data, open_now, chosen, seed + round_number)
-        p, last, null = detection.p_value(detection.best), detection.evidence[detection.best], float(np.quantile(detection.null, 0.95))
-        if last < PROMISING * LEAST_EVIDENCE or (p > FALSE_ALARM and last < PLAIN):
+    healthy = settle(problem, problem.origin, ())
+    named, spent = list[Named](), set[str]()
+    rounds = list[_Round]()
+    for number in range(ROUNDS):
+        progress(f"screening {len(library)} hypotheses, round {number + 1}", 0.3 + 0.1 * number)
+        open_now = [h for h in library if h.name not in {n.hypothesis.name for n in named} | spent]
+        rounds.append(_round(problem, library, open_now, named, healthy, seed + number))
+        if rounds[-1].able:
+            named = _pruned(problem, [*named, _found(problem, rounds[-1], seed)])
+            if len(named) < MOST:
+                continue
+        progress("weighing the causes beside each other", 0.35 + 0.1 * number)
+        kept = together(problem, named, healthy, seed)
+        spent |= {n.hypothesis.name for n in named} - {n.hypothesis.name for n in kept}
+        if len(kept) in (0, MOST, len(named)):
+            named = kept
             break
-        progress("re-simulating the finalists", 0.4 + 0.2 * round_number)
-        weighed = finalists(problem, data, open_now, detection, base, chosen, loss)
-        able = admissible(problem, sharpened(problem, admissible(problem, weighed), base, loss))
-        rounds.append(tuple((r.hypothesis.name, r.evidence, r.gain) for r in able or weighed))
-        able = [r for r in able if r.gain >= (LATER_GAIN if named else LEAST_GAIN) and r.evidence >= LEAST_EVIDENCE]
-        if not able:
-            break
-        members = group(problem, able, seed)
-        best = simplest(problem, able)
-        members = tuple(sorted(members, key=lambda member: member[0] != best.hypothesis.name))
-        named.append(Named(best.hypothesis, members, best.fitted, detection.p_value(best.hypothesis.label), best.evidence))
-        named = _pruned(problem, named)
-        chosen, base = named[-1].fitted.slots, named[-1].fitted.point
-        loss = named[-1].fitted.loss, named[-1].fitted.dynamic_loss
-    final = named[-1].fitted if named else None
-    return Selection(tuple(named), final, healthy, _ranking(problem, library, named, rounds), tuple(rounds), p, last, null)
+        named = kept
+    else:
+        named = together(problem, named, healthy, seed)
+    final, tried = named[-1].fitted if named else None, tuple(r.told for r in rounds if r.told)
+    last = rounds[-1].detection
+    p, most, null = last.p_value(last.best), last.evidence[last.best], float(np.quantile(last.null, 0.95))
+    return Selection(tuple(named), final, healthy, _ranking(problem, library, named, tried), tried, p, most, null)
+
+
+@dataclass(frozen=True, slots=True)
+class _Round:
+    """The detection of a round, the finalists that may be added, and (name, evidence, held-out gain) of all that were weighed."""
+
+    detection: Detection
+    able: list[Rival]
+    told: tuple[tuple[str, float, float], ...]
+
+
+def _round(problem: Problem, library: list[Hypothesis], open_now: list[Hypothesis], named: list[Named], healthy: Point, seed: int) -> _Round:
+    """Is there anything beyond what stands, and which of the open hypotheses may be added to it?"""
+    chosen, base, loss = tuple[int, ...](), healthy, (problem.gap_data.c, problem.gap.c)
+    if named:
+        whole = named[-1].fitted
+        chosen, base, loss = whole.slots, whole.point, (whole.loss, whole.dynamic_loss)
+    data = _bank(problem, library, base)
+    detection = _detect(problem, data, open_now, chosen, seed)
+    most = detection.evidence[detection.best]
+    if most < PROMISING * LEAST_EVIDENCE or (detection.p_value(detection.best) > FALSE_ALARM and most < PLAIN):
+        return _Round(detection, [], ())
+    weighed = finalists(problem, data, open_now, detection, base, chosen, loss)
+    able = admissible(problem, sharpened(problem, admissible(problem, weighed), base, loss))
+    told = tuple((r.hypothesis.name, r.evidence, r.gain) for r in able or weighed)
+    return _Round(detection, [r for r in able if worthy(r, alone=not named)] or _waiting(problem, weighed, base, loss), told)
+
+
+def _waiting(problem: Problem, weighed: list[Rival], base: Point, loss: Losses) -> list[Rival]:
+    """The finalist with the most evidence, which closes little by itself, as long as others are still to be found: of two causes that
+    offset each other, each alone opens the gap. Whether it is worth its name is asked again in the end (`together`)."""
+    rivals = possible(problem, weighed)[:1]
+    rivals = possible(problem, sharpened(problem, rivals, base, loss)) if rivals and rivals[0].evidence >= WAITING else []
+    return [r for r in rivals if r.evidence >= WAITING]
+
+
+def _found(problem: Problem, one: _Round, seed: int) -> Named:
+    """The best of those that may be added, with those that this log does not tell from it."""
+    best = simplest(problem, one.able)
+    members = tuple(sorted(group(problem, one.able, seed), key=lambda member: member[0] != best.hypothesis.name))
+    return Named(best.hypothesis, members, best.fitted, one.detection.p_value(best.hypothesis.label), best.evidence, tuple(one.able))
 
 
 def _pruned(problem: Problem, named: list[Named]) -> list[Named]:
@@ -126,7 +150,7 @@ def _detect(problem: Problem, data: Products, library: list[Hypothesis], chosen:
 
 
 def _ranking(
-    problem: Problem, library: list[Hypothesis], named: list[Named], rounds: list[tuple[tuple[str, float, float], ...]]
+    problem: Problem, library: list[Hypothesis], named: list[Named], rounds: Sequence[tuple[tuple[str, float, float], ...]]
 ) -> tuple[tuple[str, float], ...]:
     """Every hypothesis with the held-out share of the gap that it closes by itself, slop standing still: the named ones, the finalists by
     evidence, then the others by their share in the linearised model."""

@@ -25,12 +25,24 @@ LEVEL = 0.05  # one-sided: a member of the group must be this plausible to be as
 
 @dataclass(frozen=True, slots=True)
 class Rival:
-    """A finalist: its re-simulated fit, its evidence over what stood before, and the share of the gap it closes by itself, held out."""
+    """A finalist: its re-simulated fit, its evidence over what stood before, and the share of the gap it closes by itself, held out; the same
+    of what the kinematic checks alone show (`closed`)."""
 
     hypothesis: Hypothesis
     fitted: Confirmed
     evidence: float
     gain: float
+    kinematic: float
+
+
+Losses = tuple[Array, Array]
+
+
+def closed(was: Losses, now: Losses) -> tuple[float, float]:
+    """Shares of held-out losses (with and without the kinematic checks) that are closed: the larger of the two, and of the checks alone."""
+    checks = float((was[0] - was[1]).sum())
+    kinematic = 1.0 - float((now[0] - now[1]).sum()) / checks if checks > 0 else 0.0
+    return max(float((a - b).sum() / a.sum()) for a, b in zip(was, now, strict=True)), kinematic
 
 
 def group(problem: Problem, rivals: list[Rival], seed: int, block: int = 2) -> tuple[tuple[str, float], ...]:

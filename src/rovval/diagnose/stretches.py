@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from rovval.channels import AXES
 from rovval.data import Array, Flags, Run
+from rovval.diagnose.sensed import sensed
 from rovval.drive import Drive, drive, start_states, startable
 from rovval.errors import BadInput, all_at_once
 from rovval.frames import wrap
@@ -80,7 +81,7 @@ def cut_all(runs: Sequence[Run], vehicle: Vehicle, model: str, window_s: float) 
         BadInput: no run can be cut, or the runs differ in the channels that they hold.
     """
     parts, left_out = list[Stretches](), list[str]()
-    for run in runs:
+    for run in (sensed(one)[0] for one in runs):
         try:
             parts.append(cut(run, vehicle, model, window_s))
         except BadInput as error:

@@ -17,8 +17,10 @@ UNMOVED = 0.005  # of the gap: less rounds to nothing
 
 
 def sentence(document: dict[str, Any]) -> str:
-    """Gap, where, cause or group, shrinkage with its interval, what is left, the file's calibration and what to fly next."""
+    """Gap, where, cause or group, shrinkage with its interval, what is left, the file's calibration, what to fly next, and what of the log is
+    no measurement."""
     parts = [_gap(document), _where(document), cause(document), _harm(document), _left(document), calibration(document), _next(document)]
+    parts.append(_log(document))
     return " ".join(p for p in parts if p)
 
 
@@ -106,3 +108,12 @@ def _left(document: dict[str, Any]) -> str:
 def _next(document: dict[str, Any]) -> str:
     plan = document["next_experiment"]
     return f"To decide between {', '.join(plan['separates'])}: fly {plan['manoeuvre']}." if plan else ""
+
+
+def _log(document: dict[str, Any]) -> str:
+    """What of the log is no measurement; of several logs, of how many."""
+    found: dict[tuple[str, str], list[str]] = {}
+    for row in document.get("log") or ():
+        found.setdefault((row["channel"], row["finding"]), []).append(row["detail"])
+    said = [f"{channel} {details[0]}" + (f" (and in {len(details) - 1} more)" if len(details) > 1 else "") for (channel, _), details in found.items()]
+    return f"Of the log: {'; '.join(said)}." if said else ""

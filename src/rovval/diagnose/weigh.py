@@ -1,0 +1,126 @@
+"""What is asked of causes before they are named: a library effect is not named for being the least bad.
+
+Does it do better than a generic force on the axes where it acts? What would such a force still gain beside it? How far must healthy
+coefficients leave their tolerance so that it fits? Does the simulator follow the vehicle there at all? Does no axis get worse by much?
+And does it hold still? A true cause passes all; the nearest relative of an effect that the library lacks fails one of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from rovval import effects
+from rovval.channels import AXES
+from rovval.data import Array
+from rovval.diagnose.confirm import Confirmed
+from rovval.diagnose.gap import axis_weight
+from rovval.diagnose.point import Point, whole_evidence
+from rovval.diagnose.problem import Problem, corrected_residuals
+from rovval.diagnose.select import Selection
+from rovval.diagnose.separate import FEW, form_share
+from rovval.diagnose.shrinkage import shrinkage
+from rovval.diagnose.together import LEAST_EVIDENCE, Named
+from rovval.diagnose.unknown import Forces, forces
+from rovval.diagnose.wavering import wavering
+
+BETTER = 0.9  # of a cause's evidence: a generic force that has more is as near to the truth (chosen)
+ACTING = 0.15  # of what a cause closes: the axes on which it acts
+HARMS = 0.25  # of what causes close in all: a cause that opens more on one axis is the least bad (chosen)
+SKILL = 0.5  # of the squared motion: an axis on which more is left is not simulated at all (chosen)
+REAL = 100.0  # twice the log Bayes factor of a generic force from which it is not a healthy vehicle's form (tuning set)
+HOLDS = 0.02  # of what is left: a generic force that closes less on held-out windows is a fit to these windows (chosen)
+REMAINS = 0.10  # of a cause's evidence: less left over is form, not another cause
+WITHIN = 3.5  # standard deviations of tolerance that healthy coefficients reach (tuning set: 3.3 of some hundred)
+STRAINED = 5.0  # standard deviations from which something is left beside a cause
+BROKEN = 7.0  # standard deviations that say by themselves that something is at work: one of some hundred healthy logs of the tuning set reached 6
+WAVERS = 0.5  # of a cause's evidence: one whose value varies more surely than that is not it (opened sets: true ones 0.40 at most)
+
+
+@dataclass(frozen=True, slots=True)
+class Weighed:
+    """What causes were asked: their evidence, that of generic forces instead and beside them, the strain, whether the simulator follows the
+    vehicle; whether kinematics carry most of the gap, whether they are only the least bad, and whether something remains; which of
+    them do not hold still, the least steady first; the generic forces beside them."""
+
+    total: float
+    instead: float
+    beside: float
+    strain: float
+    skill: bool
+    parity_led: bool
+    least_bad: bool
+    remains: bool
+    unsteady: tuple[str, ...]
+    rest: Forces
+
+
+def weigh(problem: Problem, selection: Selection, final: Confirmed, general: Forces, before: list[Array]) -> Weighed:
+    """Ask the causes of ``final``; ``general`` are generic forces on the healthy vehicle, ``before`` the nominal vehicle's residuals."""
+    rest, total = forces(problem, final.point), whole_evidence(problem, final.point) - whole_evidence(problem, selection.healthy)
+    after, many = corrected_residuals(problem, final.beta), problem.blocks >= FEW
+    was, now = axis_weight(problem, before), axis_weight(problem, after)
+    closed = {axis: max(was[axis] - now[axis], 0.0) for axis in was}  # of the weighted gap
+    harmful = max(now[axis] - was[axis] for axis in was) > HARMS * (sum(was.values()) - sum(now.values()))
+    axes = _acting(closed)
+    holds = many and rest.share(problem.folds) > HOLDS
+    beside, instead = rest.evidence(axes) if holds else 0.0, general.evidence(axes)
+    excess, strained = _excess(problem, final.point, axes), strain(final.point)
+    sensors = all(of_sensor(n) for n in selection.named)  # a force imitates a bias of the sensor that shows what it does
+    skill = not many or sensors or _skill(problem, closed, now)
+    outdone = many and not sensors and instead > BETTER * total
+    varies = wavering(problem, final, selection.named) if many else {}
+    broken = not skill or strained > BROKEN or harmful or max(varies.values(), default=0.0) > max(WAVERS * total, LEAST_EVIDENCE)
+    least_bad = outdone or broken or max(beside, excess) > form_share(problem.blocks) * total
+    kinematic = float((problem.gap_data.c - problem.gap.c).sum()) > float(problem.gap.c.sum())
+    parity_led = kinematic and any(of_sensor(n) for n in selection.named)
+    sure = _shrinks(problem, final, before, axes) and strained <= STRAINED
+    remains = not sure or (holds and rest.evidence() > max(REAL, REMAINS * total))
+    return Weighed(total, instead, beside, strained, skill, parity_led, least_bad, remains, _unsteady(selection, varies), rest)
+
+
+def strain(point: Point) -> float:
+    """Standard deviations by which the most strained healthy coefficient is off."""
+    return float(np.abs(point.sigmas()).max(initial=0.0))
+
+
+def of_sensor(named: Named) -> bool:
+    """Whether a cause is a fault of a sensor."""
+    return effects.load(named.hypothesis.name.partition("[")[0]).place == "sensor"
+
+
+def _unsteady(selection: Selection, varies: Mapping[str, float]) -> tuple[str, ...]:
+    own = {n.hypothesis.name: max(WAVERS * n.evidence, LEAST_EVIDENCE) for n in selection.named}
+    return tuple(sorted((name for name, most in varies.items() if most > own[name]), key=lambda name: own[name] / varies[name]))
+
+
+def _shrinks(problem: Problem, final: Confirmed, before: list[Array], axes: tuple[str, ...]) -> bool:
+    """Whether the gap surely shrinks on held-out windows, in all or on an axis where the causes act."""
+    shrunk = shrinkage(problem, final, before, 0)
+    return shrunk["low"] > 0 or any(shrunk["axes_interval"][axis]["low"] > 0 for axis in axes if axis in shrunk["axes_interval"])
+
+
+def _acting(closed: Mapping[str, float]) -> tuple[str, ...]:
+    """Axes on which the causes close a good part of what they close."""
+    return tuple(axis for axis in AXES if closed.get(axis, 0.0) > ACTING * max(sum(closed.values()), 1e-300))
+
+
+def _skill(problem: Problem, closed: Mapping[str, float], left: Mapping[str, float]) -> bool:
+    """Whether on the axis where they close most the simulator, causes added, errs well less than the vehicle moves. Where it does not, it
+    replays an autopilot's answers to disturbances that nobody logged, which shows nothing about the vehicle."""
+    axis = max(closed, key=lambda a: closed[a])
+    moved = [np.where(part.ok, part.y - (part.y * part.ok).sum((0, 1)) / np.maximum(part.ok.sum((0, 1)), 1), 0.0) for part in problem.parts]
+    return left[axis] <= SKILL * axis_weight(problem, moved)[axis]
+
+
+def _excess(problem: Problem, point: Point, axes: tuple[str, ...]) -> float:
+    """What coefficients beyond tolerance cost, in twice the log of their prior, each as far as it moves the motion on ``axes``."""
+    moves = np.zeros((2, len(point.columns)))
+    for part, one in zip(problem.parts, point.linear, strict=True):
+        by_channel = np.einsum("wtck,tc->ck", np.where(part.ok[..., None], one.S, 0.0) ** 2, 1.0 / problem.white)
+        here = np.array([axis in axes for axis in part.axes], dtype=bool)
+        moves += by_channel[here].sum(axis=0), by_channel.sum(axis=0)
+    share = moves[0] / np.maximum(moves[1], 1e-300)
+    return float((np.maximum(point.sigmas() ** 2 - WITHIN**2, 0.0) * share[point.own :]).sum())

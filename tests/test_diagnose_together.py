@@ -1,0 +1,66 @@
+"""Causes in company: two that offset each other, one that an earlier one imitated; and causes that do not hold still are not named."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from diagnose_case import foreign, merlin, own
+from rovval.diagnose import diagnose
+from rovval.diagnose.contest import PAIR, folds_of
+from rovval.diagnose.library import Hypothesis, hypotheses
+from rovval.diagnose.problem import Problem, pose
+from rovval.diagnose.products import Products
+from rovval.diagnose.select import select
+from rovval.diagnose.stretches import cut_all
+from rovval.diagnose.wavering import SHARES, _varies, wavering
+
+
+def posed(*effects: str, seed: int = 5) -> tuple[Problem, list[Hypothesis]]:
+    parts, _ = cut_all([own(effects, seed, 200.0)], merlin(), "fossen", 10.0)
+    library = hypotheses(parts)[0]
+    return pose(parts, library, 0.05), library
+
+
+def test_two_causes_that_offset_each_other_are_both_found():
+    """Weaker thrust and less drag: the speed is as before, only the way there differs."""
+    document = diagnose([own(("rpm_scale:scale=-0.25", "quadratic_drag[surge]:scale=-0.5", "linear_drag[surge]:scale=-0.5"), 5, 240.0)], merlin()).document
+    named = {c["effect"] for c in document["causes"]}
+    assert {"rpm_scale"} <= named and named & {"quadratic_drag[surge]", "linear_drag[surge]"}, document["sentence"]
+
+
+def test_a_cause_that_is_there_holds_still():
+    p, library = posed("inflow_loss:loss=0.4", "thruster_degraded[VAC]:loss=0.4")
+    found = select(p, library, 0, lambda text, share: None)
+    assert {n.hypothesis.name for n in found.named} == {"inflow_loss", "thruster_degraded[VAC]"} and found.final
+    assert all(most < 0.1 * n.evidence for n, most in zip(found.named, wavering(p, found.final, found.named).values(), strict=True))
+
+
+def test_a_thruster_that_drops_out_now_and_then_is_not_called_weak(tmp_path: Path):
+    document = diagnose([foreign(tmp_path, (("intermittent_thruster", "VAC", 1.5),), 77)], merlin()).document
+    assert document["causes"] == [] and document["verdict"] == "unknown"
+    assert "VAC" in document["left"]["text"] and "from moment to moment" in document["left"]["text"]
+
+
+def test_what_varies_is_told_from_what_does_not():
+    """Values that scatter between windows have evidence for it, the same mean without scatter has evidence against it."""
+    rng, m = np.random.default_rng(3), 40
+    size, noise = 1.0, 0.1
+    values = {scatter: size + scatter * rng.normal(size=m) + noise * rng.normal(size=m) for scatter in (0.0, 0.5)}
+    found = {}
+    for scatter, value in values.items():
+        departure = (value - value.mean()) / noise**2
+        data = Products(np.full((m, 1, 1), noise**-2), departure[:, None], departure**2, (0,))
+        found[scatter] = max(_varies(data, share * size, 1.0) for share in SHARES)
+    assert found[0.0] < 0 and found[0.5] > 50
+
+
+def test_folds_leave_nothing_to_extrapolate_in_a_long_log():
+    folds = folds_of(np.zeros(30, dtype=int))
+    tests = np.stack([f.test for f in folds])
+    assert (tests.sum(axis=0) == 1).all() and len(folds) == 5
+    for fold in folds:
+        held = np.flatnonzero(fold.test)
+        assert (np.diff(held.reshape(-1, PAIR), axis=1) == 1).all(), "neighbours go together"
+    assert [np.flatnonzero(f.test).tolist() for f in folds_of(np.zeros(5, dtype=int))] == [[i] for i in range(5)]
