@@ -30,7 +30,7 @@ FALSE_ALARM = 0.05  # family-wise, over the whole library
 PLAIN = 20.0  # twice the log Bayes factor that needs no p-value: where a strong effect is left of the log, null draws hold some of it
 NEEDLESS = 6.0  # twice the log Bayes factor below which an effect is dropped again (Kass & Raftery 1995: positive evidence)
 PROMISING = 0.5  # of `LEAST_EVIDENCE`, in the linearised model: less is not re-simulated
-WAITING = 60.0  # evidence from which an effect that closes little by itself may wait for another (chosen)
+WAITING, REMAINS = 60.0, 0.1  # evidence, and share of that of what stands, from which what closes little by itself may wait for another (chosen)
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,15 +99,16 @@ def _round(problem: Problem, library: list[Hypothesis], open_now: list[Hypothesi
     weighed = finalists(problem, data, open_now, detection, base, chosen, loss)
     able = admissible(problem, sharpened(problem, admissible(problem, weighed), base, loss))
     told = tuple((r.hypothesis.name, r.evidence, r.gain) for r in able or weighed)
-    return _Round(detection, [r for r in able if worthy(r, alone=not named)] or _waiting(problem, weighed, base, loss), told)
+    return _Round(detection, [r for r in able if worthy(r, alone=not named)] or _waiting(problem, weighed, base, loss, sum(n.evidence for n in named)), told)
 
 
-def _waiting(problem: Problem, weighed: list[Rival], base: Point, loss: Losses) -> list[Rival]:
+def _waiting(problem: Problem, weighed: list[Rival], base: Point, loss: Losses, stands: float) -> list[Rival]:
     """The finalist with the most evidence, which closes little by itself, as long as others are still to be found: of two causes that
-    offset each other, each alone opens the gap. Whether it is worth its name is asked again in the end (`together`)."""
-    rivals = possible(problem, weighed)[:1]
-    rivals = possible(problem, sharpened(problem, rivals, base, loss)) if rivals and rivals[0].evidence >= WAITING else []
-    return [r for r in rivals if r.evidence >= WAITING]
+    offset each other, each alone opens the gap. Whether it is worth its name is asked again in the end (`together`). Of causes whose evidence is
+    ``stands``, the form of the equations alone leaves a share."""
+    least = max(WAITING, REMAINS * stands)
+    rivals = [r for r in possible(problem, weighed)[:1] if r.evidence >= least]
+    return [r for r in possible(problem, sharpened(problem, rivals, base, loss)) if r.evidence >= least] if rivals else []
 
 
 def _found(problem: Problem, one: _Round, seed: int) -> Named:
