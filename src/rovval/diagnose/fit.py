@@ -16,7 +16,8 @@ from rovval.diagnose.confirm import Confirmed
 from rovval.diagnose.fit_text import text
 from rovval.diagnose.library import hypotheses
 from rovval.diagnose.problem import Problem, corrected_residuals, pose
-from rovval.diagnose.shrinkage import harm, shrinkage
+from rovval.diagnose.refitted import shrinkage_refitted
+from rovval.diagnose.shrinkage import NONE, harm
 from rovval.diagnose.stretches import cut_all
 from rovval.diagnose.tunable import chosen
 from rovval.diagnose.tune import determinable, tuned, undetermined
@@ -84,7 +85,7 @@ def _document(
     problem: Problem, fitted: Confirmed | None, low: Array, high: Array, out: dict[int, dict[str, Any]], slop: float, seed: int
 ) -> dict[str, Any]:
     plant, rows = problem.plant, dict[str, Any]()
-    shrunk = shrinkage(problem, fitted, corrected_residuals(problem), seed)
+    shrunk = shrinkage_refitted(problem, fitted, corrected_residuals(problem), slop, seed) if fitted else dict(NONE)
     for i, slot in enumerate(fitted.slots if fitted else ()):
         assert fitted is not None
         p, value, was = plant.slots[slot].parameter, float(fitted.beta[slot]), float(problem.origin[slot])
