@@ -40,7 +40,7 @@ def test_a_cause_that_is_there_holds_still():
 def test_a_thruster_that_drops_out_now_and_then_is_not_called_weak(tmp_path: Path):
     document = diagnose([foreign(tmp_path, (("intermittent_thruster", "VAC", 1.5),), 77)], merlin()).document
     assert document["causes"] == [] and document["verdict"] == "unknown"
-    assert "VAC" in document["left"]["text"] and "from moment to moment" in document["left"]["text"]
+    assert "VAC" in document["left"]["text"] and "change along the log" in document["left"]["text"]
 
 
 def test_what_varies_is_told_from_what_does_not():

@@ -25,7 +25,7 @@ def left(problem: Problem, forces: Forces, point: Point, unsteady: Sequence[str]
     text += "; no effect of the library is shown to be it"
     strained = [(problem.plant.slots[c].key, z) for c, z in zip(point.columns[point.own :], point.sigmas(), strict=True) if abs(z) > STRAINED]
     if unsteady:
-        text += f"; nearest is {' and '.join(unsteady)}, which would have to change from moment to moment"
+        text += f"; nearest is {' and '.join(unsteady)}, whose value would have to change along the log"
     elif strained:
         name, z = max(strained, key=lambda item: abs(item[1]))
         text += f"; nearest is {name}, which would have to be {abs(z):.0f} times its tolerance off"

@@ -47,8 +47,9 @@ def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgem
 
 
 def _named(problem: Problem, selection: Selection, final: Confirmed, weighed: Weighed) -> Judgement:
-    rest = left(problem, weighed.rest, final.point, weighed.unsteady) if weighed.remains else None
     groups = {n.hypothesis.name: n.group for n in selection.named}
+    gone = [name for name in weighed.unsteady if name not in groups]
+    rest = left(problem, weighed.rest, final.point, gone) if weighed.remains else None
     probability = {n.hypothesis.name: _probability(n) for n in selection.named}
     verdict = "partly_explained" if weighed.remains else "explained"
     figures = weighed.total, weighed.instead, weighed.beside, weighed.strain

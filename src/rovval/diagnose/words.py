@@ -25,9 +25,9 @@ def sentence(document: dict[str, Any]) -> str:
 
 
 def first(document: dict[str, Any]) -> str:
-    """The answer itself: the cause; where there is none and many coefficients are off, these."""
-    named = cause(document)
-    return f"{named} {calibration(document)}".rstrip() if document["verdict"] == "unknown" else named
+    """The answer itself: the cause; where there is none, or it leaves the gap as it is, and many coefficients are off, these."""
+    named, open_still = cause(document), document["verdict"] == "unknown" or unmoved(document.get("shrinkage") or {})
+    return f"{named} {calibration(document)}".rstrip() if open_still else named
 
 
 def moved(parameters: Mapping[str, Any]) -> dict[str, Any]:
