@@ -11,10 +11,10 @@ from rovval.channels import AXES
 from rovval.data import Array
 from rovval.diagnose import Diagnosis, next_flight
 from rovval.diagnose.causes import causes, settings
+from rovval.diagnose.faults import faults
 from rovval.diagnose.gap import axis_rows, noise_loss
 from rovval.diagnose.localise import change_points, slices, worst
 from rovval.diagnose.miscalibrated import calibration
-from rovval.diagnose.parity import faults
 from rovval.diagnose.pictures import coherence_matrix, heat_map, traces
 from rovval.diagnose.problem import Problem, corrected_residuals
 from rovval.diagnose.select import Selection

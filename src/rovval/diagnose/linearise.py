@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.data import Array
-from rovval.diagnose.stretches import ANGLES, VELOCITY_CHANNELS, Stretches, difference, predicted
+from rovval.diagnose.cleaned import ANGLES
+from rovval.diagnose.stretches import VELOCITY_CHANNELS, Stretches, difference, predicted
 
 POSE_INDEX = {6: 3, 7: 4, 8: 2, 9: 5}  # start states after the six velocities: roll, pitch, depth, heading
 LANES = 20_000  # lanes a call, to bound memory (about 200 MB)

@@ -13,11 +13,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rovval.data import Array
+from rovval.diagnose.cleaned import BELIEVED
 from rovval.diagnose.contest import Fold, Prior, Ring, fit, inflation_of
 from rovval.diagnose.disturbance import Disturbance, answers, calm, disturbance, shown, undisturbed
 from rovval.diagnose.linearise import Linear, spread, state_spread
 from rovval.diagnose.products import Products, joined, products, start_corrected
-from rovval.diagnose.stretches import BELIEVED, Stretches
+from rovval.diagnose.stretches import Stretches
 
 PASSES = 5  # then sizes stand to within a few per cent
 ENOUGH = 6  # windows: in fewer, a steady force and a disturbance cannot be told apart, and none is fitted

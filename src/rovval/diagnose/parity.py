@@ -11,20 +11,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import signal, stats
+from scipy import signal
 
 from rovval.data import Array, Flags
 from rovval.diagnose.products import Products
+from rovval.diagnose.reckoning import LEAD, RELATIONS, complete, drift, measured, wrap_angles
 from rovval.diagnose.stretches import Stretches
 from rovval.effects import load
-from rovval.frames import euler_rates, rotation_from_euler, wrap
 from rovval.plant.sensors import Log, observe
 
-ROW_EVERY = 10  # samples between rows of a window: poses 1 s apart, whose errors are nearly independent
-RELATIONS = ("x", "y", "z", "phi", "theta", "psi")
 LEAST_SIGMA = (0.005, 0.005, 0.002, 0.001, 0.001, 0.001)  # m, rad: no sensor is believed below these (chosen)
 STEP = 0.25  # finite-difference step, in typical sizes
-LEAD = 10  # samples before a window from which a sensor's memory is filled: many times the steps of delays and lags (0.05 s)
 SMOOTH = 11  # samples of the quadratic by which motion is smoothed for traces: a delay's is a slope, which noise would drown and correlate
 FACTORS = ("dvl_scale",)  # faults that multiply what they measure
 DEAD_RECKONED = 0.5  # a position that follows the integrated velocity closer than half its noise allows was integrated from it
@@ -82,10 +79,10 @@ class Moved:
 
 def parity(stretches: Stretches, columns: tuple[int, ...]) -> Parity:
     """Parity rows of every window and the trace that each sensor parameter among ``columns`` leaves in them."""
-    nu, eta, whole = _measured(stretches)
-    nominal = _drift(nu[:, LEAD:], eta[:, LEAD:], stretches.run.dt)
+    nu, eta, whole = measured(stretches)
+    nominal = drift(nu[:, LEAD:], eta[:, LEAD:], stretches.run.dt)
     nu, eta = (signal.savgol_filter(a, SMOOTH, 2, axis=1) for a in (nu, eta))
-    smooth = _drift(nu[:, LEAD:], eta[:, LEAD:], stretches.run.dt)
+    smooth = drift(nu[:, LEAD:], eta[:, LEAD:], stretches.run.dt)
     sensor = [c for c in columns if load(stretches.plant.slots[c].effect).place == "sensor"]
     traces = np.zeros((*nominal.shape, len(columns)))
     for column in sensor:
@@ -94,55 +91,11 @@ def parity(stretches: Stretches, columns: tuple[int, ...]) -> Parity:
         beta = stretches.plant.null.copy()
         beta[column] += step
         seen = _seen(stretches, nu, eta, beta)
-        traces[..., columns.index(column)] = wrap_angles(_drift(seen.nu[:, LEAD:], seen.eta[:, LEAD:], stretches.run.dt) - smooth) / step
+        traces[..., columns.index(column)] = wrap_angles(drift(seen.nu[:, LEAD:], seen.eta[:, LEAD:], stretches.run.dt) - smooth) / step
     keep = [i for i, name in enumerate(RELATIONS) if whole[i]]
-    usable = _complete(stretches)
+    usable = complete(stretches)
     nominal[~usable], traces[~usable] = 0.0, 0.0
     return _weighted(stretches, nominal, traces, columns, keep)
-
-
-def faults(parity_rows: Parity, stretches: Stretches) -> list[dict[str, object]]:
-    """Each sensor effect fitted to the parity rows alone: value with 90 % interval and whether it is significant on its own."""
-    found: list[dict[str, object]] = []
-    by_effect: dict[str, list[int]] = {}
-    for i, column in enumerate(parity_rows.columns):
-        if np.abs(parity_rows.traces[..., i]).max(initial=0.0) > 0:
-            by_effect.setdefault(stretches.plant.slots[column].hypothesis, []).append(i)
-    total = float((parity_rows.rows**2).sum())
-    for places in by_effect.values():
-        trace = parity_rows.traces[..., places]
-        H = np.einsum("wqi,wqj->ij", trace, trace) + 1e-12 * np.eye(len(places))
-        g = np.einsum("wqi,wq->wi", trace, parity_rows.rows)
-        value = np.linalg.solve(H, g.sum(axis=0))
-        score = g - np.einsum("wqi,wqj,j->wi", trace, trace, value)
-        bread = np.linalg.inv(H)
-        error = np.sqrt(np.diag(bread @ (score.T @ score) @ bread))
-        t = float(stats.t.ppf(0.95, max(len(g) - len(places), 2)))
-        share = float(g.sum(axis=0) @ value) / total if total > 0 else 0.0
-        for j, place in enumerate(places):
-            slot = stretches.plant.slots[parity_rows.columns[place]]
-            low, high = float(value[j] - t * error[j]), float(value[j] + t * error[j])
-            found.append(
-                {
-                    "check": "measured velocity against measured pose",
-                    "fault": slot.key,
-                    "value": float(value[j]),
-                    "low": low,
-                    "high": high,
-                    "unit": slot.parameter.unit,
-                    "share": share,
-                    "significant": bool(low > 0 or high < 0) and share > 0.05,
-                    "note": "fitted alone, by kinematics, without dynamics",
-                }
-            )
-    return found
-
-
-def wrap_angles(rows: Array) -> Array:
-    """Differences of the last three relations (angles) wrapped; rows (..., 6 relations)."""
-    out = np.array(rows)
-    out[..., 3:] = wrap(out[..., 3:])
-    return out
 
 
 def _seen(stretches: Stretches, nu: Array, eta: Array, beta: Array) -> Log:
@@ -150,46 +103,6 @@ def _seen(stretches: Stretches, nu: Array, eta: Array, beta: Array) -> Log:
     plant = stretches.plant
     log = Log(nu, eta, stretches.run.dt, nu[:, 0], eta[:, 0])
     return observe(plant.vehicle, plant.index, plant.null, np.tile(beta, (len(nu), 1)), log)
-
-
-def _measured(stretches: Stretches) -> tuple[Array, Array, Flags]:
-    """Velocities and poses of the windows and the LEAD before them (m, LEAD + n, 6), held before the log's start, gaps bridged linearly,
-    and which relations the log can serve (6,)."""
-    run = stretches.run
-    at = np.maximum(stretches.start[:, None] + np.arange(-LEAD, stretches.steps + 1)[None, :], 0)
-    nu = np.stack([_bridged(run.get(c))[at] for c in ("u", "v", "w", "p", "q", "r")], axis=-1)
-    eta = np.stack([_bridged(run.get(c), angle=c in RELATIONS[3:])[at] for c in RELATIONS], axis=-1)
-    attitude = all(run.measured(c) for c in RELATIONS[3:])
-    linear = attitude and all(run.measured(c) for c in ("u", "v", "w"))
-    angular = attitude and all(run.measured(c) for c in ("p", "q", "r"))
-    return nu, eta, np.array([(linear if i < 3 else angular) and run.measured(c) for i, c in enumerate(RELATIONS)])
-
-
-def _bridged(values: Array, angle: bool = False) -> Array:
-    good = np.isfinite(values)
-    if not good.any():
-        return np.zeros_like(values)
-    line = np.interp(np.arange(len(values)), np.flatnonzero(good), np.unwrap(values[good]) if angle else values[good])
-    return np.asarray(line)
-
-
-def _complete(stretches: Stretches) -> Flags:
-    """Windows (m,) in which velocity and attitude were measured nearly throughout (bridged gaps would look like faults)."""
-    run = stretches.run
-    at = stretches.start[:, None] + np.arange(stretches.steps + 1)[None, :]
-    needed = [c for c in ("u", "v", "w", "p", "q", "r", "phi", "theta", "psi") if run.measured(c)]
-    return np.asarray(np.all([run.ok(c)[at].mean(axis=1) > 0.9 for c in needed], axis=0))
-
-
-def _drift(nu: Array, eta: Array, dt: float) -> Array:
-    """Dead-reckoned less measured pose (m, rows, 6) at every row, mean of the window taken out. Trapezoidal rule."""
-    world = np.einsum("mnij,mnj->mni", rotation_from_euler(eta[..., 3:]), nu[..., :3])
-    rates = np.concatenate([world, euler_rates(eta[..., 3:], nu[..., 3:])], axis=-1)
-    path = np.concatenate([np.zeros_like(rates[:, :1]), np.cumsum(0.5 * dt * (rates[:, 1:] + rates[:, :-1]), axis=1)], axis=1)
-    off = wrap_angles(eta[:, :1] + path - eta)
-    off[..., 3:] = np.unwrap(off[..., 3:], axis=1)
-    rows = off[:, ::ROW_EVERY]
-    return np.asarray(rows - rows.mean(axis=1, keepdims=True))
 
 
 def _weighted(stretches: Stretches, nominal: Array, traces: Array, columns: tuple[int, ...], keep: list[int]) -> Parity:

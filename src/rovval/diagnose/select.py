@@ -12,10 +12,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rovval.diagnose.admissible import admissible, possible, simplest
 from rovval.diagnose.confirm import Confirmed, confirm, roughly
 from rovval.diagnose.contest import Prior, Ring, contest, fit
 from rovval.diagnose.detect import Detection, detect
-from rovval.diagnose.finalists import admissible, finalists, freed, possible, prior_of, sharpened, simplest
+from rovval.diagnose.finalists import finalists, freed, prior_of, sharpened
 from rovval.diagnose.library import Hypothesis
 from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem, at, columns_of

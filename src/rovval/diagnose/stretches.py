@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 from rovval.channels import AXES
 from rovval.data import Array, Flags, Run
+from rovval.diagnose.cleaned import ANGLES, cleaned, strides
+from rovval.diagnose.contact import in_contact
 from rovval.diagnose.sensed import sensed
 from rovval.drive import Drive, drive, start_states, startable
 from rovval.errors import BadInput, all_at_once
@@ -25,15 +27,9 @@ VELOCITY_CHANNELS = ("u", "v", "w", "p", "q", "r")
 ATTITUDE_CHANNELS = ("phi", "theta")
 AXIS_OF = dict(zip((*VELOCITY_CHANNELS, "x", "y", "z", "phi", "theta", "psi"), (*AXES, *AXES), strict=True))
 POSE_OF = dict(zip(VELOCITY_CHANNELS, ("x", "y", "z", "phi", "theta", "psi"), strict=True))
-ANGLES = ("phi", "theta", "psi")
 FEWEST_WINDOWS = 3  # one to hold out, two to fit on
 MANY_WINDOWS = 6  # fewer, and shorter windows are tried (chosen)
 SHORTEST_SHARE = 0.6  # chosen: a window with fewer of its samples measured is left out
-STILL_S, STILL_M = 3.0, 0.03  # chosen: at rest for 3 s within the noise of a depth sensor
-DEPTH_COVERED, AT_END = 0.3, 0.08  # m, chosen: contact is looked for only in logs that dive, near their ends of depth
-BELIEVED = {"u": 1e-3, "v": 1e-3, "w": 1e-3, "p": 1e-3, "q": 1e-3, "r": 1e-3, "phi": 1e-3, "theta": 1e-3, "psi": 2e-3, "x": 5e-3, "y": 5e-3, "z": 5e-3}
-# m/s, rad/s, rad, m: below these no ROV sensor is believed (chosen; keeps a noise-free log from dividing by zero)
-OUTLIER_SIGMA = 8.0  # chosen: a sample this far from its neighbours' line is an outlier of the sensor
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +115,7 @@ def _cut(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Stretches:
     channels = residual_channels(run)
     steps = round(window_s / run.dt) - 1
     touching = in_contact(run, driven)
-    values, good, noise, wild = _cleaned(run, channels)
+    values, good, noise, wild = cleaned(run, channels)
     start = _starts(driven.known & ~touching, startable(run) & ~wild, steps)
     inside = start[:, None] + np.arange(steps + 1)[None, :]
     possible = np.mean([1.0 / stride for stride in strides(run, channels)])
@@ -142,25 +138,6 @@ def residual_channels(run: Run) -> tuple[str, ...]:
     chosen = [c if run.measured(c) else POSE_OF[c] for c in VELOCITY_CHANNELS]
     chosen += [c for c in ATTITUDE_CHANNELS if c not in chosen]
     return tuple(c for c in chosen if run.measured(c))
-
-
-def in_contact(run: Run, driven: Drive) -> Flags:
-    """Where the vehicle is at the surface, held or aground (n,): thrusters idle at the shallow end of the depth that the log covers, or
-    idle and still at the deep end.
-
-    The simulator knows neither surface, hand nor floor. Nothing is found in a log without depth or that hardly changes depth.
-    """
-    still = np.zeros(len(run), dtype=bool)
-    depth = run.get("z")
-    if not run.measured("z") or np.nanmax(depth) - np.nanmin(depth) < DEPTH_COVERED:
-        return still
-    span = round(STILL_S / run.dt)
-    idle: Flags = np.asarray((np.abs(driven.inputs.speed) < 1e-9).all(axis=1))
-    deep: Flags = np.asarray(depth > np.nanmax(depth) - AT_END)
-    for at in range(0, len(run) - span, span // 5):
-        if idle[at : at + span].all() and deep[at : at + span].all() and np.ptp(depth[at : at + span]) < STILL_M:
-            still[at : at + span] = True
-    return still | (idle & (depth < np.nanmin(depth) + AT_END))
 
 
 def predicted(stretches: Stretches, nu: Array, eta: Array) -> Array:
@@ -193,51 +170,3 @@ def _starts(known: Flags, ready: Flags, steps: int) -> NDArray[np.int64]:
         else:
             at += 1
     return np.array(starts, dtype=np.int64)
-
-
-def strides(run: Run, channels: Sequence[str]) -> tuple[int, ...]:
-    """Grid points per real sample of each channel: 1 at the grid's rate, 3 for a depth logged at 3 Hz. What alignment drew between two
-    samples is not evidence of its own."""
-    periods = [run.resampled[c].period_s if c in run.resampled else run.dt for c in channels]
-    return tuple(max(1, round(period / run.dt)) for period in periods)
-
-
-def _cleaned(run: Run, channels: Sequence[str]) -> tuple[Array, Flags, Array, Flags]:
-    """Channel values (n, c), where they count, white noise of each (c,), and where isolated outliers were set aside (n,): no window begins
-    at one, since its start state would be the outlier."""
-    values = run.stack(tuple(channels))
-    good = np.isfinite(values)
-    noise, spoiled = np.zeros(len(channels)), np.zeros(len(run), dtype=bool)
-    for i, (name, stride) in enumerate(zip(channels, strides(run, channels), strict=True)):
-        real = np.arange(0, len(run), stride)
-        keep = np.zeros(len(run), dtype=bool)
-        keep[real] = good[real, i]
-        series = values[real, i]
-        wild = _wild(series, name)
-        spoiled[real] |= wild & keep[real]
-        keep[real] &= ~wild
-        noise[i] = _noise(series, keep[real])
-        good[:, i] = keep
-    return np.where(good, values, 0.0), good, noise, spoiled
-
-
-def _wild(series: Array, name: str) -> Flags:
-    """Isolated samples far from the mean of their neighbours (n,)."""
-    wild = np.zeros(len(series), dtype=bool)
-    before, after = series[:-2] - series[1:-1], series[2:] - series[1:-1]
-    bend = 0.5 * (wrap(before) + wrap(after)) if name in ANGLES else 0.5 * (before + after)
-    finite = bend[np.isfinite(bend)]
-    spread = 1.4826 * float(np.median(np.abs(finite))) if len(finite) else 0.0
-    with np.errstate(invalid="ignore"):
-        wild[1:-1] = np.abs(bend) > OUTLIER_SIGMA * max(spread, 2 * BELIEVED[name])
-    return wild
-
-
-def _noise(series: Array, good: Flags) -> float:
-    """White noise of a channel from third differences (median absolute, so that manoeuvres do not count).
-
-    A third difference of white noise has variance 20 sigma^2 (binomial coefficients 1 3 3 1).
-    """
-    third = np.diff(series, n=3)
-    usable = good[3:] & good[2:-1] & good[1:-2] & good[:-3]
-    return float(1.4826 * np.median(np.abs(third[usable])) / np.sqrt(20.0)) if usable.any() else 0.0

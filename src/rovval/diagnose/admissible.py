@@ -1,0 +1,75 @@
+"""Which finalists could be the cause, and which of those to name first."""
+
+from __future__ import annotations
+
+from rovval.diagnose.confirm import significance
+from rovval.diagnose.problem import Problem
+from rovval.diagnose.separate import PER_PARAMETER, Rival, alike, form_share
+
+HALF_REVERSED = 0.55  # 0.5 is a dead thruster; the margin is chosen
+LEAST_SIGMA = 2.2  # standard errors, slop included, by which an effect departs from nothing (tuning set: healthy logs reach 2.0)
+TOLERANCES = 3.0  # times the tolerance of calibration slop within which a coefficient is not worth a name
+LOSSES = 1.5  # the same for a loss of thrust that comes and goes
+SERIOUS = 0.5  # share of the best evidence from which a rival's gain counts
+NEARLY = 0.9  # of the best's gain
+LEAST_OF_BEST = 0.5  # of the gain of the best serious rival
+REVERSED, DEGRADED = "thruster_reversed", "thruster_degraded"  # one imitates the other up to a dead thruster, and no further
+
+
+def admissible(problem: Problem, weighed: list[Rival]) -> list[Rival]:
+    """Of the `possible` those that could be the cause by themselves: they close on held-out windows at least half of what the best of the
+    serious rivals closes. What a hypothesis achieves only with slop's help leaves the gap itself open."""
+    rivals = _in_form(problem, weighed)
+    if not rivals:
+        return []
+    serious = max(r.gain for r in rivals if r.evidence >= SERIOUS * rivals[0].evidence)
+    return [r for r in possible(problem, weighed) if r.gain >= LEAST_OF_BEST * serious and r.gain > 0]
+
+
+def possible(problem: Problem, weighed: list[Rival]) -> list[Rival]:
+    """Finalists whose size is beyond what slop of all other coefficients could feign, best evidence first."""
+    rivals = _in_form(problem, weighed)
+    return [r for r in rivals if significance(problem, r.fitted, r.hypothesis.slots) >= LEAST_SIGMA and _beyond_tolerance(problem, r)]
+
+
+def simplest(problem: Problem, rivals: list[Rival]) -> Rival:
+    """Of the rivals that the form of an equation may set apart, the one with the fewest parameters, if it closes nearly as much as the best;
+    one that rests on a bound comes last."""
+    most, least = len(rivals[0].hypothesis.slots), (1.0 - form_share(problem.blocks)) * rivals[0].evidence
+    tied = [
+        r for r in rivals
+        if r is rivals[0]
+        or alike(problem, r, rivals[0])
+        or (r.evidence >= least and r.gain >= (NEARLY - PER_PARAMETER * max(most - len(r.hypothesis.slots), 0)) * rivals[0].gain)
+    ]  # fmt: skip
+    return min(tied, key=lambda r: (bool(r.fitted.at_bound), len(r.hypothesis.slots), -r.evidence))
+
+
+def _in_form(problem: Problem, weighed: list[Rival]) -> list[Rival]:
+    """Finalists that are what their name says, where the best has evidence at all: a thruster counts as reversed only where it pushes the
+    other way (up to half-reversed it is a degraded one), and what begins before the log does has no onset in it."""
+    rivals = [r for r in weighed if not _half_reversed(r) and not _from_the_start(problem, r)]
+    return rivals if rivals and rivals[0].evidence > 0 else []
+
+
+def _beyond_tolerance(problem: Problem, rival: Rival) -> bool:
+    """Whether some parameter that healthy vehicles and sensors vary in is further off than they are; True where none has a tolerance.
+
+    A loss of thrust that begins, or that a stream causes, is held against what thrust may be off by all the time.
+    """
+    beta, origin, slots = rival.fitted.beta, problem.origin, problem.plant.slots
+    tolerance = {s: TOLERANCES * problem.slop.sd[s] for s in rival.hypothesis.slots if s in problem.slop.sd}
+    thrust = max((sd for s, sd in problem.slop.sd.items() if slots[s].effect == "thruster_degraded"), default=0.0)
+    tolerance |= {s: LOSSES * thrust for s in rival.hypothesis.slots if slots[s].parameter.name == "loss" and s not in tolerance}
+    return not tolerance or any(abs(beta[s] - origin[s]) >= limit for s, limit in tolerance.items())
+
+
+def _from_the_start(problem: Problem, rival: Rival) -> bool:
+    first = min(float(part.start[0] + part.steps) * part.run.dt for part in problem.parts)
+    slots = problem.plant.slots
+    return any(slots[s].parameter.name == "onset" and rival.fitted.beta[s] < first for s in rival.hypothesis.slots)
+
+
+def _half_reversed(rival: Rival) -> bool:
+    h = rival.hypothesis
+    return h.name.startswith(REVERSED) and any(rival.fitted.beta[s] < HALF_REVERSED for s in h.slots)

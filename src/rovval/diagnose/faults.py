@@ -1,0 +1,46 @@
+"""Sensor faults as kinematics alone show them: each fitted to the parity rows by itself, with its interval."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import stats
+
+from rovval.diagnose.parity import Parity
+from rovval.diagnose.stretches import Stretches
+
+
+def faults(parity_rows: Parity, stretches: Stretches) -> list[dict[str, object]]:
+    """Each sensor effect fitted to the parity rows alone: value with 90 % interval and whether it is significant on its own."""
+    found: list[dict[str, object]] = []
+    by_effect: dict[str, list[int]] = {}
+    for i, column in enumerate(parity_rows.columns):
+        if np.abs(parity_rows.traces[..., i]).max(initial=0.0) > 0:
+            by_effect.setdefault(stretches.plant.slots[column].hypothesis, []).append(i)
+    total = float((parity_rows.rows**2).sum())
+    for places in by_effect.values():
+        trace = parity_rows.traces[..., places]
+        H = np.einsum("wqi,wqj->ij", trace, trace) + 1e-12 * np.eye(len(places))
+        g = np.einsum("wqi,wq->wi", trace, parity_rows.rows)
+        value = np.linalg.solve(H, g.sum(axis=0))
+        score = g - np.einsum("wqi,wqj,j->wi", trace, trace, value)
+        bread = np.linalg.inv(H)
+        error = np.sqrt(np.diag(bread @ (score.T @ score) @ bread))
+        t = float(stats.t.ppf(0.95, max(len(g) - len(places), 2)))
+        share = float(g.sum(axis=0) @ value) / total if total > 0 else 0.0
+        for j, place in enumerate(places):
+            slot = stretches.plant.slots[parity_rows.columns[place]]
+            low, high = float(value[j] - t * error[j]), float(value[j] + t * error[j])
+            found.append(
+                {
+                    "check": "measured velocity against measured pose",
+                    "fault": slot.key,
+                    "value": float(value[j]),
+                    "low": low,
+                    "high": high,
+                    "unit": slot.parameter.unit,
+                    "share": share,
+                    "significant": bool(low > 0 or high < 0) and share > 0.05,
+                    "note": "fitted alone, by kinematics, without dynamics",
+                }
+            )
+    return found
