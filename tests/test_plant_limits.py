@@ -46,7 +46,7 @@ def test_settings_are_refused_by_name_and_all_at_once():
     with pytest.raises(UsageProblem) as refusal:
         parse_settings(plant, ["inflow_los:loss=0.3", "thruster_degraded:loss=1", "inflow_loss:los=1", "dvl_scale:scale=9", "dvl_scale:scale=x"])
     message = str(refusal.value)
-    parts = ("no effect named 'inflow_los'", "thruster_degraded[HFP]", "inflow_loss has loss", "dvl_scale.scale = 9 1, allowed -0.2 to 0.2")
+    parts = ("no effect named 'inflow_los'", "thruster_degraded[HFP]", "inflow_loss has loss", "dvl_scale.scale = 9 1, allowed -0.7 to 1.2")
     for part in (*parts, "'x' is not a number"):
         assert part in message
     assert parse_settings(plant, ["thruster_degraded[HFP]:loss=0.4", "waves:amplitude=0.2,period=5"])[plant.index["waves.period"]] == 5
@@ -55,9 +55,9 @@ def test_settings_are_refused_by_name_and_all_at_once():
 def test_out_of_bounds_parameters_are_refused_by_name():
     plant = Plant(cases.merlin())
     beta = plant.null.copy()
-    beta[plant.index["dvl_scale.scale"]] = 0.5
+    beta[plant.index["dvl_scale.scale"]] = 1.5
     beta[plant.index["gyro_bias.r"]] = np.nan
-    with pytest.raises(UsageProblem, match=r"(?s)dvl_scale.scale = 0.5 .*gyro_bias.r = nan"):
+    with pytest.raises(UsageProblem, match=r"(?s)dvl_scale.scale = 1.5 .*gyro_bias.r = nan"):
         cases.run(plant, beta=beta)
 
 

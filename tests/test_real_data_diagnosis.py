@@ -73,10 +73,10 @@ def without(fitted: Vehicle, piece: str) -> Vehicle:
 
 KNOCKED_OUT = [
     missed("buoyancy", {"buoyancy_error"}, instead="current_constant (downward part) or tether_tension"),
-    missed("quadratic drag", {f"quadratic_drag[{a}]" for a in ("surge", "sway", "heave", "yaw")}, instead="thruster_deadband"),
-    pytest.param("thruster_degraded[T1]:loss=-0.5", {"thruster_degraded[T1]"}),
-    missed("thruster_degraded[T6]:loss=-0.5", {"thruster_degraded[T6]"}, instead="cg_offset and attitude_bias"),
-    missed("reverse_asymmetry:scale=0.5", {"reverse_asymmetry"}, instead="cg_offset"),
+    pytest.param("quadratic drag", {f"quadratic_drag[{a}]" for a in ("surge", "sway", "heave", "yaw")}),
+    missed("thruster_degraded[T1]:loss=-0.5", {"thruster_degraded[T1]"}, instead="attitude_bias alone: the other runs' fit leaves thrust 35 % off"),
+    missed("thruster_degraded[T6]:loss=-0.5", {"thruster_degraded[T6]"}, instead="attitude_bias"),
+    missed("reverse_asymmetry:scale=0.5", {"reverse_asymmetry"}, instead="attitude_bias"),
 ]
 
 

@@ -18,8 +18,7 @@ from rovval.diagnose.stretches import Stretches
 from rovval.plant import Plant
 
 ONSETS = 9  # starting points for an onset, evenly inside the log
-FAR = ("cg_offset",)
-FAR_SIZES = (-5.0, -2.0, 2.0, 5.0)  # typical sizes
+FAR = {"cg_offset": (-5.0, -2.0, 2.0, 5.0), "time_offset": (-8.0, -4.0, 4.0, 8.0)}  # typical sizes of starting points away from the null value
 MOST_STARTS = 12  # of a hypothesis with several such parameters
 PRIOR_WIDTH = 4.0  # wide prior, in typical sizes: keeps a parameter that the log does not see from running away
 
@@ -79,13 +78,12 @@ def _starts(
 
 
 def _far(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], next_id: int) -> list[Hypothesis]:
-    """Starting points well away from the null value, for trim: a vehicle that tumbles in simulation has no useful slope there."""
-    if effect.name not in FAR:
-        return []
+    """Starting points well away from the null value: a vehicle that tumbles in simulation shows no useful slope of its trim there, nor do
+    commands that came a second late and step from one level to the next."""
     found = list[Hypothesis]()
     for slot in slots:
         p = plant.slots[slot].parameter
-        for size in FAR_SIZES:
+        for size in FAR.get(effect.name, ()):
             value = p.null + size * p.typical
             if p.low <= value <= p.high:
                 number = len(found)

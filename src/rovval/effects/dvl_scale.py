@@ -19,7 +19,7 @@ EFFECT = Effect(
     title="Scale of the velocity log",
     place="sensor",
     equation="u v w logged = (1 + scale) u v w, scale = error of the speed of sound (diagnosis.md S4).",
-    parameters=(Parameter("scale", "1", -0.2, 0.2, 0.0, 0.02, "+-1 to 5 % (diagnosis.md S4)"),),
+    parameters=(Parameter("scale", "1", -0.7, 1.2, 0.0, 0.02, "+-1 to 5 % (diagnosis.md S4); the bounds hold a wrong unit, too: knots, 0.94"),),
     signature="depth rate against w, distance run against position",
     confused_with=("rpm_scale", "quadratic_drag"),
     separates="integral of w against depth: no dynamics needed",
