@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from diagnose_case import foreign, merlin, own
 from rovval.diagnose import diagnose
@@ -41,6 +43,19 @@ def test_a_thruster_that_drops_out_now_and_then_is_not_called_weak(tmp_path: Pat
     document = diagnose([foreign(tmp_path, (("intermittent_thruster", "VAC", 1.5),), 77)], merlin()).document
     assert document["causes"] == [] and document["verdict"] == "unknown"
     assert "VAC" in document["left"]["text"] and "change along the log" in document["left"]["text"]
+
+
+def test_commands_that_come_most_of_a_second_late_are_found_though_no_slope_shows_it():
+    document = diagnose([own(("time_offset:tau=0.8",), 5, 160.0)], merlin()).document
+    (cause,) = document["causes"]
+    assert cause["effect"] == "time_offset" and cause["parameters"]["tau"]["low"] < 0.8 < cause["parameters"]["tau"]["high"]
+
+
+def test_velocities_in_knots_are_a_scale():
+    run = own((), 5, 160.0)
+    knots = replace(run, values={**run.values, **{c: 1.944 * run.get(c) for c in "uvw"}})
+    (cause,) = diagnose([knots], merlin()).document["causes"]
+    assert cause["effect"] == "dvl_scale" and cause["parameters"]["scale"]["value"] == pytest.approx(0.944, abs=0.05)
 
 
 def test_what_varies_is_told_from_what_does_not():

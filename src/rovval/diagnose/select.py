@@ -32,6 +32,7 @@ PLAIN = 20.0  # twice the log Bayes factor that needs no p-value: where a strong
 NEEDLESS = 6.0  # twice the log Bayes factor below which an effect is dropped again (Kass & Raftery 1995: positive evidence)
 PROMISING = 0.5  # of `LEAST_EVIDENCE`, in the linearised model: less is not re-simulated
 WAITING, REMAINS = 60.0, 0.1  # evidence, and share of that of what stands, from which what closes little by itself may wait for another (chosen)
+CANDIDATES = 3  # that are settled to find the one that waits
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,8 +109,8 @@ def _waiting(problem: Problem, weighed: list[Rival], base: Point, loss: Losses, 
     offset each other, each alone opens the gap. Whether it is worth its name is asked again in the end (`together`). Of causes whose evidence is
     ``stands``, the form of the equations alone leaves a share."""
     least = max(WAITING, REMAINS * stands)
-    rivals = [r for r in possible(problem, weighed)[:1] if r.evidence >= least]
-    return [r for r in possible(problem, sharpened(problem, rivals, base, loss)) if r.evidence >= least] if rivals else []
+    rivals = [r for r in possible(problem, weighed) if r.evidence >= least][:CANDIDATES]
+    return [r for r in possible(problem, sharpened(problem, rivals, base, loss)) if r.evidence >= least][:1] if rivals else []
 
 
 def _found(problem: Problem, one: _Round, seed: int) -> Named:
