@@ -79,3 +79,9 @@ def test_folds_leave_nothing_to_extrapolate_in_a_long_log():
         held = np.flatnonzero(fold.test)
         assert (np.diff(held.reshape(-1, PAIR), axis=1) == 1).all(), "neighbours go together"
     assert [np.flatnonzero(f.test).tolist() for f in folds_of(np.zeros(5, dtype=int))] == [[i] for i in range(5)]
+
+
+def test_a_payload_that_grows_is_not_called_a_payload_but_unknown(tmp_path: Path):
+    document = diagnose([foreign(tmp_path, (("water_leak", "", 2.0),), 78, 300.0)], merlin()).document
+    assert document["causes"] == [] and document["verdict"] == "unknown"
+    assert "payload_change" in document["left"]["text"] and "change along the log" in document["left"]["text"]

@@ -2,7 +2,8 @@
 
 A round asks three questions. Is there anything beyond calibration slop (`detect`)? Which hypotheses, refitted by re-simulation, do best on
 windows that they were not fitted on (`confirm`)? Which others does this log not tell from the best (`separate`)? It stops when a gain
-is not real or too small to matter; an effect that later ones make needless is dropped again.
+is not real or too small to matter; an effect that later ones make needless is dropped again. In the end the causes are weighed beside each
+other (`together`), and where one falls the search goes on without it.
 """
 
 from __future__ import annotations

@@ -56,7 +56,7 @@ def together(problem: Problem, named: Sequence[Named], healthy: Point, seed: int
         if not weak:
             break
         found = _dropped(problem, found, min(weak, key=lambda n: n.evidence))
-    return found
+    return [_apart(n, {other.hypothesis.name for other in found if other is not n}) for n in found]
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +103,13 @@ def _renamed(problem: Problem, found: list[Named], i: int, healthy: Point, seed:
     if best is mine:
         return renamed
     return [*renamed[:-1], replace(renamed[-1], fitted=confirm(problem, best.fitted.point.beta, best.fitted.slots))]
+
+
+def _apart(one: Named, others: set[str]) -> Named:
+    """A cause whose group does not hold those that are there as well: they are no alternative to it."""
+    kept = [(name, probability) for name, probability in one.group if name not in others]
+    whole = sum(probability for _, probability in kept)
+    return replace(one, group=tuple((name, probability / whole) for name, probability in kept)) if len(kept) < len(one.group) and whole > 0 else one
 
 
 def _dropped(problem: Problem, found: list[Named], weak: Named) -> list[Named]:

@@ -19,11 +19,13 @@ from rovval.diagnose.linearise import spread
 from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import Products, joined, products
+from rovval.diagnose.separate import FEW
 from rovval.diagnose.together import Named
 from rovval.vehicle.model import allocation
 
+DRIFT, SURE = 0.5, 5.0  # of the value, and standard errors (opened sets: 30 true causes drift by 0.24 at most, or by 3.3 standard errors)
 SHARES = (0.1, 0.2, 0.4, 0.8)  # of the value, or of the thruster's thrust: rms by which it may vary
-WANDERS = ("gyro_bias",)  # a gyro's bias wanders by nature (in-run instability of its data sheet)
+WANDERS = ("gyro_bias", "attitude_bias")  # wander by nature (in-run instability of a gyro's and an AHRS's data sheet)
 
 
 def wavering(problem: Problem, final: Confirmed, named: Sequence[Named]) -> dict[str, float]:
@@ -32,15 +34,48 @@ def wavering(problem: Problem, final: Confirmed, named: Sequence[Named]) -> dict
     return {n.hypothesis.name: max(_windows(problem, final.point, step, n), _moments(problem, final.point, step, n)) for n in named}
 
 
+def drifting(problem: Problem, final: Confirmed, named: Sequence[Named]) -> tuple[str, ...]:
+    """Causes whose main parameter, the one that most windows show, surely moves by more than `DRIFT` of its value along the log, as the weight
+    of a housing that fills does."""
+    step = final.point.solved(final.point.curvature, final.point.slope)
+    found = []
+    for n in named:
+        own = [_windowed(problem, final.point, step, slot) for slot in _sized(problem, final.point, n)]
+        if own and _drifts(*max(own, key=lambda one: float(one[1].sum()) * one[0] ** 2), problem.inflation):
+            found.append(n.hypothesis.name)
+    return tuple(found)
+
+
+def _drifts(value: float, A: Array, b: Array, inflation: float) -> bool:
+    """Whether a line through what each window adds to the value leaves it, over the windows that show it, by more than it is."""
+    at, shown = np.arange(len(A), dtype=np.float64), np.flatnonzero(A * value**2 > inflation)
+    if len(shown) < FEW:
+        return False
+    away = at - (A @ at) / A.sum()
+    slope, worth = float(b @ away) / float(A @ away**2), float(A @ away**2) / inflation
+    return abs(slope) * float(np.ptp(shown)) > DRIFT * abs(value) and abs(slope) * np.sqrt(worth) > SURE
+
+
+def _windowed(problem: Problem, point: Point, step: Array, slot: int) -> tuple[float, Array, Array]:
+    """A parameter's departure from where it stood, and of every window its curvature (m,) and its slope (m,) at the joint fit."""
+    j = point.columns.index(slot)
+    value = float(point.beta[slot] + step[j] - problem.origin[slot])
+    return value, point.data.A[:, j, j], point.data.b[:, j] - point.data.A[:, j] @ step
+
+
+def _sized(problem: Problem, point: Point, named: Named) -> list[int]:
+    """Slots of a cause that have a size: not those that only place it (an onset), nor one that rests at nothing, nor what wanders by nature."""
+    slots, wanders = problem.plant.slots, named.hypothesis.name.partition("[")[0] in WANDERS
+    return [s for s in named.hypothesis.slots if not wanders and point.beta[s] != problem.origin[s] and slots[s].parameter.name not in PLACING]
+
+
 def _windows(problem: Problem, point: Point, step: Array, named: Named) -> float:
-    """From window to window, the worst of the cause's sized parameters; what only places a cause (an onset) is left out."""
-    found, effect = [0.0], named.hypothesis.name.partition("[")[0]
-    for slot in named.hypothesis.slots:
-        value = float(point.beta[slot] - problem.origin[slot])
-        if value and effect not in WANDERS and problem.plant.slots[slot].parameter.name not in PLACING:
-            j = point.columns.index(slot)
-            own = Products(point.data.A[:, j, j, None, None], (point.data.b[:, j] - point.data.A[:, j] @ step)[:, None], point.data.c, (slot,))
-            found += [_varies(own, share * value, problem.inflation) for share in SHARES]
+    """From window to window, the worst of the cause's sized parameters."""
+    found = [0.0]
+    for slot in _sized(problem, point, named):
+        value, A, b = _windowed(problem, point, step, slot)
+        own = Products(A[:, None, None], b[:, None], point.data.c, (slot,))
+        found += [_varies(own, share * value, problem.inflation) for share in SHARES]
     return max(found)
 
 

@@ -24,7 +24,7 @@ from rovval.diagnose.separate import FEW, form_share
 from rovval.diagnose.shrinkage import shrinkage
 from rovval.diagnose.together import LEAST_EVIDENCE, Named
 from rovval.diagnose.unknown import Forces, forces
-from rovval.diagnose.wavering import wavering
+from rovval.diagnose.wavering import drifting, wavering
 
 BETTER = 0.9  # of a cause's evidence: a generic force that has more is as near to the truth (chosen)
 ACTING = 0.15  # of what a cause closes: the axes on which it acts
@@ -72,13 +72,14 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
     skill = not many or sensors or _skill(problem, closed, now)
     outdone = many and not sensors and instead > BETTER * total
     varies = wavering(problem, final, selection.named) if many else {}
+    unsteady = tuple(dict.fromkeys((*_unsteady(selection, varies), *(drifting(problem, final, selection.named) if many else ()))))
     broken = not skill or strained > BROKEN or harmful or max(varies.values(), default=0.0) > max(WAVERS * total, LEAST_EVIDENCE)
     least_bad = outdone or broken or max(beside, excess) > form_share(problem.blocks) * total
     kinematic = float((problem.gap_data.c - problem.gap.c).sum()) > float(problem.gap.c.sum())
     parity_led = kinematic and any(of_sensor(n) for n in selection.named)
     sure = _shrinks(problem, final, before, axes) and strained <= STRAINED
     remains = not sure or (holds and rest.evidence() > max(REAL, REMAINS * total))
-    return Weighed(total, instead, beside, strained, skill, parity_led, least_bad, remains, _unsteady(selection, varies), rest)
+    return Weighed(total, instead, beside, strained, skill, parity_led, least_bad, remains, unsteady, rest)
 
 
 def strain(point: Point) -> float:
