@@ -72,7 +72,7 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
     skill = not many or sensors or _skill(problem, closed, now)
     outdone = many and not sensors and instead > BETTER * total
     varies = wavering(problem, final, selection.named) if many else {}
-    unsteady = tuple(dict.fromkeys((*_unsteady(selection, varies), *(drifting(problem, final, selection.named) if many else ()))))
+    unsteady = _unsteady(problem, selection, final, varies) if many else ()
     broken = not skill or strained > BROKEN or harmful or max(varies.values(), default=0.0) > max(WAVERS * total, LEAST_EVIDENCE)
     least_bad = outdone or broken or max(beside, excess) > form_share(problem.blocks) * total
     kinematic = float((problem.gap_data.c - problem.gap.c).sum()) > float(problem.gap.c.sum())
@@ -92,9 +92,11 @@ def of_sensor(named: Named) -> bool:
     return effects.load(named.hypothesis.name.partition("[")[0]).place == "sensor"
 
 
-def _unsteady(selection: Selection, varies: Mapping[str, float]) -> tuple[str, ...]:
+def _unsteady(problem: Problem, selection: Selection, final: Confirmed, varies: Mapping[str, float]) -> tuple[str, ...]:
+    """Causes whose value varies more surely than `WAVERS` of their evidence, the worst first, and those that drift."""
     own = {n.hypothesis.name: max(WAVERS * n.evidence, LEAST_EVIDENCE) for n in selection.named}
-    return tuple(sorted((name for name, most in varies.items() if most > own[name]), key=lambda name: own[name] / varies[name]))
+    wavers = sorted((name for name, most in varies.items() if most > own[name]), key=lambda name: own[name] / varies[name])
+    return tuple(dict.fromkeys((*wavers, *drifting(problem, final, selection.named))))
 
 
 def _shrinks(problem: Problem, final: Confirmed, before: list[Array], axes: tuple[str, ...]) -> bool:
