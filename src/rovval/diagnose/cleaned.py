@@ -29,7 +29,7 @@ def cleaned(run: Run, channels: Sequence[str]) -> tuple[Array, Flags, Array, Fla
         wild = _wild(series, name)
         spoiled[real] |= wild & keep[real]
         keep[real] &= ~wild
-        noise[i] = _noise(series, keep[real])
+        noise[i] = white_noise(series, keep[real])
         good[:, i] = keep
     return np.where(good, values, 0.0), good, noise, spoiled
 
@@ -53,7 +53,7 @@ def _wild(series: Array, name: str) -> Flags:
     return wild
 
 
-def _noise(series: Array, good: Flags) -> float:
+def white_noise(series: Array, good: Flags) -> float:
     """White noise of a channel from third differences (median absolute, so that manoeuvres do not count).
 
     A third difference of white noise has variance 20 sigma^2 (binomial coefficients 1 3 3 1).

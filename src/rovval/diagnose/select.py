@@ -67,10 +67,9 @@ def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Cal
         progress("weighing the causes beside each other", 0.35 + 0.1 * number)
         kept = together(problem, named, healthy, seed)
         spent |= {n.hypothesis.name for n in named} - {n.hypothesis.name for n in kept}
-        if len(kept) in (0, MOST, len(named)):
-            named = kept
+        settled, named = len(kept) in (0, MOST, len(named)), kept
+        if settled:
             break
-        named = kept
     else:
         named = together(problem, named, healthy, seed)
     final, tried = named[-1].fitted if named else None, tuple(r.told for r in rounds if r.told)

@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from rovval.data import Array, Flags, Reason, Resampled, Run
+from rovval.diagnose.cleaned import white_noise
 from rovval.errors import Finding
 
 NO_MEASUREMENT = ("saturated", "held")  # codes of the findings
@@ -54,8 +55,7 @@ def at_stop(values: Array) -> Flags:
     """Samples (n,) that stand at the end of a sensor's range: the same extreme again and again, reached steeply."""
     known = values[np.isfinite(values)]
     stop = np.zeros(len(values), dtype=bool)
-    third = np.abs(np.diff(known, n=3))
-    noise = 1.4826 * float(np.median(third)) / np.sqrt(20.0) if len(third) else 0.0  # third differences of white noise
+    noise = white_noise(known, np.ones(len(known), dtype=bool))
     for sign in (1.0, -1.0):
         levels, counts = np.unique(sign * known, return_counts=True)
         if len(levels) < FINE or counts[-1] < max(FEWEST, OUTSTANDING * counts[-4:-1].max()):

@@ -71,11 +71,11 @@ def _without(problem: Problem, found: Sequence[Named], one: Named, healthy: Poin
     rest = [n for n in found if n is not one]
     if not rest:
         return _Ground(whole_evidence(problem, healthy), (problem.gap_data.c, problem.gap.c))
-    fitted = _fitted(problem, found[-1].fitted, [n.hypothesis for n in rest])
+    fitted = jointly(problem, found[-1].fitted, [n.hypothesis for n in rest])
     return _Ground(fitted.evidence, (fitted.loss, fitted.dynamic_loss))
 
 
-def _fitted(problem: Problem, whole: Confirmed, kept: Sequence[Hypothesis], other: Rival | None = None) -> Confirmed:
+def jointly(problem: Problem, whole: Confirmed, kept: Sequence[Hypothesis], other: Rival | None = None) -> Confirmed:
     """The causes ``kept`` from where they stand in ``whole``, with another one from where it stood when it was weighed."""
     start, slots = problem.origin.copy(), [s for h in kept for s in h.slots]
     start[slots] = whole.beta[slots]
@@ -94,7 +94,7 @@ def _renamed(problem: Problem, found: list[Named], i: int, healthy: Point, seed:
         return found
     ground = _without(problem, found, one, healthy)
     mine = _beside(one.hypothesis, whole, ground)
-    rivals = [mine, *(_beside(r.hypothesis, _fitted(problem, whole, rest, r), ground) for r in others)]
+    rivals = [mine, *(_beside(r.hypothesis, jointly(problem, whole, rest, r), ground) for r in others)]
     rivals.sort(key=lambda r: -r.evidence)
     best = rivals[0] if rivals[0].evidence > mine.evidence + LEAST_EVIDENCE else mine
     members = tuple(sorted(group(problem, rivals, seed), key=lambda member: member[0] != best.hypothesis.name))
@@ -117,7 +117,7 @@ def _dropped(problem: Problem, found: list[Named], weak: Named) -> list[Named]:
     rest = [n for n in found if n is not weak]
     if not rest:
         return []
-    start = _fitted(problem, found[-1].fitted, [n.hypothesis for n in rest])
+    start = jointly(problem, found[-1].fitted, [n.hypothesis for n in rest])
     return [*rest[:-1], replace(rest[-1], fitted=confirm(problem, start.point.beta, start.slots))]
 
 

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from rovval.data import Array
-from rovval.diagnose.confirm import Confirmed, roughly
+from rovval.diagnose.confirm import Confirmed
 from rovval.diagnose.left import left
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.select import FALSE_ALARM, Selection
-from rovval.diagnose.together import Named
+from rovval.diagnose.together import Named, jointly
 from rovval.diagnose.unknown import Forces, bare_forces, forces
 from rovval.diagnose.weigh import BROKEN, HOLDS, REAL, Weighed, of_sensor, strain, weigh
 
@@ -83,10 +83,7 @@ def _only(problem: Problem, selection: Selection, kept: tuple[Named, ...]) -> Se
     final = selection.final
     if final is None or not kept or len(kept) == len(selection.named):
         return selection
-    slots = tuple(s for n in kept for s in n.hypothesis.slots)
-    start = problem.origin.copy()
-    start[list(slots)] = final.beta[list(slots)]
-    return replace(selection, named=kept, final=roughly(problem, start, slots, final.point.linear))
+    return replace(selection, named=kept, final=jointly(problem, final, [n.hypothesis for n in kept]))
 
 
 def _probability(named: Named) -> float:
