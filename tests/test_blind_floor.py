@@ -47,6 +47,14 @@ def opened(small: Folder, result: dict[str, Any]) -> tuple[dict[str, Any], dict[
     return labels, answers, json.loads((small.root / "oracle.json").read_text())["logs"]
 
 
+def test_the_oracle_says_of_two_effects_what_each_closes(opened):
+    labels, _, oracles = opened
+    two = [best for name, best in oracles.items() if len(labels[name]["effects"]) == 2 and best]
+    assert two
+    assert all(best["each"] <= 1.0 for best in two)
+    assert not [name for name, best in oracles.items() if len(labels[name]["effects"]) == 1 and "each" in best]
+
+
 def value(result: dict[str, Any], stratum: str, mark: str) -> float:
     return float(result["strata"][stratum][mark]["value"])
 

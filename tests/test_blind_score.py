@@ -16,6 +16,7 @@ from rovval.blind.marks import marks
 from rovval.blind.plant import fly
 from rovval.blind.score import marked
 from rovval.blind.spec import AXES, Planted
+from rovval.blind.strata import strata
 
 MERLIN = vehicle.LIBRARY / "merlin.toml"
 LIBRARY = (
@@ -110,6 +111,25 @@ def test_probability_over_the_library_is_one(said):
         for n in LIBRARY
     )
     assert total == pytest.approx(1.0)
+
+
+def test_of_several_effects_every_one_counts():
+    two = label(planted("rpm_scale", relative=0.1), planted("waves", lift=1.0))
+    assert mark(two, answer(cause("waves"), cause("rpm_scale")))["all_found"]
+    half = mark(two, answer(cause("waves")))
+    assert half["all_found"] is False and half["share_found"] == 0.5
+    assert mark(label(planted("waves", lift=1.0)), answer(cause("waves")))["all_found"] is None
+
+
+@pytest.mark.parametrize(("each", "kinds"), [(0.4, ["two", "two, each distinguishable"]), (0.05, ["two"])])
+def test_two_effects_of_which_one_hides_are_a_kind_of_their_own(each, kinds):
+    both = label(planted("rpm_scale", relative=0.1), planted("waves", lift=1.0))
+    assert strata(both, {"dynamic": 0.8, "seen": 0.8, "each": each}) == kinds
+
+
+def test_silence_is_a_miss():
+    m = mark(label(planted("thruster_degraded", "HFP", loss=0.5)), answer())
+    assert m["truth_named"] is False and m["group_hit"] is None
 
 
 def test_nothing_named_is_scored_by_its_ranking():

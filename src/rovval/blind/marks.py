@@ -51,10 +51,12 @@ def marks(
         "right_when_named": bool(pairs) if known and causes else None,
         "right_when_one_named": truth.accepts(known[0], causes[0]) if one and causes and len(group) == 1 else None,
         "group_hit": any(truth.accepts(e, g) for e in known for g in group) if known and causes else None,
+        "truth_named": any(truth.accepts(one, g) for g in group) if one else None,
         "group_size": len(group) if causes else None,
         "p_truth": _p_truth(one, causes, group, len(ranking)) if one else None,
         "errors": len(causes) + len(effects if not label["left_out"] else []) - 2 * len(pairs),
         "share_found": len(pairs) / len(known) if known else None,
+        "all_found": len(pairs) == len(known) if len(known) > 1 else None,
         "axis": _axis(label, document, path),
         "regime": _regime(label, document),
         "onset_error_s": _onset(pairs),
@@ -82,7 +84,9 @@ def _failed(label: Mapping[str, Any], answer: Mapping[str, Any]) -> dict[str, An
         "parameters": [],
         "floors": {},
     }
-    return none | {"top_1": False if known else None, "errors": len(label["effects"]), "cpu_s": answer["cpu_s"]}
+    missed: dict[str, Any] = {"top_1": False if known else None, "truth_named": False if len(known) == 1 else None}
+    missed |= {"all_found": False if len(known) > 1 else None}
+    return none | missed | {"errors": len(label["effects"]), "cpu_s": answer["cpu_s"]}
 
 
 def _paired(known: Sequence[truth.Row], causes: Sequence[truth.Row]) -> list[tuple[truth.Row, truth.Row]]:

@@ -20,6 +20,7 @@ from rovval.diagnose.problem import Problem, gap_at, pose
 from rovval.diagnose.stretches import cut
 from rovval.vehicle.model import Vehicle
 
+Wanted = Sequence[Sequence[Hypothesis]]  # of each true effect its starting points
 STARTS = 3  # starting points tried, the best by linear gain first
 
 
@@ -27,7 +28,8 @@ def oracle(
     log: Path, vehicle: str, true: Sequence[str], onsets: Mapping[str, float], asked: Mapping[str, Any]
 ) -> dict[str, float]:
     """Shares that the hypotheses ``true`` close: ``dynamic`` of the log's gap, ``seen`` the larger of that and of the gap with the
-    kinematic checks, where faults of sensors show. Empty where the library has none of them or no window is usable."""
+    kinematic checks, where faults of sensors show; of several, ``each`` is the least that one of them closes of what the others leave,
+    fitted without it. Empty where the library has none of them or no window is usable."""
     from rovval import store
     from rovval import vehicle as vehicles
     from rovval.blind.answer import PROFILE
@@ -37,14 +39,14 @@ def oracle(
         found = _fit(store.open_run(log, PROFILE), vehicles.load(vehicle), true, onsets, **asked)
         if found is None:
             return {}
-        problem, beta, slots = found
-        dynamic, data = gap_at(problem, beta, slots)
+        problem, wanted, beta = found
+        left = _left(problem, wanted, beta)
+        shares = 1.0 - left / np.array([problem.gap.c.sum(), problem.gap_data.c.sum()])
+        alone = [_left(problem, others, _fitted(problem, others, onsets)) for others in _others(wanted)]
     except (RovvalError, ArithmeticError, ValueError):
         return {}
-    shares = [
-        float(1.0 - after.c.sum() / before.c.sum()) for after, before in ((dynamic, problem.gap), (data, problem.gap_data))
-    ]
-    return {"dynamic": shares[0], "seen": max(shares)}
+    each = {"each": min(float((1.0 - left / without).max()) for without in alone)} if alone else {}
+    return {"dynamic": float(shares[0]), "seen": float(shares.max()), **each}
 
 
 def fitted(run: Run, vehicle: Vehicle, true: Sequence[str], onsets: Mapping[str, float]) -> dict[str, float]:
@@ -52,8 +54,8 @@ def fitted(run: Run, vehicle: Vehicle, true: Sequence[str], onsets: Mapping[str,
     found = _fit(run, vehicle, true, onsets)
     if found is None:
         return {}
-    problem, beta, slots = found
-    return {problem.plant.slots[s].key: float(beta[s]) for s in slots}
+    problem, wanted, beta = found
+    return {problem.plant.slots[s].key: float(beta[s]) for s in _slots(wanted)}
 
 
 def _fit(
@@ -64,28 +66,44 @@ def _fit(
     model: str = "fossen",
     window_s: float = 10.0,
     calibration_slop: float = 0.05,
-) -> tuple[Problem, Array, tuple[int, ...]] | None:
-    """The problem, the fitted point and the slots that were free."""
+) -> tuple[Problem, Wanted, Array] | None:
+    """The problem, the hypotheses that were free, and the fitted point."""
     part = cut(run, vehicle, model, window_s)
     library, _ = hypotheses((part,))
     wanted = [[h for h in library if h.name == name] for name in true]
     if not wanted or not all(wanted):
         return None
     problem = pose((part,), library, calibration_slop)
-    slots = tuple(dict.fromkeys(s for starts in wanted for s in starts[0].slots))
-    tried = [_from(problem, wanted, rank, onsets, slots) for rank in range(min(STARTS, max(map(len, wanted))))]
-    return problem, min(tried, key=lambda beta: float(gap_at(problem, beta, slots)[1].c.sum())), slots
+    return problem, wanted, _fitted(problem, wanted, onsets)
 
 
-def _from(
-    problem: Problem, wanted: Sequence[Sequence[Hypothesis]], rank: int, onsets: Mapping[str, float], slots: tuple[int, ...]
-) -> Array:
+def _fitted(problem: Problem, wanted: Wanted, onsets: Mapping[str, float]) -> Array:
+    """The best of the fits from several starting points, kinematic checks counted."""
+    tried = [_from(problem, wanted, rank, onsets) for rank in range(min(STARTS, max(map(len, wanted))))]
+    return min(tried, key=lambda beta: _left(problem, wanted, beta)[1])
+
+
+def _left(problem: Problem, wanted: Wanted, beta: Array) -> Array:
+    """Losses (2,) of the dynamics, and of those with the kinematic checks."""
+    return np.array([float(products.c.sum()) for products in gap_at(problem, beta, _slots(wanted))])
+
+
+def _others(wanted: Wanted) -> list[Wanted]:
+    """The hypotheses without each of them in turn; nothing where there is but one."""
+    return [[*wanted[:i], *wanted[i + 1 :]] for i in range(len(wanted))] if len(wanted) > 1 else []
+
+
+def _slots(wanted: Wanted) -> tuple[int, ...]:
+    return tuple(dict.fromkeys(s for starts in wanted for s in starts[0].slots))
+
+
+def _from(problem: Problem, wanted: Wanted, rank: int, onsets: Mapping[str, float]) -> Array:
     """Fitted point from each hypothesis's start of that rank by linear gain (its last, where it has fewer)."""
     beta = problem.origin.copy()
     for starts in wanted:
         ordered = sorted(starts, key=lambda h: -_step(problem, h)[1])
         _begin(problem, ordered[min(rank, len(ordered) - 1)], beta, onsets.get(starts[0].name))
-    return confirm(problem, beta, slots).beta
+    return confirm(problem, beta, _slots(wanted)).beta
 
 
 def _begin(problem: Problem, best: Hypothesis, beta: Array, onset: float | None) -> None:

@@ -25,6 +25,8 @@ HEADLINE = (
     "top_1",
     "right_when_one_named",
     "group_hit",
+    "truth_named",
+    "all_found",
     "group_size",
     "errors",
     "detected",
@@ -89,7 +91,7 @@ def marked(
         row |= {
             "log": name,
             "mission": label["mission"],
-            "strata": strata(label, best.get("seen")),
+            "strata": strata(label, best),
             "truth": tables.names_of(label),
         }
         row |= {"foreign": [truth.foreign(e) for e in label["effects"]], "left_out": label["left_out"]}
@@ -106,7 +108,8 @@ def _at_least(best: Mapping[str, float], label: Mapping[str, Any], answer: Mappi
     causes = answer.get("document", {}).get("causes", [])
     if not best or [c["effect"] for c in causes] != tables.names_of(label) or label["left_out"]:
         return dict(best)
-    return {key: max(value, float(answer["document"]["shrinkage"]["total"])) for key, value in best.items()}
+    reached = float(answer["document"]["shrinkage"]["total"])
+    return {key: value if key == "each" else max(value, reached) for key, value in best.items()}
 
 
 def summary(by_stratum: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, float | int]]:

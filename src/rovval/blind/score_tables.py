@@ -11,8 +11,9 @@ from rovval.report import page
 from rovval.report.words import number
 
 COLUMNS = {  # mark -> heading of the text's table
-    "top_1": "top-1", "right_when_one_named": "one named", "group_hit": "group", "group_size": "size", "errors": "errors",
-    "detected": "found", "blamed": "blamed", "said_unknown": "unknown", "axis": "axis", "of_oracle": "/oracle", "cpu_s": "CPU s",
+    "top_1": "top-1", "right_when_one_named": "one named", "group_hit": "group", "truth_named": "named", "all_found": "all named",
+    "group_size": "size", "errors": "errors", "detected": "found", "blamed": "blamed", "said_unknown": "unknown",
+    "axis": "axis", "of_oracle": "/oracle", "cpu_s": "CPU s",
 }  # fmt: skip
 PERCENT = {*tables.SHARES, "coverage_90", "share_found"}
 ONE_VALUE = ("uniform guess", "commonest effect")  # by arithmetic: no interval

@@ -11,9 +11,9 @@ MAGNITUDES = ((1.25, "about 1"), (1.6, "about 1.5"), (float("inf"), "about 2")) 
 SEEN = 0.10  # share of the gap that the oracle must close for an effect to be called distinguishable
 
 
-def strata(label: Mapping[str, Any], oracle: float | None) -> list[str]:
-    """Every stratum that a log belongs to."""
-    effects, mission = label["effects"], label["mission"]
+def strata(label: Mapping[str, Any], best: Mapping[str, float]) -> list[str]:
+    """Every stratum that a log belongs to; ``best`` is what the oracle closes (`oracle`)."""
+    effects, mission, oracle = label["effects"], label["mission"], best.get("seen")
     if label["left_out"]:
         seen = ["left out, distinguishable"] if (oracle or 0.0) >= SEEN else ["left out, not distinguishable"]
         return ["left out", *seen]
@@ -22,7 +22,8 @@ def strata(label: Mapping[str, Any], oracle: float | None) -> list[str]:
     if any(e["place"] == "foreign" for e in effects):
         return ["foreign"] if len(effects) == 1 else ["foreign with others"]
     if len(effects) > 1:
-        return [{2: "two", 3: "three"}.get(len(effects), "many")]
+        several = {2: "two", 3: "three"}.get(len(effects), "many")
+        return [several, f"{several}, each distinguishable"] if best.get("each", 0.0) >= SEEN else [several]
     one = effects[0]
     form = "same form" if one["form"] == "equal" else "different form"
     excitation = "rich" if mission in RICH else "poor"

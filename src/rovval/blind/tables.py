@@ -19,7 +19,9 @@ SHARES = {  # mark -> its words
     "named_one": "named a single effect",
     "right_when_one_named": "right when a single effect is named",
     "right_when_named": "right when causes are named",
-    "group_hit": "truth in the group named",
+    "group_hit": "truth in the group, where one is named",
+    "truth_named": "truth in a group that is named, silence counted as a miss",
+    "all_found": "every one of several effects named",
     "axis": "axis right",
     "regime": "regime right",
 }
