@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rovval.cli import complete, options, output
+from rovval.cli import complete, logs, options, output
 
 if TYPE_CHECKING:
     from rovval.data import Comparison
@@ -55,7 +55,6 @@ def command(
       rovval compare dive.csv --fail-above surge=0.10 --fail-above yaw.iae=5 --json
       rovval compare run_a.csv --with run_a.sim.csv --with-profile bluerov2_tank_sim
     """
-    from rovval import store
     from rovval.compare import compare
     from rovval.pipeline import tolerances
     from rovval.pipeline.steps import other_velocities, simulated, vehicle_of
@@ -63,7 +62,7 @@ def command(
     show = output.progress(quiet)
     limits = tolerances.parse(fail_above or ())
     show("read", 0.0)
-    run = store.open_run(source, profile, archive)
+    run = logs.opened(source, profile, archive, quiet)
     nominal = vehicle_of(run, vehicle)
     other = None if with_ is None else other_velocities(with_, run, with_profile, archive)
     show("simulate", 0.3)

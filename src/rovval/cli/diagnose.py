@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rovval.cli import options, output
+from rovval.cli import logs, options, output
 
 if TYPE_CHECKING:
     from rovval.diagnose import Diagnosis
@@ -20,7 +20,7 @@ JsonFile = Annotated[
     ),
 ]
 Out = Annotated[
-    Path | None, typer.Option("--out", metavar="DIR", help="Report folder. Default: reports/RUN; none with --json.")
+    Path | None, typer.Option("--out", metavar="DIR", help="Report folder. Default: reports/RUN/diagnosis; none with --json.")
 ]
 Slop = Annotated[
     float,
@@ -58,11 +58,10 @@ def command(
       rovval diagnose dive.csv --json diagnosis.json
       rovval diagnose dive1.csv dive2.csv --profile merlin --write-vehicle mended.toml
     """
-    from rovval import store
     from rovval.diagnose import diagnose
     from rovval.pipeline.steps import vehicle_of
 
-    runs = [store.open_run(source, profile, archive) for source in sources]
+    runs = logs.together(sources, vehicle, profile, archive, quiet)
     found = diagnose(
         runs, vehicle_of(runs[0], vehicle), model=model.value, window_s=window, calibration_slop=calibration_slop, seed=seed,
         progress=output.progress(quiet),
@@ -70,6 +69,8 @@ def command(
     typed = {"--window": None if window == 10.0 else f"{window:g}", "--profile": profile, "--archive": None if str(archive) == "archive" else str(archive)}
     _as_typed(found, dict(zip((run.id for run in runs), sources, strict=True)), vehicle, typed)
     folder = Path("reports") / runs[0].id / "diagnosis" if out is None and json_ is None else out
+    for line in found.document["runs_left_out"]:
+        output.say(f"left out: {line}", quiet)
     _print(found, json_, quiet)
     _write(found, folder, write_vehicle, quiet)
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rovval.cli import options, output
+from rovval.cli import logs, options, output
 
 
 def command(
@@ -31,12 +31,11 @@ def command(
     Example:
       rovval fit dive.csv --parameters quadratic_drag[surge],quadratic_drag[sway] --out tuned.toml
     """
-    from rovval import store
     from rovval.diagnose.fit import fit
     from rovval.pipeline.atomic import write_text
     from rovval.pipeline.steps import vehicle_of
 
-    runs = [store.open_run(source, profile, archive) for source in sources]
+    runs = logs.together(sources, vehicle, profile, archive, quiet)
     wanted = [name for text in parameters for name in text.split(",") if name]
     tuned = fit(runs, vehicle_of(runs[0], vehicle), wanted, model=model.value, window_s=window)
     write_text(out, tuned.vehicle)

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from rovval.cli import complete, options, output
+from rovval.cli import complete, logs, options, output
 from rovval.errors import RovvalError
 
 
@@ -36,11 +36,11 @@ def command(
     from rovval.pipeline.discover import logs_in
 
     show = output.progress(quiet)
-    logs = logs_in(sources)
+    files = logs_in(sources)
     rows: list[dict[str, Any]] = []
     worst = 0
-    for number, log in enumerate(logs):
-        show(f"ingest {log.name}", number / len(logs))
+    for number, log in enumerate(files):
+        show(f"ingest {log.name}", number / len(files))
         try:
             run = store.open_run(str(log), profile, archive)
             store.save(run, archive)
@@ -62,8 +62,7 @@ def command(
         )
         if not json_:
             output.result(run.id)
-        for finding in findings:
-            output.say(f"  {finding}", quiet)
+        logs.tell(run, quiet)
     show("ingest", 1.0)
     if json_:
         output.result_json({"schema": "rovval.ingest/1", "archive": str(archive), "logs": rows})

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rovval.cli import complete, options, output
+from rovval.cli import complete, logs, options, output
 from rovval.errors import UsageProblem
 
 if TYPE_CHECKING:
@@ -70,10 +70,10 @@ def _alone(number: int, vehicle: str | None, model: str) -> Outcome:
 
 
 def _with_log(number: int, source: str | None, vehicle: str | None, model: str, profile: str | None, archive: Path) -> Outcome:
-    from rovval import demo, store
+    from rovval import demo
     from rovval.pipeline.steps import vehicle_of
 
-    run = demo.sample() if source is None else store.open_run(source, profile, archive)
+    run = demo.sample() if source is None else logs.opened(source, profile, archive)
     if number == 4:
         from rovval.scenarios.hardware import hardware
 

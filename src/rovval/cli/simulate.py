@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rovval.cli import options, output
+from rovval.cli import logs, options, output
 
 if TYPE_CHECKING:
     from rovval.data import SimResult
@@ -34,11 +34,11 @@ def command(
       rovval simulate dive.csv --profile merlin
       rovval simulate dive.csv --effect inflow_loss:loss=0.3 --model fossen --out with_loss.parquet
     """
-    from rovval import simfile, store
+    from rovval import simfile
     from rovval.pipeline.atomic import beside
     from rovval.pipeline.steps import simulated, vehicle_of
 
-    run = store.open_run(source, profile, archive)
+    run = logs.opened(source, profile, archive, quiet)
     sim = simulated(run, vehicle_of(run, vehicle), model.value, tuple(effect or ()), window)
     path = out or Path("reports") / run.id / f"{model.value}.parquet"
     simfile.save(sim, new := beside(path))

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rovval.cli import options, output
+from rovval.cli import logs, options, output
 
 
 def command(
@@ -33,11 +33,11 @@ def command(
     import subprocess
     import sys
 
-    from rovval import report, store
+    from rovval import report
     from rovval.compare import compare
     from rovval.pipeline.steps import simulated, vehicle_of
 
-    run = store.open_run(source, profile, archive)
+    run = logs.opened(source, profile, archive, quiet)
     nominal = vehicle_of(run, vehicle)
     comparison = compare(run, simulated(run, nominal, model.value, tuple(effect or ()), 10.0))
     files = report.write(comparison, out or Path("reports") / run.id, nominal)

@@ -1,0 +1,53 @@
+"""Logs as the commands take them: read, and what was found in them said on stderr, so that no number stands alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rovval.cli import output
+from rovval.errors import UsageProblem
+
+if TYPE_CHECKING:
+    from rovval.data import Run
+
+SHOWN = 6  # findings of a run in a terminal; the others stand in its report
+
+
+def opened(source: str, profile: str | None, archive: Path, quiet: bool = False) -> Run:
+    """The run of a log file, folder or id; its findings on stderr."""
+    from rovval import store
+
+    run = store.open_run(source, profile, archive)
+    tell(run, quiet)
+    return run
+
+
+def together(sources: Sequence[str], vehicle: str | None, profile: str | None, archive: Path, quiet: bool = False) -> list[Run]:
+    """Runs that are one experiment: each given once, all of one vehicle unless ``vehicle`` says which. Raises `UsageProblem`."""
+    runs = [opened(source, profile, archive, quiet) for source in sources]
+    for k, run in enumerate(runs):
+        if run.id in (earlier := [r.id for r in runs[:k]]):
+            raise UsageProblem(
+                f"{sources[k]}: run {run.id} is given twice, as {sources[earlier.index(run.id)]} already",
+                "give each log once: a copy adds no evidence",
+            )
+    named = {run.vehicle: source for run, source in zip(runs, sources, strict=True) if run.vehicle}
+    if vehicle is None and len(named) > 1:
+        raise UsageProblem(
+            "logs of several vehicles: " + ", ".join(f"{source} is of {name}" for name, source in named.items()),
+            "give the logs of one vehicle together, or say with --vehicle which vehicle all of them are of",
+        )
+    return runs
+
+
+def tell(run: Run, quiet: bool = False) -> None:
+    """What a reader of any result should know about this log, on stderr."""
+    if not run.findings:
+        return
+    lines = [f"{run.id}: {len(run.findings)} finding{'s'[: len(run.findings) > 1]} in this log"]
+    lines += [f"  {finding}" for finding in run.findings[:SHOWN]]
+    if (more := len(run.findings) - SHOWN) > 0:
+        lines.append(f"  and {more} more: `rovval ingest --json` and the report of `rovval compare` have all")
+    output.say("\n".join(lines), quiet)
