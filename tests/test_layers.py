@@ -31,6 +31,7 @@ ROOMS = (
     ("channels",),
     ("frames",),
     ("units",),
+    ("whole",),
     ("errors",),
     ("__init__",),
 )

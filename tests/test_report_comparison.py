@@ -17,6 +17,7 @@ from report_cases import make_run, make_sim, motion
 from rovval import report, vehicle
 from rovval.compare import compare
 from rovval.data import Array, Comparison
+from rovval.errors import UsageProblem
 from rovval.report import html, markdown, plots, table, words
 from rovval.report import json as report_json
 from rovval.report.files import write_all
@@ -94,7 +95,7 @@ def test_a_failure_leaves_the_old_report_alone(tmp_path: Path) -> None:
         path.write_text("half")
         raise OSError("disk full")
 
-    with pytest.raises(OSError, match="disk full"):
+    with pytest.raises(UsageProblem, match="disk full"):
         write_all(tmp_path, {"report.md": "new", "run.rrd": fails})
     assert [p.name for p in tmp_path.iterdir()] == ["report.md"] and (tmp_path / "report.md").read_text() == "old"
 

@@ -30,6 +30,10 @@ class UsageProblem(RovvalError):
     exit_code = 2
 
 
+class Unwritable(UsageProblem):
+    """A disk that is full or closed to us: not the fault of any log, so that a batch stops (exit 2)."""
+
+
 class BadVehicle(UsageProblem):
     """A vehicle file whose numbers cannot be a vehicle (exit 2)."""
 

@@ -11,6 +11,7 @@ import numpy as np
 from rovval.channels import POSE, VELOCITIES
 from rovval.data import SimResult, Trajectory
 from rovval.errors import BadInput
+from rovval.whole import drafts
 
 if TYPE_CHECKING:
     import polars as pl
@@ -33,7 +34,9 @@ LISTS = ("effects", "thrusters", "assumptions", "stops")
 
 
 def save(sim: SimResult, path: Path) -> None:
-    """Write ``sim``; the caller decides on the place and on writing beside it."""
+    """Write ``sim``, whole or not at all."""
+    import io
+
     import polars as pl
 
     columns: dict[str, Any] = {"t_s": np.arange(len(sim.free.ok)) * sim.dt}
@@ -45,7 +48,9 @@ def save(sim: SimResult, path: Path) -> None:
     for j, name in enumerate(sim.thrusters):
         columns |= {f"n:{name}": sim.thruster_speed[:, j], f"thrust:{name}": sim.thrust[:, j]}
     facts = {"schema": SCHEMA} | {name: getattr(sim, name) for name in FACTS}
-    pl.DataFrame(columns).write_parquet(path, compression="zstd", metadata={"rovval": json.dumps(facts)})
+    pl.DataFrame(columns).write_parquet(table := io.BytesIO(), compression="zstd", metadata={"rovval": json.dumps(facts)})
+    with drafts(path) as [draft]:
+        draft.write_bytes(table.getvalue())
 
 
 def load(path: Path) -> SimResult:

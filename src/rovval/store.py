@@ -19,10 +19,11 @@ import numpy as np
 import polars as pl
 
 import rovval
+from rovval import whole
 from rovval.align import align
 from rovval.checks import check
 from rovval.data import ClockReport, Resampled, Run
-from rovval.errors import BadInput, Finding, UsageProblem
+from rovval.errors import BadInput, Finding
 from rovval.ingest import read
 
 SCHEMA = "rovval.run/1"
@@ -70,7 +71,7 @@ def save(run: Run, archive: Path = ARCHIVE) -> Path:
                 raise
             return save(run, archive)  # another process was faster
     except OSError as error:
-        raise UsageProblem(f"{place}: cannot be written: {error.strerror}", "check --archive and the space on its disk") from None
+        raise whole.refusal(place, error) from None
     finally:
         shutil.rmtree(draft, ignore_errors=True)
     return place

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ from typing import Any
 import rovval
 from rovval.blind.sealing import digest, digest_of_files
 from rovval.errors import BadInput, UsageProblem
+from rovval.whole import drafts
 
 MANIFEST = "rovval.blind-set/1"
 COMMIT = "rovval.blind-answers/1"
@@ -103,10 +103,8 @@ class Folder:
 
 def write(path: Path, document: object) -> None:
     """A JSON file, whole or not at all."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    part.write_text(json.dumps(document, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    part.replace(path)
+    with drafts(path) as [draft]:
+        draft.write_text(json.dumps(document, indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def engine_hash() -> str:

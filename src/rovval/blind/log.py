@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from rovval.blind.spec import Flight, stream
+from rovval.whole import drafts
 
 TIME = ("Hour", "Minute", "Second", "Millisecond")
 MOTION = (
@@ -48,9 +49,7 @@ def rows(flight: Flight) -> Iterator[list[str]]:
 
 def write_csv(flight: Flight, path: Path) -> None:
     """Write the log; an existing file is replaced whole."""
-    part = path.with_suffix(".part")
-    with part.open("w", newline="", encoding="utf-8") as file:
+    with drafts(path) as [draft], draft.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(header(flight.thrusters))
         writer.writerows(rows(flight))
-    part.replace(path)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 import tempfile
@@ -27,6 +28,8 @@ def main() -> NoReturn:
         leave(f"rovval: {error}", error.exit_code)
     except OSError as error:
         if error.filename is None:
+            if error.errno in (errno.ENOSPC, errno.EDQUOT):
+                leave(f"rovval: {error.strerror}\n  next: free space on the disk that the result goes to", CONFIGURATION)
             internal(error)
         leave(
             f"rovval: {os.fsdecode(error.filename)}: {error.strerror}\n  next: mend the path or its permissions", _blame(error)

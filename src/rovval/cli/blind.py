@@ -98,9 +98,10 @@ def score(
     """
     from rovval.blind import page
     from rovval.blind import score as scorer
+    from rovval.pipeline.atomic import write_text
 
     result = scorer.score(folder, key=key, kept=history, workers=workers, say=_steps(quiet))
-    (folder / "score.html").write_text(page.html(result), encoding="utf-8")
+    write_text(folder / "score.html", page.html(result))
     if json_:
         output.result_json(result)
     else:

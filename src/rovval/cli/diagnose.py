@@ -58,9 +58,11 @@ def command(
       rovval diagnose dive.csv --json diagnosis.json
       rovval diagnose dive1.csv dive2.csv --profile merlin --write-vehicle mended.toml
     """
+    from rovval import whole
     from rovval.diagnose import diagnose
     from rovval.pipeline.steps import vehicle_of
 
+    whole.check(None if str(json_) == "-" else json_, write_vehicle, None if out is None else out / "diagnosis.json")
     runs = logs.together(sources, vehicle, profile, archive, quiet)
     found = diagnose(
         runs, vehicle_of(runs[0], vehicle), model=model.value, window_s=window, calibration_slop=calibration_slop, seed=seed,

@@ -31,10 +31,12 @@ def command(
     Example:
       rovval fit dive.csv --parameters quadratic_drag[surge],quadratic_drag[sway] --out tuned.toml
     """
+    from rovval import whole
     from rovval.diagnose.fit import fit
     from rovval.pipeline.atomic import write_text
     from rovval.pipeline.steps import vehicle_of
 
+    whole.check(out)
     runs = logs.together(sources, vehicle, profile, archive, quiet)
     wanted = [name for text in parameters for name in text.split(",") if name]
     tuned = fit(runs, vehicle_of(runs[0], vehicle), wanted, model=model.value, window_s=window)

@@ -35,14 +35,12 @@ def command(
       rovval simulate dive.csv --effect inflow_loss:loss=0.3 --model fossen --out with_loss.parquet
     """
     from rovval import simfile
-    from rovval.pipeline.atomic import beside
     from rovval.pipeline.steps import simulated, vehicle_of
 
     run = logs.opened(source, profile, archive, quiet)
     sim = simulated(run, vehicle_of(run, vehicle), model.value, tuple(effect or ()), window)
     path = out or Path("reports") / run.id / f"{model.value}.parquet"
-    simfile.save(sim, new := beside(path))
-    new.replace(path)
+    simfile.save(sim, path)
     for line in (*sim.assumptions, *sim.stops):
         output.say(f"  {line}", quiet)
     summary = _summary(sim, path)

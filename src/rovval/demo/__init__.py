@@ -9,6 +9,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
+from rovval.whole import drafts
+
 if TYPE_CHECKING:
     from rovval.data import Run
 
@@ -28,9 +30,9 @@ class Shown:
 
 def unpack(folder: Path) -> Path:
     """The sample log as the CSV file that a vehicle would have written."""
-    folder.mkdir(parents=True, exist_ok=True)
     path = folder / SAMPLE.stem
-    path.write_bytes(gzip.decompress(SAMPLE.read_bytes()))
+    with drafts(path) as [draft]:
+        draft.write_bytes(gzip.decompress(SAMPLE.read_bytes()))
     return path
 
 

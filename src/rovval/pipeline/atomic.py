@@ -1,32 +1,18 @@
-"""Files that appear whole or not at all: written beside their place, then renamed into it."""
+"""Texts and documents that appear whole or not at all, and the sweeping of what a kill left of them."""
 
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 from typing import Any
 
-LEFTOVER = ".*.part"  # what a kill leaves behind is named so, here and in `rovval.report.files`
-
-
-def beside(path: Path) -> Path:
-    """Where to write what will be renamed to ``path``: the same folder, a name that no glob for logs or reports takes up."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    return path.with_name(f".{path.name}.{os.getpid()}.part")
+from rovval.whole import LEFTOVER, drafts
 
 
 def write_text(path: Path, text: str) -> None:
     """Write ``text`` to ``path`` in one step: a reader sees the old file or the new one, also after a power cut."""
-    new = beside(path)
-    try:
-        with new.open("w", encoding="utf-8", newline="\n") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        new.replace(path)
-    finally:
-        new.unlink(missing_ok=True)
+    with drafts(path) as [draft]:
+        draft.write_text(text, encoding="utf-8", newline="\n")
 
 
 def write_json(path: Path, document: dict[str, Any]) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from rovval.errors import UsageProblem
+from rovval.errors import Unwritable, UsageProblem
 from rovval.pipeline import atomic, cluster, config, lock, summary
 from rovval.pipeline.execute import execute
 from rovval.pipeline.plan import Plan, Task, plan
@@ -24,7 +24,10 @@ def run(
     retry: bool = False,
     progress: Callable[[str, float], None] = lambda step, share: None,
 ) -> dict[str, Any]:
-    """Run the pipeline of a file; returns the summary, which also stands as summary.json among the reports."""
+    """Run the pipeline of a file; returns the summary, which also stands as summary.json among the reports.
+
+    Raises `UsageProblem` for a wrong file, `Unwritable` where archive or reports cannot be written: what was done stays done.
+    """
     if workers is not None and scheduler:
         raise UsageProblem("--workers and --scheduler are two ways to run", "give one of them")
     pipeline = config.load(path)
@@ -42,6 +45,8 @@ def run(
             else execute(todo.todo, work, died, workers or pipeline.workers or os.cpu_count() or 1, pipeline.timeout_s)
         )
         for number, (task, outcome) in enumerate(spread, 1):
+            if outcome["status"] == "stopped":
+                raise Unwritable(outcome["record"]["reason"], f"{outcome['record']['next']}; the next run goes on from here")
             (finished if outcome["status"] == "done" else aside).append(outcome["record"])
             progress(f"{number} of {count} logs, {task.log.name}", number / count)
         document = summary.summarise(

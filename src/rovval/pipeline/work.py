@@ -11,7 +11,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rovval.errors import RovvalError
+from rovval.errors import RovvalError, Unwritable
 from rovval.pipeline import atomic
 from rovval.pipeline.plan import RECORD, Task, read_record
 
@@ -23,10 +23,20 @@ Outcome = dict[str, Any]
 
 
 def work(task: Task) -> Outcome:
-    """Do what is missing of one task. Returns its record, or why it is set aside; never raises for what one log can do."""
+    """Do what is missing of one task. Returns its record, or why it is set aside, or why no task can be done: a disk that is full
+    is no log's fault. Never raises for what one log can do."""
+    try:
+        return _done_or_set_aside(task)
+    except Unwritable as error:
+        return {"status": "stopped", "record": {"reason": error.message, "next": error.hint}}
+
+
+def _done_or_set_aside(task: Task) -> Outcome:
     began = time.monotonic()
     try:
         record = _steps(task)
+    except Unwritable:
+        raise
     except RovvalError as error:
         return set_aside(task, "refused", error.message, error.exit_code, hint=error.hint)
     except MemoryError:
@@ -116,8 +126,7 @@ class _Bench:
         from rovval import simfile
 
         path = self.task.folder / "simulation.parquet"
-        simfile.save(self.sim, new := atomic.beside(path))
-        new.replace(path)
+        simfile.save(self.sim, path)
         return {"stops": list(self.sim.stops)}, [path]
 
     def compare(self) -> tuple[dict[str, Any], list[Path]]:
