@@ -378,3 +378,36 @@ def test_a_large_export_is_recognised_by_its_beginning(tmp_path):
     path = tmp_path / "large.csv"
     path.write_text(text(cells), encoding="utf-8")
     assert len(read(path).channels["u"].t) == 3000
+
+
+def test_rows_in_no_order_of_time_are_refused(tmp_path):
+    """Taken for a clock set back again and again, half a minute of rows became hours, with a flawless score on what was left."""
+
+    def shuffle(cells):
+        order = np.random.default_rng(1).permutation(300)
+        for name, column in cells.items():
+            cells[name] = [column[k] for k in order]
+
+    with pytest.raises(BadInput, match=r"the stamps go back \d+ times in 300 rows"):
+        read(write(tmp_path, edit=shuffle), "merlin")
+
+
+def test_a_channel_in_the_wrong_unit_is_masked_whole(tmp_path):
+    """Millimetres a second read as metres: the few samples near rest that look sane are no measurement."""
+
+    def in_millimetres(cells):
+        cells["LinVelX"] = [f"{1000 * float(x):.1f}" for x in cells["LinVelX"]]
+
+    run = open_run(write(tmp_path, edit=in_millimetres), "merlin")
+    assert not run.measured("u")
+    (finding,) = [f for f in run.findings if f.code == "out_of_range"]
+    assert finding.where == "u"
+    assert "is its unit right in the profile?" in finding.detail
+
+
+def test_what_an_instrument_writes_without_a_fix_leaves_its_other_samples_alone(tmp_path):
+    def no_bottom_lock(cells):
+        cells["LinVelX"][:200] = ["-32.768"] * 200
+
+    run = open_run(write(tmp_path, edit=no_bottom_lock), "merlin")
+    assert run.ok("u").sum() == pytest.approx(100, abs=1)

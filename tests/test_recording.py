@@ -91,3 +91,16 @@ def test_tracks_are_cut_where_they_are_missing(cut: int) -> None:
     points[cut] = np.nan
     pieces = world._strips(points, np.repeat([0, 1], 10))
     assert [len(p) for p in pieces] == ([9, 10] if cut == 0 else [10, 9])
+
+
+def test_a_recording_that_could_not_be_written_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """rerun writes in a thread of its own, whose failure is no OSError: it came out as an internal error."""
+    import rerun as rr
+
+    def stopped(self: object) -> None:
+        raise RuntimeError("File-writer thread shut down prematurely")
+
+    monkeypatch.setattr(rr.RecordingStream, "flush", stopped)
+    run = make_run(50)
+    with pytest.raises(OSError, match="want of space"):
+        recording.write(compare(run, make_sim(run)), tmp_path / "run.rrd", MERLIN)

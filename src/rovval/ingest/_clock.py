@@ -16,6 +16,7 @@ from rovval.errors import BadInput, Finding
 from rovval.ingest._text import some
 
 FEW = 10  # rows: more than these behind or ahead are not a slip of one message
+STEPS, STEP_SHARE = 3, 0.01  # a clock is stepped back now and then, hardly ever more often than both of these
 DAY_S = 86400.0
 Index = NDArray[np.int64]
 
@@ -69,6 +70,8 @@ def _backwards(t: Array, lines: Index, where: str) -> tuple[Array, NDArray[np.bo
     keep = np.ones(len(t), bool)
     bad: list[int] = []
     late_rows: list[int] = []
+    span = float(np.ptp(t))
+    steps: list[tuple[int, float]] = []
     findings = []
     for k in np.flatnonzero(forward < 0):
         if not keep[k] or t[k + 1] >= (top := t[: k + 1][keep[: k + 1]].max()):
@@ -87,13 +90,26 @@ def _backwards(t: Array, lines: Index, where: str) -> tuple[Array, NDArray[np.bo
         else:
             by = top + period - t[k + 1]
             t[k + 1 :] += by
-            detail = f"the clock goes back by {by:.3f} s; the rows after it follow one period ({period:.3f} s) later"
-            findings.append(Finding("clock_step", f"{where} line {lines[k + 1]}", detail))
+            steps.append((int(lines[k + 1]), float(by)))
+    findings += _stepped(steps, len(t), period, span, where)
     if bad:
         findings.append(Finding("bad_stamp", where, f"{len(bad)} rows are stamped far from their neighbours ({some(bad)}); dropped"))
     if late_rows:
         findings.append(Finding("swapped_row", where, f"{len(late_rows)} rows are late ({some(late_rows)}); sorted"))
     return t, keep, findings
+
+
+def _stepped(steps: list[tuple[int, float]], rows: int, period: float, span: float, where: str) -> list[Finding]:
+    """A finding for each step back of the clock. Raises `BadInput` where they are so many and so large that it is no clock."""
+    back = sum(by for _, by in steps)
+    if len(steps) > max(STEPS, STEP_SHARE * rows) and back > span:
+        raise BadInput(
+            f"{where}: the stamps go back {len(steps)} times in {rows} rows ({some([line for line, _ in steps])}), by {back:.0f} s in all "
+            f"where they span {span:.0f} s: this is no clock that was set back, the rows are in no order of time",
+            "sort the rows by time, split logs that were joined, or is time another column than the profile says?",
+        )
+    told = "the clock goes back by {:.3f} s; the rows after it follow one period ({:.3f} s) later"
+    return [Finding("clock_step", f"{where} line {line}", told.format(by, period)) for line, by in steps]
 
 
 def _collides(t: Array, period: float) -> bool:

@@ -8,6 +8,9 @@ from rovval.channels import channel
 from rovval.data import Codes, Reason, Series
 from rovval.errors import Finding
 
+MOST = 0.5  # a channel that moves mostly outside its sane range is not what the profile says: its rest is no measurement either
+FILLS = 3  # distinct values: no more than these are what an instrument writes while it has nothing to say (-32.768, 9999)
+
 
 def still_runs(series: Series, longer_than_s: float) -> list[tuple[int, int]]:
     """Runs (first, last index) of equal values that last longer than ``longer_than_s`` (s)."""
@@ -32,12 +35,14 @@ def bad_samples(name: str, series: Series, stuck_s: float | None) -> tuple[Codes
             detail = f"{len(runs)} runs of equal values longer than {stuck_s:g} s, from t = {series.t[runs[0][0]]:.1f} s; masked"
             findings.append(Finding("stuck", name, detail))
     outside = (series.values < row.low) | (series.values > row.high)
-    code[outside] = Reason.OUT_OF_RANGE
+    most = outside.mean() > MOST and len(np.unique(series.values[outside])) > FILLS
+    code[outside | most] = Reason.OUT_OF_RANGE
     if outside.any():
         low, high = series.values[outside].min(), series.values[outside].max()
         detail = (
             f"{outside.sum()} samples outside {row.low:g} to {row.high:g} {row.unit} ({low:.4g} to {high:.4g}), "
-            f"from t = {series.t[outside][0]:.1f} s; masked"
+            f"from t = {series.t[outside][0]:.1f} s; "
+            + (f"{100 * outside.mean():.0f} % of the channel, so all of it is masked: is its unit right in the profile?" if most else "masked")
         )
         findings.append(Finding("out_of_range", name, detail))
     return code, tuple(findings)

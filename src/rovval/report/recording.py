@@ -6,6 +6,7 @@ measured is left out, and ``/notes`` says so.
 
 from __future__ import annotations
 
+import errno
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -40,8 +41,11 @@ def write(comparison: Comparison, path: Path, vehicle: Vehicle, corrected: SimRe
     lines = [f"# {run.id}", words.synthetic(c), *words.sentences(c), *(f"- {n}" for n in notes)]
     document = rr.TextDocument("\n\n".join(line for line in lines if line), media_type=rr.MediaType.MARKDOWN)
     stream.log("/notes", document, static=True)
-    stream.flush()
-    stream.disconnect()
+    try:
+        stream.flush()
+        stream.disconnect()
+    except RuntimeError as error:  # rerun's own thread writes the file, and only tells that it could not
+        raise OSError(errno.EIO, f"the recording's writer stopped, perhaps for want of space ({error})") from None
 
 
 def _curves(stream: Any, clock: list[Any], c: Comparison, corrected: SimResult | None) -> None:
