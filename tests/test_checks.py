@@ -78,3 +78,13 @@ def test_what_is_true_of_many_channels_is_one_finding():
     t = np.concatenate([np.arange(0, 10, 0.1), np.arange(12, 20, 0.1)])
     (finding,) = check(log(u=(t, np.sin(t)), v=(t, np.cos(t))))
     assert finding.where == "u, v"
+
+
+@pytest.mark.parametrize(("factor", "code", "says"), [(1 / 60, "scale", "0.0167 times"), (-1, "sign", "against its set-point"), (0.8, None, "")])
+def test_a_thruster_far_from_its_set_point_has_a_wrong_unit_or_sign(factor, code, says):
+    """A governor that droops by a fifth does not."""
+    t = np.arange(0, 60, 0.1)
+    wanted = 5.0 * np.sin(0.2 * t)
+    found = check(log(n_cmd__HFP=(t, wanted), n__HFP=(t, factor * wanted)))
+    assert [f.code for f in found] == [code] * bool(code)
+    assert all(says in f.detail and f.where == "n:HFP, n_cmd:HFP" for f in found)

@@ -240,7 +240,7 @@ BAD_FILES = {
     "empty.csv": (b"", "empty"),
     "newline.csv": (b"\n", "fits no built-in profile"),
     "binary.csv": (bytes(range(256)) * 40, "no known format"),
-    "junk.bag": (bytes(range(256)) * 40, "no known format"),
+    "junk.bag": (bytes(range(256)) * 40, "no known format: its name ends in .bag, and it does not begin as such"),
     "noise.csv": (b"hello\nworld\n" * 9, "fits no built-in profile"),
     "header.csv": ((",".join(columns()) + "\n").encode(), "no complete row"),
     "one_row.csv": (text({k: v[:1] for k, v in columns().items()}).encode(), "at least 2"),
@@ -266,8 +266,9 @@ def test_paths_that_are_no_log(tmp_path):
     with pytest.raises(BadInput, match="folder is empty"):
         read(tmp_path)
     (tmp_path / "notes.md").write_text("x")
-    with pytest.raises(BadInput, match="no known format"):
+    with pytest.raises(BadInput, match="no known format: a folder that holds no bag") as refused:
         read(tmp_path)
+    assert "rovval ingest" in refused.value.hint
     with pytest.raises(BadInput, match=r"a folder; profile"):
         read(tmp_path, "merlin")
 

@@ -46,7 +46,7 @@ def test_settings_are_refused_by_name_and_all_at_once():
     with pytest.raises(UsageProblem) as refusal:
         parse_settings(plant, ["inflow_los:loss=0.3", "thruster_degraded:loss=1", "inflow_loss:los=1", "dvl_scale:scale=9", "dvl_scale:scale=x"])
     message = str(refusal.value)
-    parts = ("no effect named 'inflow_los'", "thruster_degraded[HFP]", "inflow_loss has loss", "dvl_scale.scale = 9 1, allowed -0.7 to 1.2")
+    parts = ("no effect named 'inflow_los'", "thruster_degraded[HFP]", "inflow_loss has loss", "dvl_scale.scale = 9, allowed -0.7 to 1.2")
     for part in (*parts, "'x' is not a number"):
         assert part in message
     assert parse_settings(plant, ["thruster_degraded[HFP]:loss=0.4", "waves:amplitude=0.2,period=5"])[plant.index["waves.period"]] == 5
@@ -57,7 +57,7 @@ def test_out_of_bounds_parameters_are_refused_by_name():
     beta = plant.null.copy()
     beta[plant.index["dvl_scale.scale"]] = 1.5
     beta[plant.index["gyro_bias.r"]] = np.nan
-    with pytest.raises(UsageProblem, match=r"(?s)dvl_scale.scale = 1.5 .*gyro_bias.r = nan"):
+    with pytest.raises(UsageProblem, match=r"(?s)dvl_scale.scale = 1.5, .*gyro_bias.r = nan"):
         cases.run(plant, beta=beta)
 
 
@@ -175,3 +175,11 @@ def test_a_kernel_cache_that_cannot_be_written_is_no_hindrance(tmp_path):
     environment = {**os.environ, "ROVVAL_CACHE": str(blocked / "below"), "PYTHONPATH": str(Path(__file__).parent)}
     done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "(1, 11, 6)" and "compiling" in done.stderr
+
+
+def test_a_parameter_given_twice_is_refused():
+    """The last one used to win in silence."""
+    plant = Plant(cases.merlin())
+    for settings in (["inflow_loss:loss=0.1", "inflow_loss:loss=0.2"], ["inflow_loss:loss=0.1,loss=0.2"]):
+        with pytest.raises(UsageProblem, match=r"inflow_loss.loss is given twice, 0.1 and 0.2"):
+            parse_settings(plant, settings)

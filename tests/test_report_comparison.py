@@ -195,3 +195,11 @@ def test_nothing_heavy_is_imported_with_the_package() -> None:
 def test_the_assets_carry_their_licence() -> None:
     assets = Path(report.__file__).parent / "assets"
     assert "Leon Sorokin" in (assets / "uPlot.LICENSE").read_text() and "Leon Sorokin" in html.text(case(200))
+
+
+def test_a_log_without_velocities_has_no_empty_table_and_no_empty_plots() -> None:
+    c = case(absent=("u", "v", "w", "p", "q", "r"))
+    said = table.text(c)
+    assert "free run" not in said
+    assert "depth (" in said and "roll angle" in said and "phi" not in said
+    assert ">Velocities<" not in html.text(c) and ">Velocities<" in html.text(case())

@@ -16,6 +16,7 @@ STUCK_S = 3.0  # a living sensor does not repeat itself to the last digit for so
 SENSORS = ("u", "v", "w", "p", "q", "r", "x", "y", "z", "phi", "theta", "psi", "udot", "vdot", "wdot", "altitude")
 EULER = ("phi", "theta", "psi")
 LEVEL = 1.0  # rad of roll and pitch beyond which Euler rates say little
+SAME, FAR = 0.9, 2.0  # correlation and ratio of speed and set-point: a governor that lags or droops stays within
 SURE = 0.5  # correlation of two signals that are one by kinematics, beyond which a sign or a scale may be named
 
 
@@ -27,7 +28,7 @@ def check(raw: RawLog) -> tuple[Finding, ...]:
         found += _stuck(raw, name, series)
         found += bad_samples(name, series, None)[1]
         found += _rate(name, series)
-    return (*_together(found), *_kinematics(raw))
+    return (*_together(found), *_kinematics(raw), *_set_points(raw))
 
 
 def _together(found: list[Finding]) -> list[Finding]:
@@ -118,6 +119,26 @@ def _kinematics(raw: RawLog) -> list[Finding]:
         known = level & np.isfinite(way) & np.isfinite(said)
         if known.sum() >= 50 and not any(f.where == names for f in found):
             found += _agree(names, way[known], said[known])
+    return found
+
+
+def _set_points(raw: RawLog) -> list[Finding]:
+    """Measured speed of each thruster against its set-point: where one is a multiple of the other, a unit or a sign is wrong."""
+    found: list[Finding] = []
+    for name, speed in raw.channels.items():
+        family, _, thruster = name.partition(":")
+        wanted = raw.channels.get(f"n_cmd:{thruster}")
+        if family != "n" or wanted is None or min(len(speed.t), len(wanted.t)) < 50:
+            continue
+        a, b = speed.values, np.interp(speed.t, wanted.t, wanted.values)
+        aa, ab, bb = (float((x * y).sum()) for x, y in ((a, a), (a, b), (b, b)))
+        if abs(ab) < SAME * np.sqrt(aa * bb) or ab == 0.0:
+            continue
+        if ab < 0:
+            found.append(Finding("sign", f"{name}, n_cmd:{thruster}", "the thruster turns against its set-point: one of the signs is wrong"))
+        elif not 1 / FAR < ab / bb < FAR:
+            detail = f"the thruster turns {ab / bb:.3g} times its set-point: one of the units is wrong"
+            found.append(Finding("scale", f"{name}, n_cmd:{thruster}", detail))
     return found
 
 

@@ -26,6 +26,8 @@ class Drive:
     source: str
     assumptions: tuple[str, ...]
 
+NAMES = {"n": "measured speed", "n_cmd": "speed set-point", "pwm": "pulse width", "stick": "pilot's sticks"}
+
 
 def drive(run: Run, vehicle: Vehicle) -> Drive:
     """Thruster speeds (n, k) rev/s of a run: measured speed, else set-point, else pulse width, else pilot's sticks.
@@ -33,6 +35,7 @@ def drive(run: Run, vehicle: Vehicle) -> Drive:
     Raises:
         BadInput: no family of channels covers every thruster of the vehicle; says what the log holds.
     """
+    partly: list[str] = []
     for family, convert in (("n", _speeds), ("n_cmd", _speeds), ("pwm", _pulses), ("stick", _sticks)):
         wanted = _wanted(family, vehicle)
         if wanted and all(run.measured(name) for name in wanted):
@@ -51,12 +54,16 @@ def drive(run: Run, vehicle: Vehicle) -> Drive:
                     tether_length=_optional(run, "tether_length"),
                 ),
                 known=known,
-                source={"n": "measured speed", "n_cmd": "speed set-point", "pwm": "pulse width", "stick": "pilot's sticks"}[family],
-                assumptions=assumptions,
+                source=NAMES[family],
+                assumptions=(*(f"{lack}, so the {NAMES[family]} drives all thrusters" for lack in partly), *assumptions),
             )
+        gone = [name.partition(":")[2] for name in wanted if not run.measured(name)]
+        if len(gone) < len(wanted):
+            partly.append(f"{NAMES[family]} is missing for {', '.join(gone)}")
     held = sorted(n for n in run.values if n.partition(":")[0] in ("n", "n_cmd", "pwm", "stick"))
+    why = "; ".join(partly) or f"the log holds {', '.join(held) or 'none'}"
     raise BadInput(
-        f"run {run.id}: no thruster input for {vehicle.name} ({', '.join(vehicle.thrusters)}); the log holds {', '.join(held) or 'none'}",
+        f"run {run.id}: no thruster input for {vehicle.name} ({', '.join(vehicle.thrusters)}); {why}",
         "map a speed, set-point, pulse width or stick channel for every thruster in the profile, or choose the right --vehicle",
     )
 

@@ -110,7 +110,7 @@ def _profile(name: str) -> Shown:
 def _effect(name: str) -> Shown:
     from rovval import effects
 
-    effect = effects.load(name)
+    effect = effects.load(name.partition("[")[0])  # reports name it with its axis or thruster
     lines = [f"{effect.name}: {effect.title}", f"enters at: {effect.place}", f"equation: {effect.equation}", "", "parameters"]
     lines += [
         f"  {p.target and f'[{p.target}] '}{p.name} [{p.unit}]  {p.low:g} to {p.high:g}, null {p.null:g}, typical {p.typical:g} ({p.source})"

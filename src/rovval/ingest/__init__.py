@@ -68,8 +68,7 @@ def read(path: Path, profile: str | None = None) -> RawLog:
 def _the_one_that_fits(path: Path) -> Profile:
     able = [name for name in readers() if _able(name, path)]
     if not able:
-        known = ", ".join(sorted({s for name in readers() for s in reader(name).SUFFIXES}))
-        raise BadInput(f"{path}: of no known format (known: {known})", "give --profile if the file has an unusual name")
+        raise _of_no_format(path)
     fits, near = [], []
     for candidate in (load_profile(name) for name in profiles()):
         if candidate.format not in able:
@@ -90,6 +89,17 @@ def _the_one_that_fits(path: Path) -> Profile:
         raise BadInput(f"{path}: fits several profiles: {names}", "say which with --profile")
     hint = "give --profile: one of these, or a TOML file of your own"
     raise BadInput(f"{path}: fits no built-in profile" + "".join(near), hint)
+
+
+def _of_no_format(path: Path) -> BadInput:
+    known = sorted({s for name in readers() for s in reader(name).SUFFIXES if s})
+    if path.is_dir():
+        hint = f"give one of the logs in it, or put all of them into the archive: `rovval ingest {path}`"
+        return BadInput(f"{path}: of no known format: a folder that holds no bag", hint)
+    if path.suffix.lower() in known:
+        said = f"its name ends in {path.suffix}, and it does not begin as such a file does"
+        return BadInput(f"{path}: of no known format: {said}", "is the file whole, and is it what its name says?")
+    return BadInput(f"{path}: of no known format (known: {', '.join(known)})", "give --profile if the file has an unusual name")
 
 
 def _able(name: str, path: Path) -> bool:

@@ -70,7 +70,7 @@ def plan(pipeline: Pipeline, base: Path, retry: bool = False) -> Plan:
         vehicle, profile = _content(source)
         for log in discover.matching(source.logs, base):
             if time.time() - log.stat().st_mtime < pipeline.settle_s:
-                waiting.append((log, f"changed less than {pipeline.settle_s:g} s ago"))
+                waiting.append((log, f"changed less than {pipeline.settle_s:g} s ago (settle_s): a later run takes it"))
                 continue
             task = _task(pipeline, source, log, hashes.of(log), (vehicle, profile))
             if (twin := seen.setdefault(task.key, log)) != log:

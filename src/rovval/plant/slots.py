@@ -101,13 +101,13 @@ def check_bounds(found: Sequence[Slot], beta: Array) -> None:
         problems = []
         for c in columns:
             p, values = found[c].parameter, beta[wrong[:, c], c]
-            problems.append(f"{found[c].key} = {values[0]:.6g} {p.unit}, allowed {p.low:.6g} to {p.high:.6g}")
+            problems.append(f"{found[c].key} = {_value(values[0], p)}, allowed {p.low:.6g} to {p.high:.6g}")
         raise UsageProblem(all_at_once(problems, "effect parameters out of bounds"), "see `rovval show effect NAME`")
 
 
 def parse(found: Sequence[Slot], index: Mapping[str, int], null: Array, settings: Sequence[str]) -> Array:
     """(K,) vector of settings like ``inflow_loss:loss=0.3`` or ``thruster_degraded[HFP]:loss=0.4,...``; every problem at once."""
-    beta, problems = null.copy(), []
+    beta, problems, given = null.copy(), list[str](), set[int]()
     hypotheses = {s.hypothesis for s in found}
     for setting in settings:
         hypothesis, _, pairs = setting.partition(":")
@@ -128,12 +128,19 @@ def parse(found: Sequence[Slot], index: Mapping[str, int], null: Array, settings
                 continue
             column = index[f"{hypothesis}.{name}"]
             p = found[column].parameter
+            if column in given:
+                problems.append(f"{hypothesis}.{name} is given twice, {_value(beta[column], p)} and {_value(number, p)}")
+            given.add(column)
             if not p.low <= number <= p.high:
-                problems.append(f"{hypothesis}.{name} = {number:.6g} {p.unit}, allowed {p.low:.6g} to {p.high:.6g}")
+                problems.append(f"{hypothesis}.{name} = {_value(number, p)}, allowed {p.low:.6g} to {p.high:.6g}")
             beta[column] = number
     if problems:
         raise UsageProblem(all_at_once(problems, "--effect"), "see `rovval list effect` and `rovval show effect NAME`")
     return beta
+
+
+def _value(number: float, parameter: Parameter) -> str:
+    return f"{number:.6g} {parameter.unit}".removesuffix(" 1")
 
 
 def _unknown(hypothesis: str, known: set[str], setting: str) -> str:

@@ -28,7 +28,7 @@ def text(comparison: Comparison) -> str:
             page.head("Simulated against measured", run.id, words.synthetic(c), words.sentences(c), words.facts(c)),
             page.section("Error per axis", html_tables.axes(c), page.listing(words.notes(c)), lead="Simulated minus measured."),
             page.section(f"Beside {c.other_name}", html_tables.other(c), lead=_OTHER) if c.other else "",
-            page.section("Velocities", page.switches(_keys(c)), places, lead=_how_drawn(c)),
+            page.section("Velocities", page.switches(_keys(c)), places, lead=_how_drawn(c)) if pictures else "",
             page.section("How the error grows from a window's start", _horizons(c), lead=_HORIZON),
             page.section("Depth and attitude in the windows", html_tables.pose(c), pose_places),
             page.section("Thruster speed as used", thruster_places),

@@ -25,13 +25,13 @@ def text(comparison: Comparison) -> str:
     axes = dict.fromkeys((*c.free, *c.windowed))
     rows = [line for axis in axes for line in _axis(axis, c.free.get(axis), c.windowed.get(axis))]
     over = ["", "", "free run", "", "", "", "", "", f"{sim.window_s:g} s windows", "", "", ""]
-    parts += [_grid([over, _HEAD, *rows])]
+    parts += [_grid([over, _HEAD, *rows]), ""] if rows else []
     if c.pose:
         lines = [line for name, row in c.pose.items() for line in _pose(name, row)]
-        parts += ["", _grid([("in windows", "unit", "mean err", "MAE", "RMSE", "IAE", "stays", "skill", "rows"), *lines])]
+        parts += [_grid([("in windows", "unit", "mean err", "MAE", "RMSE", "IAE", "stays", "skill", "rows"), *lines]), ""]
     if c.other:
         head = ("free run", "unit", f"{c.other_name} MAE", "ours MAE", f"{c.other_name} RMSE", "ours RMSE", "skill", "rows")
-        parts += ["", _grid([head, *_other(c)])]
+        parts += [_grid([head, *_other(c)]), ""]
     parts += [f"not measured: {words.listed(c.not_measured)}"] if c.not_measured else []
     parts += [f"stopped: {s}" for s in sim.stops]
     parts += ["error = simulated - measured; IAE in unit x s; skill = 1 - MSE / MSE of the trivial predictor"]

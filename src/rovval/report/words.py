@@ -91,7 +91,7 @@ def sentences(comparison: Comparison) -> list[str]:
 
 def _pose_only(comparison: Comparison) -> str:
     """For a log without velocities: the pose channels that it has."""
-    gaps = listed([f"{name} ({quantity(row.rmse, row.unit)} rms)" for name, row in comparison.pose.items()])
+    gaps = listed([f"{TITLES[name]} ({quantity(row.rmse, row.unit)} rms)" for name, row in comparison.pose.items()])
     return (
         f"No velocity was measured in this log. In windows of {comparison.sim.window_s:g} s, each started from the measured pose, "
         f"the simulator differs from the vehicle in {gaps}."
