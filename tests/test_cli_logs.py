@@ -98,3 +98,14 @@ def test_an_effect_is_shown_under_the_name_that_reports_give_it():
     shown = RUNNER.invoke(app, ["show", "effect", "quadratic_drag[surge]"])
     assert shown.exit_code == 0
     assert shown.stdout == RUNNER.invoke(app, ["show", "effect", "quadratic_drag"]).stdout
+
+
+@pytest.mark.parametrize("command", [("fit", "--parameters", "inflow_loss", "--out"), ("diagnose", "--write-vehicle")])
+def test_a_vehicle_is_not_written_over_the_one_it_is_made_from(tmp_path, monkeypatch, command):
+    monkeypatch.chdir(tmp_path)
+    (mine := tmp_path / "mine.toml").write_text("# my comments\n")
+    write(tmp_path)
+    done = RUNNER.invoke(app, [command[0], "dive.csv", "--profile", "merlin", "--vehicle", "mine.toml", *command[1:], str(mine)])
+    assert isinstance(done.exception, UsageProblem)
+    assert "mine.toml: is the vehicle that was asked for" in str(done.exception)
+    assert mine.read_text() == "# my comments\n"

@@ -169,6 +169,6 @@ def _agree(names: str, moved: Array, said: Array) -> list[Finding]:
         detail = f"the pose runs against the velocity that is its rate (correlation {correlation:.2f}): one of the signs is wrong"
         return [Finding("sign", names, detail)]
     if correlation > 0.9 and not 0.8 < scale < 1.25:
-        detail = f"the pose moves {scale:.2f} times what the velocity that is its rate gives: one of the units or scales is wrong"
+        detail = f"the pose moves {scale:.3g} times what the velocity that is its rate gives: one of the units or scales is wrong"
         return [Finding("scale", names, detail)]
     return []

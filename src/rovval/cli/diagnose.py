@@ -62,7 +62,9 @@ def command(
     from rovval.diagnose import diagnose
     from rovval.pipeline.steps import vehicle_of
 
-    whole.check(None if str(json_) == "-" else json_, write_vehicle, None if out is None else out / "diagnosis.json")
+    reports = Path("reports") if out is None and json_ is None else out
+    whole.check(None if str(json_) == "-" else json_, write_vehicle, reports and reports / "diagnosis.json")
+    options.spare(vehicle, write_vehicle)
     runs = logs.together(sources, vehicle, profile, archive, quiet)
     found = diagnose(
         runs, vehicle_of(runs[0], vehicle), model=model.value, window_s=window, calibration_slop=calibration_slop, seed=seed,

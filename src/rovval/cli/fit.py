@@ -37,6 +37,7 @@ def command(
     from rovval.pipeline.steps import vehicle_of
 
     whole.check(out)
+    options.spare(vehicle, out)
     runs = logs.together(sources, vehicle, profile, archive, quiet)
     wanted = [name for text in parameters for name in text.split(",") if name]
     tuned = fit(runs, vehicle_of(runs[0], vehicle), wanted, model=model.value, window_s=window)

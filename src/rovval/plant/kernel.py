@@ -6,9 +6,11 @@ slower, share one cache entry between a serial and a parallel version, and break
 
 from __future__ import annotations
 
+import atexit
 import hashlib
 import importlib.util
 import os
+import shutil
 import sys
 import tempfile
 import time
@@ -25,18 +27,25 @@ ROOT = Path(__file__).parent
 
 def cache_folder() -> Path:
     """Where kernels are kept: ROVVAL_CACHE, else the user's cache folder, else a folder of this process alone."""
+    return _lasting_folder() or _own_folder()
+
+
+def _lasting_folder() -> Path | None:
+    """The folder that the next run finds again, or None where it cannot be written."""
     wanted = Path(os.environ.get("ROVVAL_CACHE") or Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "rovval")
     try:
         wanted.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=wanted):
             return wanted
     except OSError:
-        return _own_folder()
+        return None
 
 
 @cache
 def _own_folder() -> Path:
-    return Path(tempfile.mkdtemp(prefix="rovval-"))
+    folder = Path(tempfile.mkdtemp(prefix="rovval-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
 
 
 @cache
@@ -107,7 +116,8 @@ def _warm(function: Any, spec: compose.Spec, arguments: tuple[Any, ...]) -> None
     start = time.monotonic()
     cached = any(cache_folder().glob(f"__pycache__/kernel_{spec.name}_{_fingerprint(spec)}.run-*.nbc"))
     if not cached:
-        print(f"rovval: compiling the {spec.name} plant, once for this machine (some seconds) ...", file=sys.stderr, flush=True)  # noqa: T201
+        often = "once for this machine" if _lasting_folder() else "in every run, for want of a folder to keep it: name one in ROVVAL_CACHE"
+        print(f"rovval: compiling the {spec.name} plant, {often} (some seconds) ...", file=sys.stderr, flush=True)  # noqa: T201
     function(0, 0, *arguments)
     if not cached:
         print(f"rovval: compiled in {time.monotonic() - start:.1f} s", file=sys.stderr, flush=True)  # noqa: T201
