@@ -243,3 +243,24 @@ def test_a_dask_cluster_gives_the_same_outcomes(site):
         done = batch.run(path, scheduler=dask.scheduler_address)
     assert counts(done) == {"done": 3, "quarantined": 1}
     assert counts(batch.run(path, workers=1)) == {"unchanged": 3, "quarantined": 1}
+
+
+def test_the_vehicle_that_a_profile_names_lies_beside_it_and_counts(site, tmp_path, monkeypatch):
+    """It was looked for in the working directory, where cron is somewhere else; and edited it left its logs unchanged."""
+    from rovval import vehicle
+    from rovval.ingest import profile
+
+    text = (profile.FOLDER / "merlin.toml").read_text()
+    (tmp_path / "mine.toml").write_text(text.replace('vehicle = "merlin"', 'vehicle = "my_vehicle.toml"'))
+    mine = tmp_path / "my_vehicle.toml"
+    mine.write_text((vehicle.LIBRARY / "merlin.toml").read_text())
+    path = batch_case.write_pipeline(tmp_path, steps='["ingest", "simulate"]')
+    path.write_text(path.read_text().replace('profile = "merlin"\nvehicle = "merlin"', 'profile = "mine.toml"'))
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    before = tasks_of(path)
+    assert before and profile.load_profile(tmp_path / "mine.toml").vehicle_file == str(mine)
+    mine.write_text(mine.read_text().replace("mass = 2936.0", "mass = 2930.0"))
+    after = tasks_of(path)
+    assert [dict(t.keys)["simulate"] for t in before] != [dict(t.keys)["simulate"] for t in after]
+    assert [dict(t.keys)["ingest"] for t in before] == [dict(t.keys)["ingest"] for t in after]

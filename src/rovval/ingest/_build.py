@@ -66,7 +66,7 @@ def build(
         raise BadInput(f"{path}: every channel of profile {profile.name!r} is empty", "see `rovval show profile`")
     ordered = {name: _angles(name, series[name], found) for name in _in_order(profile, series)}
     return RawLog(
-        source=str(path), sha256=sha256, profile=profile.name, vehicle=profile.vehicle, t0_ns=t0_ns, channels=ordered,
+        source=str(path), sha256=sha256, profile=profile.name, vehicle=profile.vehicle_file, t0_ns=t0_ns, channels=ordered,
         findings=tuple(found), properties=facts, rules={n: r for n in ordered if (r := _rule(profile, signals, n)) is not None},
     )  # fmt: skip
 

@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError
 
 from rovval.channels import CHANNELS, VELOCITIES, Resampling
 from rovval.errors import UsageProblem, all_at_once
@@ -81,6 +81,12 @@ class Profile(BaseModel):
     channels: dict[str, Source] = Field(min_length=1)
     absent: tuple[str, ...] = ()
     messages: dict[str, str] = {}
+    _folder: Path = PrivateAttr(default_factory=Path)
+
+    @property
+    def vehicle_file(self) -> str:
+        """The vehicle as `rovval.vehicle.load` takes it: a file's path is relative to the profile that names it."""
+        return str(self._folder / self.vehicle) if self.vehicle.endswith(".toml") else self.vehicle
 
     @property
     def sha256(self) -> str:
@@ -104,7 +110,9 @@ def load_profile(name_or_path: str | Path) -> Profile:
         raise UsageProblem(f"unknown profile {str(name_or_path)!r}", hint) from None
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise UsageProblem(f"profile {path}: not readable as TOML: {error}") from None
-    return parse_profile(table, str(path))
+    profile = parse_profile(table, str(path))
+    profile._folder = path.parent
+    return profile
 
 
 def parse_profile(table: Mapping[str, Any], where: str) -> Profile:

@@ -121,8 +121,9 @@ def _content(source: Source) -> tuple[str, str]:
     from rovval import vehicle
     from rovval.ingest.profile import load_profile
 
-    wanted = vehicle.load(source.vehicle).hash if source.vehicle else ""
-    return wanted, load_profile(source.profile).sha256 if source.profile else ""
+    profile = load_profile(source.profile) if source.profile else None
+    wanted = source.vehicle or (profile.vehicle_file if profile else "")
+    return vehicle.load(wanted).hash if wanted else "", profile.sha256 if profile else ""
 
 
 def _finished(task: Task) -> Mapping[str, Any] | None:
