@@ -35,7 +35,7 @@ def command(
       rovval run pipelines/nightly.toml
       rovval run pipelines/nightly.toml --workers 8 --json
     """
-    from rovval.pipeline import batch, summary
+    from rovval.pipeline import batch, config, summary
 
     if dry_run:
         planned = batch.dry_run(pipeline, retry)
@@ -52,4 +52,5 @@ def command(
         return
     document = batch.run(pipeline, workers, scheduler, retry, output.progress(quiet))
     output.result_json(document) if json_ else output.result(summary.text(document))
+    output.say(f"every run of it on one page: {config.load(pipeline).reports / batch.INDEX}", quiet)
     raise typer.Exit(document["exit_code"])

@@ -16,8 +16,13 @@ def write_text(path: Path, text: str) -> None:
 
 
 def write_json(path: Path, document: dict[str, Any]) -> None:
-    """Write a JSON document in one step; NaN is refused rather than written as something that is not JSON."""
-    write_text(path, json.dumps(document, indent=2, allow_nan=False) + "\n")
+    """Write a JSON document in one step."""
+    write_text(path, json_text(document))
+
+
+def json_text(document: dict[str, Any]) -> str:
+    """A JSON document as text; NaN is refused rather than written as something that is not JSON."""
+    return json.dumps(document, indent=2, allow_nan=False) + "\n"
 
 
 def sweep(root: Path) -> None:

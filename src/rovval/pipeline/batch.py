@@ -14,7 +14,7 @@ from rovval.pipeline.execute import execute
 from rovval.pipeline.plan import Plan, Task, plan
 from rovval.pipeline.work import Outcome, set_aside, work
 
-SUMMARY = "summary.json"
+SUMMARY, INDEX = "summary.json", "index.html"
 
 
 def run(
@@ -24,7 +24,7 @@ def run(
     retry: bool = False,
     progress: Callable[[str, float], None] = lambda step, share: None,
 ) -> dict[str, Any]:
-    """Run the pipeline of a file; returns the summary, which also stands as summary.json among the reports.
+    """Run the pipeline of a file; returns the summary, which also stands as summary.json among the reports, and as a page, index.html.
 
     Raises `UsageProblem` for a wrong file, `Unwritable` where archive or reports cannot be written: what was done stays done.
     """
@@ -52,8 +52,16 @@ def run(
         document = summary.summarise(
             pipeline.name, finished, todo.done, aside, todo.waiting, pipeline.tolerances, time.monotonic() - began
         )
-        atomic.write_json(pipeline.reports / SUMMARY, document)
+        _publish(pipeline.reports, document, [*finished, *todo.done])
     return document
+
+
+def _publish(reports: Path, summary: dict[str, Any], records: list[Mapping[str, Any]]) -> None:
+    """The summary for programs and for people: both of this batch, or both of the one before."""
+    from rovval.report import batch_html
+    from rovval.report.files import write_all
+
+    write_all(reports, {SUMMARY: atomic.json_text(summary), INDEX: batch_html.text(summary, records)})
 
 
 def dry_run(path: Path, retry: bool = False) -> Plan:

@@ -76,7 +76,8 @@ def _steps(task: Task) -> dict[str, Any]:
         stale = stale or not before or before["key"] != key or not all((task.reports / p).exists() for p in before["outputs"])
         if stale:
             facts, outputs = bench.do(step)
-            record["run"] = bench.run.id
+            run = bench.run
+            record |= {"run": run.id, "vehicle": run.vehicle, "duration_s": run.duration_s, "findings": len(run.findings)}
             record["steps"][step] = {"key": key, "outputs": [os.path.relpath(p, task.reports) for p in outputs], **facts}
             atomic.write_json(task.folder / RECORD, record)
     return record
@@ -141,6 +142,7 @@ class _Bench:
     def diagnose(self) -> tuple[dict[str, Any], list[Path]]:
         from rovval import report
         from rovval.diagnose import diagnose
+        from rovval.report.diagnosis_words import verdict
 
         task, place = self.task, self.task.folder / "diagnosis"
         found = diagnose(
@@ -150,4 +152,5 @@ class _Bench:
         if found.vehicle_fixed:
             atomic.write_text(place / "vehicle_fixed.toml", found.vehicle_fixed)
         document = json.loads(json.dumps(found.document))
-        return {"verdict": document["verdict"], "causes": document["causes"]}, list(files.values())
+        facts = {key: document[key] for key in ("vehicle", "verdict", "causes")}
+        return {**facts, "said": verdict(document), "gap": document["gap"]["axes"]}, list(files.values())

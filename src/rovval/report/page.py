@@ -18,16 +18,23 @@ def asset(name: str) -> str:
     return (ASSETS / name).read_text(encoding="utf-8")
 
 
-def page(title: str, body: str, data: Mapping[str, Any]) -> str:
-    """The whole document. ``data`` holds the curves that the script draws; "</" cannot end its element early."""
-    curves = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("</", "<\\/")
+def page(title: str, body: str, data: Mapping[str, Any] | None) -> str:
+    """The whole document. ``data`` holds the curves that the script draws; a page of tables alone (None) has no script."""
     return (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
         f"<title>{escape(title)}</title>\n<style>{asset('uPlot.min.css')}\n{asset('report.css')}</style></head>\n<body>\n{body}\n"
+        f"{'' if data is None else _script(data)}</body></html>\n"
+    )
+
+
+def _script(data: Mapping[str, Any]) -> str:
+    """What draws the curves, and the curves; "</" in them cannot end their element early."""
+    curves = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("</", "<\\/")
+    return (
         f'<script type="application/json" id="data">{curves}</script>\n'
         f"<script>/* uPlot, (c) 2022 Leon Sorokin, MIT licence */{asset('uPlot.iife.min.js')}</script>\n"
-        f"<script>{asset('report.js')}</script>\n</body></html>\n"
+        f"<script>{asset('report.js')}</script>\n"
     )
 
 
