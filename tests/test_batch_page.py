@@ -23,7 +23,7 @@ def record(number: int = 0, **steps: Any) -> dict[str, Any]:
 
 
 def said(records: list[dict[str, Any]], aside: Any = (), limits: Any = ("window.surge=0.015",)) -> str:
-    document = summary.summarise("nightly", records[:1], records[1:], aside, (), limits, 3.0)
+    document = summary.summarise("nightly", records[:1], records[1:], aside, (), limits, 3.0, {})
     text = batch_html.text(document, records)
     page = Balance()
     page.feed(text)

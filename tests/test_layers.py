@@ -32,7 +32,7 @@ ROOMS = (
     ("frames",),
     ("units",),
     ("whole",),
-    ("errors",),
+    ("errors", "engine"),
     ("__init__",),
 )
 # Third-party libraries and the rooms that may import them; numpy may be imported by every room that computes.

@@ -2,20 +2,25 @@
 
 import json
 import os
+import re
+import shutil
 import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 import batch_case
-from rovval import store
-from rovval.errors import UsageProblem
+from rovval import engine, store
+from rovval.errors import BadInput, Finding, UsageProblem
 from rovval.pipeline import batch, cluster, config, lock
+from rovval.pipeline.code import NO_RESULT, code
 from rovval.pipeline.execute import execute
-from rovval.pipeline.plan import plan
+from rovval.pipeline.plan import plan, why
+from rovval.pipeline.work import work
 
 HERE = Path(__file__).parent
 
@@ -264,3 +269,44 @@ def test_the_vehicle_that_a_profile_names_lies_beside_it_and_counts(site, tmp_pa
     after = tasks_of(path)
     assert [dict(t.keys)["simulate"] for t in before] != [dict(t.keys)["simulate"] for t in after]
     assert [dict(t.keys)["ingest"] for t in before] == [dict(t.keys)["ingest"] for t in after]
+
+
+def test_results_of_other_code_are_made_anew_and_it_is_said(site, monkeypatch):
+    """The version's number stays the same while the code changes."""
+    path = batch_case.write_pipeline(site)
+    assert batch.run(path, workers=1)["why"] == {"new": 3}
+    monkeypatch.setattr("rovval.pipeline.plan.code", lambda: "0123456789ab")
+    monkeypatch.setattr("rovval.pipeline.work.mine", lambda: "0123456789ab")
+    reasons = {why(task) for task in batch.dry_run(path).todo}
+    assert reasons == {f"made by other code of rovval ({code()}; now 0123456789ab)"}
+    assert {work(task)["status"] for task in tasks_of(path)} == {"done"}
+    assert counts(batch.run(path, workers=1)) == {"unchanged": 3}
+
+
+def test_a_run_of_other_code_gives_way_in_the_archive(site):
+    """It used to stand in the way: the log was set aside for holding another run of the same id."""
+    path = batch_case.write_pipeline(site)
+    batch.run(path, workers=1)
+    old = store.load(store.runs(site / "archive")[0], site / "archive")
+    shutil.rmtree(site / "archive" / old.id)
+    other = replace(old, values={**old.values, "z": old.values["z"] + 1.0}, findings=(Finding("odd", "z", "deeper"),))
+    store.save(other, site / "archive")
+    with pytest.raises(BadInput, match="another run of the same id"):
+        store.save(old, site / "archive")
+    store.save(old, site / "archive", overwrite=True)
+    found = store.load(old.id, site / "archive")
+    assert found.findings == old.findings and (found.values["z"] == old.values["z"]).all()
+    assert [p.name for p in (site / "archive").iterdir() if p.name.startswith(".")] == []
+
+
+def test_a_worker_of_other_code_stops_the_batch_and_sets_no_log_aside(site):
+    [task, *_] = tasks_of(batch_case.write_pipeline(site))
+    outcome = work(replace(task, code="0123456789ab"))
+    assert outcome["status"] == "stopped" and "restart the workers" in outcome["record"]["next"]
+    assert not (site / "reports" / "quarantine").exists()
+
+
+def test_the_code_of_results_is_what_computes_them():
+    """Not the tests, the blind check or the command line; vehicles and profiles count by their own content."""
+    assert code() == engine.digest(NO_RESULT, (".py",)) != engine.digest((), (".py",))
+    assert re.fullmatch("[0-9a-f]{12}", code())

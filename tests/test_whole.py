@@ -4,6 +4,7 @@ import errno
 import os
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -12,6 +13,7 @@ from rovval import whole
 from rovval.errors import Unwritable, UsageProblem
 from rovval.pipeline import work as worker
 from rovval.pipeline.atomic import write_text
+from rovval.pipeline.code import mine
 
 
 def full(*args: object, **kwargs: object) -> None:
@@ -62,7 +64,7 @@ def test_a_full_disk_stops_the_batch_and_sets_no_log_aside(tmp_path, monkeypatch
         raise whole.refusal(tmp_path / "record.json", OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)))
 
     monkeypatch.setattr(worker, "_steps", steps)
-    outcome = worker.work(None)  # type: ignore[arg-type]
+    outcome = worker.work(SimpleNamespace(code=mine()))  # type: ignore[arg-type]
     assert outcome["status"] == "stopped"
     assert "No space left" in outcome["record"]["reason"]
 

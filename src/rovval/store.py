@@ -11,6 +11,7 @@ import json
 import shutil
 import sys
 import uuid
+from contextlib import suppress
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
@@ -47,18 +48,22 @@ def open_run(source: str | Path, profile: str | None = None, archive: Path = ARC
     return align(replace(raw, findings=tuple(dict.fromkeys((*raw.findings, *check(raw))))))
 
 
-def save(run: Run, archive: Path = ARCHIVE) -> Path:
-    """Write a run; the same run already there is left alone. Raises `BadInput` where another run has its id."""
+def save(run: Run, archive: Path = ARCHIVE, overwrite: bool = False) -> Path:
+    """Write a run; the same run already there is left alone. Another one of its id (other code read the log, or found more in it)
+    gives way if ``overwrite``; else `BadInput` is raised."""
     place = Path(archive) / run.id
     table, manifest = _bytes(run)
     if place.exists():
         try:
-            old = load(place, archive)
-        except BadInput as error:
-            raise BadInput(f"{place}: holds a damaged run: {error.message}", "move that folder away and ingest again") from None
-        if _digest(old) != _digest(run):
-            raise BadInput(f"{place}: holds another run of the same id", "move that folder away, or use another --archive")
-        return place
+            old = _same(place, run)
+        except BadInput:
+            if not overwrite:
+                raise
+            _move_away(place)
+        else:
+            if not overwrite or old.findings == run.findings:
+                return place
+            _move_away(place)
     draft = place.with_name(f".{run.id}.{uuid.uuid4().hex[:8]}.part")
     try:
         draft.mkdir(parents=True)
@@ -69,12 +74,31 @@ def save(run: Run, archive: Path = ARCHIVE) -> Path:
         except OSError:
             if not place.exists():
                 raise
-            return save(run, archive)  # another process was faster
+            return save(run, archive, overwrite)  # another process was faster
     except OSError as error:
         raise whole.refusal(place, error) from None
     finally:
         shutil.rmtree(draft, ignore_errors=True)
     return place
+
+
+def _same(place: Path, run: Run) -> Run:
+    """The run that stands at ``place``; raises `BadInput` where it is not ``run``."""
+    try:
+        old = load(place, place.parent)
+    except BadInput as error:
+        raise BadInput(f"{place}: holds a damaged run: {error.message}", "move that folder away and ingest again") from None
+    if _digest(old) != _digest(run):
+        raise BadInput(f"{place}: holds another run of the same id", "move that folder away, or use another --archive")
+    return old
+
+
+def _move_away(place: Path) -> None:
+    """Out of its place in one step, then gone; another process may have been faster."""
+    old = place.with_name(f".{place.name}.{uuid.uuid4().hex[:8]}.part")
+    with suppress(FileNotFoundError):
+        place.rename(old)
+    shutil.rmtree(old, ignore_errors=True)
 
 
 def load(id_or_folder: str | Path, archive: Path = ARCHIVE) -> Run:

@@ -6,13 +6,12 @@ make -> ``manifest.json``, ``labels.sealed``, ``logs/``; answer -> ``answers/``,
 
 from __future__ import annotations
 
-import hashlib
 import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import rovval
+from rovval import engine
 from rovval.blind.sealing import digest, digest_of_files
 from rovval.errors import BadInput, UsageProblem
 from rovval.whole import drafts
@@ -108,12 +107,5 @@ def write(path: Path, document: object) -> None:
 
 
 def engine_hash() -> str:
-    """Twelve digits over the source of everything that an answer depends on."""
-    root = Path(rovval.__file__).parent
-    files = [
-        p for p in sorted(root.rglob("*")) if p.suffix in (".py", ".toml") and p.relative_to(root).parts[0] not in NOT_ENGINE
-    ]
-    total = hashlib.sha256()
-    for path in files:
-        total.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
-    return total.hexdigest()[:12]
+    """Hash over the source of everything that an answer depends on."""
+    return engine.digest(NOT_ENGINE, (".py", ".toml"))

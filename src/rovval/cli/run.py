@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from rovval.cli import options, output
+
+if TYPE_CHECKING:
+    from rovval.pipeline.plan import Plan
 
 
 def command(
@@ -38,19 +41,23 @@ def command(
     from rovval.pipeline import batch, config, summary
 
     if dry_run:
-        planned = batch.dry_run(pipeline, retry)
-        rows = (
-            [("do", t.log) for t in planned.todo]
-            + [("unchanged", r["log"]) for r in planned.done]
-            + [("quarantined", r["log"]) for r in planned.set_aside]
-        )
-        rows += [("waiting", f"{log}: {why}") for log, why in planned.waiting]
-        if json_:
-            output.result_json({"schema": "rovval.plan/1", "logs": [{"state": state, "log": str(log)} for state, log in rows]})
-        else:
-            output.result("\n".join(f"{state:<12} {log}" for state, log in rows))
+        _say_plan(batch.dry_run(pipeline, retry), json_)
         return
     document = batch.run(pipeline, workers, scheduler, retry, output.progress(quiet))
     output.result_json(document) if json_ else output.result(summary.text(document))
     output.say(f"every run of it on one page: {config.load(pipeline).reports / batch.INDEX}", quiet)
     raise typer.Exit(document["exit_code"])
+
+
+def _say_plan(planned: Plan, as_json: bool) -> None:
+    """What a run would do with each log, and why."""
+    from rovval.pipeline.plan import why
+
+    rows = [("do", str(t.log), why(t)) for t in planned.todo]
+    rows += [("unchanged", r["log"], "") for r in planned.done]
+    rows += [("quarantined", r["log"], r["reason"].removeprefix(f"{r['log']}: ")) for r in planned.set_aside]
+    rows += [("waiting", str(log), reason) for log, reason in planned.waiting]
+    if as_json:
+        output.result_json({"schema": "rovval.plan/1", "logs": [dict(zip(("state", "log", "why"), row, strict=True)) for row in rows]})
+    else:
+        output.result("\n".join(f"{state:<12} {log}{reason and ': '}{reason}" for state, log, reason in rows))

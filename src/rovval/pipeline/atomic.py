@@ -25,6 +25,15 @@ def json_text(document: dict[str, Any]) -> str:
     return json.dumps(document, indent=2, allow_nan=False) + "\n"
 
 
+def read_json(path: Path) -> dict[str, Any] | None:
+    """A JSON document; None where there is none, or a kill by other means left it broken."""
+    try:
+        document: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    except (FileNotFoundError, json.JSONDecodeError):
+        return None
+    return document
+
+
 def sweep(root: Path) -> None:
     """Remove what a kill left half-written under ``root`` (call it only while holding the lock of ``root``)."""
     for left in list(root.rglob(LEFTOVER)):

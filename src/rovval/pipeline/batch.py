@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from rovval.errors import Unwritable, UsageProblem
+from rovval.errors import UsageProblem
 from rovval.pipeline import atomic, cluster, config, lock, summary
 from rovval.pipeline.execute import execute
 from rovval.pipeline.plan import Plan, Task, plan
@@ -26,7 +26,8 @@ def run(
 ) -> dict[str, Any]:
     """Run the pipeline of a file; returns the summary, which also stands as summary.json among the reports, and as a page, index.html.
 
-    Raises `UsageProblem` for a wrong file, `Unwritable` where archive or reports cannot be written: what was done stays done.
+    Raises `UsageProblem` for a wrong file, where archive or reports cannot be written, and where a worker runs other code: what was
+    done stays done.
     """
     if workers is not None and scheduler:
         raise UsageProblem("--workers and --scheduler are two ways to run", "give one of them")
@@ -36,6 +37,8 @@ def run(
         atomic.sweep(pipeline.reports)
         progress("plan", 0.0)
         todo = plan(pipeline, path.resolve().parent, retry)
+        why = todo.why  # before the work changes it
+        progress(summary.reasons(why) or "plan", 0.0)
         finished: list[Mapping[str, Any]] = []
         aside = list(todo.set_aside)
         count = len(todo.todo)
@@ -46,11 +49,11 @@ def run(
         )
         for number, (task, outcome) in enumerate(spread, 1):
             if outcome["status"] == "stopped":
-                raise Unwritable(outcome["record"]["reason"], f"{outcome['record']['next']}; the next run goes on from here")
+                raise UsageProblem(outcome["record"]["reason"], f"{outcome['record']['next']}; the next run goes on from here")
             (finished if outcome["status"] == "done" else aside).append(outcome["record"])
             progress(f"{number} of {count} logs, {task.log.name}", number / count)
         document = summary.summarise(
-            pipeline.name, finished, todo.done, aside, todo.waiting, pipeline.tolerances, time.monotonic() - began
+            pipeline.name, finished, todo.done, aside, todo.waiting, pipeline.tolerances, time.monotonic() - began, why
         )
         _publish(pipeline.reports, document, [*finished, *todo.done])
     return document

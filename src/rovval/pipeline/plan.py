@@ -5,14 +5,16 @@ from __future__ import annotations
 import hashlib
 import json
 import time
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rovval import __version__
 from rovval.pipeline import atomic, discover
+from rovval.pipeline.code import code
 from rovval.pipeline.config import Pipeline, Source
+from rovval.pipeline.hashes import Hashes
 
 RECORD = "record.json"
 QUARANTINE = "quarantine"
@@ -22,7 +24,8 @@ RETRIED = ("crash", "internal")  # a worker that died may have lacked memory; a 
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """One log, all that a worker needs to know, picklable. ``keys`` in the order of the steps; ``folder`` takes its reports."""
+    """One log, all that a worker needs to know, picklable. ``keys`` in the order of the steps; ``folder`` takes its reports;
+    ``code`` is what the planner runs, `rovval.pipeline.code`."""
 
     log: Path
     sha256: str
@@ -36,6 +39,7 @@ class Task:
     archive: Path
     reports: Path
     folder: Path
+    code: str
 
     @property
     def key(self) -> str:
@@ -57,6 +61,11 @@ class Plan:
     set_aside: tuple[Mapping[str, Any], ...]
     waiting: tuple[tuple[Path, str], ...]
 
+    @property
+    def why(self) -> Mapping[str, int]:
+        """Why there is something to do, and for how many logs."""
+        return Counter(why(task) for task in self.todo)
+
 
 def plan(pipeline: Pipeline, base: Path, retry: bool = False) -> Plan:
     """Discover the logs and sort them into done, set aside, and to do. ``retry`` tries quarantined logs again."""
@@ -65,20 +74,20 @@ def plan(pipeline: Pipeline, base: Path, retry: bool = False) -> Plan:
     aside: list[Mapping[str, Any]] = []
     waiting: list[tuple[Path, str]] = []
     seen: dict[str, Path] = {}
-    hashes = _Hashes(pipeline.reports / HASHES)
+    hashes, made_by = Hashes(pipeline.reports / HASHES), code()
     for source in pipeline.source:
         vehicle, profile = _content(source)
         for log in discover.matching(source.logs, base):
             if time.time() - log.stat().st_mtime < pipeline.settle_s:
                 waiting.append((log, f"changed less than {pipeline.settle_s:g} s ago (settle_s): a later run takes it"))
                 continue
-            task = _task(pipeline, source, log, hashes.of(log), (vehicle, profile))
+            task = _task(pipeline, source, log, hashes.of(log), (vehicle, profile, made_by))
             if (twin := seen.setdefault(task.key, log)) != log:
                 waiting.append((log, f"same content as {twin}"))
             elif record := _finished(task):
                 done.append(record)
             elif (
-                (record := _read(task.quarantine)) and record["key"] == task.key and record["kind"] not in RETRIED and not retry
+                (record := atomic.read_json(task.quarantine)) and record["key"] == task.key and record["kind"] not in RETRIED and not retry
             ):
                 aside.append(record)
             else:
@@ -87,9 +96,9 @@ def plan(pipeline: Pipeline, base: Path, retry: bool = False) -> Plan:
     return Plan(tuple(todo), tuple(done), tuple(aside), tuple(waiting))
 
 
-def _task(pipeline: Pipeline, source: Source, log: Path, sha: str, content: tuple[str, str]) -> Task:
-    vehicle, profile = content
-    key = _hash(__version__, sha, profile)
+def _task(pipeline: Pipeline, source: Source, log: Path, sha: str, content: tuple[str, str, str]) -> Task:
+    vehicle, profile, made_by = content
+    key = _hash(made_by, sha, profile)
     keys = []
     options: dict[str, tuple[Any, ...]] = {
         "ingest": (),
@@ -113,6 +122,7 @@ def _task(pipeline: Pipeline, source: Source, log: Path, sha: str, content: tupl
         archive=pipeline.archive,
         reports=pipeline.reports,
         folder=pipeline.reports / f"{log.stem}-{_hash(sha, source.profile, source.vehicle)[:8]}",
+        code=made_by,
     )
 
 
@@ -134,38 +144,25 @@ def _finished(task: Task) -> Mapping[str, Any] | None:
     return record if all((task.reports / path).exists() for path in outputs) else None
 
 
+def why(task: Task) -> str:
+    """Why a task is to be done, in words."""
+    record = read_record(task) or atomic.read_json(task.quarantine)
+    if record is None:
+        return "new"
+    steps = record.get("steps", {})
+    made_by = {step.get("code", "older") for step in (*steps.values(), *([] if steps else [record]))}
+    if other := made_by - {task.code}:
+        return f"made by other code of rovval ({', '.join(sorted(other))}; now {task.code})"
+    if missing := [step for step, _ in task.keys if step not in steps]:
+        return f"without {', '.join(missing)} so far"
+    same = all(steps[step]["key"] == key for step, key in task.keys)
+    return "with an output gone" if same else "of changed vehicle, profile or options"
+
+
 def read_record(task: Task) -> dict[str, Any] | None:
     """The record of what was done with the task's log, if there is one."""
-    return _read(task.folder / RECORD)
-
-
-def _read(path: Path) -> dict[str, Any] | None:
-    try:
-        document: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    except (FileNotFoundError, json.JSONDecodeError):
-        return None
-    return document
+    return atomic.read_json(task.folder / RECORD)
 
 
 def _hash(*parts: Any) -> str:
     return hashlib.sha256(json.dumps(parts, default=str).encode()).hexdigest()
-
-
-class _Hashes:
-    """Content hashes by path, size and time of change, so that an archive of thousands is not read every night."""
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        self.known = _read(path) or {}
-        self.used: dict[str, Any] = {}
-
-    def of(self, log: Path) -> str:
-        stamp = [[p.stat().st_size, p.stat().st_mtime_ns] for p in ([log] if log.is_file() else sorted(log.rglob("*")))]
-        entry = self.known.get(str(log))
-        sha: str = entry["sha256"] if entry and entry["stamp"] == stamp else discover.sha256(log)
-        self.used[str(log)] = {"stamp": stamp, "sha256": sha}
-        return sha
-
-    def save(self) -> None:
-        if self.used != self.known:
-            atomic.write_json(self.path, self.used)

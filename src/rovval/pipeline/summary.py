@@ -19,8 +19,9 @@ def summarise(
     waiting: Sequence[tuple[Any, str]],
     limits: Sequence[str],
     seconds: float,
+    why: Mapping[str, int],
 ) -> dict[str, Any]:
-    """The summary document. Tolerances are held against every run of the plan, new or unchanged."""
+    """The summary document. ``why`` there was something to do, by `Plan.why`. Tolerances are held against every run of the plan, new or unchanged."""
     parsed = tolerances.parse(limits)
     beyond = []
     for record in (*finished, *skipped):
@@ -41,11 +42,17 @@ def summarise(
             "waiting": len(waiting),
             "tolerances_exceeded": len(beyond),
         },
+        "why": dict(why),
         "done": [{"log": r["log"], "run": r["run"]} for r in finished],
         "tolerances_exceeded": beyond,
         "quarantined": [{k: r[k] for k in ("log", "kind", "reason", "next")} for r in set_aside],
         "waiting": [{"log": str(log), "why": why} for log, why in waiting],
     }
+
+
+def reasons(why: Mapping[str, int]) -> str:
+    """Why there was something to do: 9 made by other code of rovval, 3 new. Empty where there was nothing."""
+    return ", ".join(f"{count} {reason}" for reason, count in why.items())
 
 
 def text(summary: Mapping[str, Any]) -> str:
@@ -56,6 +63,7 @@ def text(summary: Mapping[str, Any]) -> str:
         + ", ".join(f"{n} {what.replace('_', ' ')}" for what, n in counts.items())
         + f" in {summary['seconds']:.1f} s"
     ]
+    lines += [f"  to do were   {reasons(summary['why'])}"] if summary["why"] else []
     lines += [f"  quarantined  {row['log']}: {row['reason'].removeprefix(row['log'] + ': ')}" for row in summary["quarantined"]]
     lines += [f"  exceeded     {row['log']}: {row['limit']}" for row in summary["tolerances_exceeded"]]
     lines += [f"  waiting      {row['log']}: {row['why']}" for row in summary["waiting"]]

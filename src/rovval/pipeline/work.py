@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from rovval.errors import RovvalError, Unwritable
 from rovval.pipeline import atomic
+from rovval.pipeline.code import mine
 from rovval.pipeline.plan import RECORD, Task, read_record
 
 if TYPE_CHECKING:
@@ -24,7 +25,10 @@ Outcome = dict[str, Any]
 
 def work(task: Task) -> Outcome:
     """Do what is missing of one task. Returns its record, or why it is set aside, or why no task can be done: a disk that is full
-    is no log's fault. Never raises for what one log can do."""
+    and a worker of other code are no log's fault. Never raises for what one log can do."""
+    if mine() != task.code:
+        why = f"this worker runs other code of rovval ({mine()}) than the plan was made by ({task.code})"
+        return {"status": "stopped", "record": {"reason": why, "next": "install one version everywhere, restart the workers, run again"}}
     try:
         return _done_or_set_aside(task)
     except Unwritable as error:
@@ -55,6 +59,7 @@ def set_aside(task: Task, kind: str, reason: str, code: int, hint: str = "", tra
         "log": str(task.log),
         "sha256": task.sha256,
         "key": task.key,
+        "code": task.code,
         "kind": kind,
         "reason": reason,
         "next": hint,
@@ -78,7 +83,7 @@ def _steps(task: Task) -> dict[str, Any]:
             facts, outputs = bench.do(step)
             run = bench.run
             record |= {"run": run.id, "vehicle": run.vehicle, "duration_s": run.duration_s, "findings": len(run.findings)}
-            record["steps"][step] = {"key": key, "outputs": [os.path.relpath(p, task.reports) for p in outputs], **facts}
+            record["steps"][step] = {"key": key, "code": task.code, "outputs": [os.path.relpath(p, task.reports) for p in outputs], **facts}
             atomic.write_json(task.folder / RECORD, record)
     return record
 
@@ -120,7 +125,7 @@ class _Bench:
     def ingest(self) -> tuple[dict[str, Any], list[Path]]:
         from rovval import store
 
-        place = store.save(self.run, self.task.archive)
+        place = store.save(self.run, self.task.archive, overwrite=True)
         return {"findings": [str(f) for f in self.run.findings]}, [place]
 
     def simulate(self) -> tuple[dict[str, Any], list[Path]]:
