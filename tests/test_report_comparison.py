@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -203,3 +204,28 @@ def test_a_log_without_velocities_has_no_empty_table_and_no_empty_plots() -> Non
     assert "free run" not in said
     assert "depth (" in said and "roll angle" in said and "phi" not in said
     assert ">Velocities<" not in html.text(c) and ">Velocities<" in html.text(case())
+
+
+def windowed(n: int, window_s: float, **more: Any) -> Comparison:
+    """Simulated in windows of what length there is."""
+    run = make_run(n, **more)
+    sim = make_sim(run)
+    stretch = np.arange(n) // round(window_s / run.dt)
+    return compare(run, replace(sim, window_s=window_s, windowed=replace(sim.windowed, stretch=stretch)))
+
+
+def test_a_log_shorter_than_its_window_says_what_was_done() -> None:
+    """It said "Over windows of 10 s" of a log of five."""
+    c = windowed(50, 10.0)
+    for said in (table.text(c), markdown.text(c), html.text(c)):
+        flat = " ".join(said.split())
+        assert "ver one window of 4.9 s" in flat and "shorter than a window of 10 s" in flat and "indows of 10 s," not in flat
+    assert report_json.document(c)["window"]["longest_s"] == pytest.approx(4.9)
+    assert "windows of 10 s" in words.verdict(windowed(250, 10.0)) and "asked" not in words.verdict(windowed(250, 10.0))
+
+
+def test_broken_stretches_shorter_than_a_window_are_said() -> None:
+    c = windowed(600, 10.0)
+    stretch = np.arange(600) // 40
+    c = replace(c, sim=replace(c.sim, windowed=replace(c.sim.windowed, stretch=stretch)))
+    assert "windows of at most 3.9 s" in words.verdict(c) and "No unbroken stretch" in words.verdict(c)

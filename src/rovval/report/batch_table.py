@@ -45,6 +45,7 @@ def lead(rows: Sequence[Row]) -> str:
         return ""  # a batch that only ingests
     windows = sorted({r.window_s for r in rows if r.window_s is not None})
     over = f" over windows of {listed(f'{s:g}' for s in windows)} s" if windows else ""
+    over += " (less in shorter logs)" if any(r.window_s and r.duration_s is not None and r.duration_s < r.window_s for r in rows) else ""
     bold = "; the largest tenth of each column in bold" if len(rows) >= FEW else ""
     less = " Beside a cause: by how much the squared gap shrinks with it." if any(r.causes for r in rows) else ""
     return f"Gap of the simulator on each axis, rms{over}{bold}.{less}"

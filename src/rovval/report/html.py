@@ -11,7 +11,7 @@ from rovval.channels import AXES, POSE, VELOCITIES
 from rovval.data import Array, Comparison
 from rovval.frames import wrap
 from rovval.horizons import HORIZONS_S, horizons
-from rovval.report import html_tables, page, plots, svg, words
+from rovval.report import html_tables, page, plots, svg, windows, words
 from rovval.report.json import versions
 from rovval.report.words import number, quantity
 from rovval.units import DEGREES, in_degrees
@@ -56,7 +56,7 @@ _RECORDING = (
 
 
 def _keys(c: Comparison) -> dict[str, str]:
-    keys = {"measured": "measured", "windowed": f"simulated, windows of {c.sim.window_s:g} s", "free": "simulated, free run"}
+    keys = {"measured": "measured", "windowed": f"simulated, {windows.label(c)}", "free": "simulated, free run"}
     return keys | ({"other": c.other_name} if c.other_nu is not None else {})
 
 

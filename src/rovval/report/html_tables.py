@@ -6,7 +6,7 @@ from html import escape
 
 from rovval import metrics
 from rovval.data import ChannelError, Comparison
-from rovval.report import page, words
+from rovval.report import page, windows, words
 from rovval.report.table import skill
 from rovval.report.words import number, per_cent
 from rovval.units import DEGREE_UNITS, DEGREES
@@ -18,7 +18,7 @@ def axes(c: Comparison) -> str:
     """Free run and windows side by side, with the error relative to the motion as a bar."""
     over = (
         f'<tr class="over"><th></th><th></th><th class="first l" colspan="5">Free run</th>'
-        f'<th class="first l" colspan="4">Windows of {c.sim.window_s:g} s</th><th class="first"></th><th></th></tr>'
+        f'<th class="first l" colspan="4">{windows.label(c).capitalize()}</th><th class="first"></th><th></th></tr>'
     )
     header = ["axis", "unit", "mean error", "MAE", "RMSE", "IAE", "skill", "RMS", "IAE", "skill", "of the motion", "no motion", "rows"]
     rows = []

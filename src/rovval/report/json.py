@@ -12,7 +12,7 @@ from rovval import metrics
 from rovval.compare import CORE
 from rovval.data import ChannelError, Comparison
 from rovval.horizons import HORIZONS_S, horizons
-from rovval.report import words
+from rovval.report import windows, words
 from rovval.units import DEGREE_UNITS, DEGREES
 
 SCHEMA = "rovval.comparison/1"
@@ -31,6 +31,7 @@ def document(comparison: Comparison) -> dict[str, Any]:
         "axes": {axis: _row(row) for axis, row in c.free.items()},
         "window": {
             "seconds": _whole(sim.window_s),
+            "longest_s": windows.longest_s(c),
             "axes": {axis: {"rms": row.rmse, **_row(row)} for axis, row in c.windowed.items()},
             "pose": {name: _row(row) for name, row in c.pose.items()},
             "horizon": _horizons(c),

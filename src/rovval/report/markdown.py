@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from rovval.data import ChannelError, Comparison
 from rovval.horizons import HORIZONS_S, horizons
-from rovval.report import words
+from rovval.report import windows, words
 from rovval.report.table import skill
 from rovval.report.words import number, per_cent, quantity
 from rovval.units import in_degrees
@@ -18,7 +18,7 @@ def text(comparison: Comparison) -> str:
     said = words.sentences(c)
     parts = [f"# {run.id}: simulated against measured", f"> **{b}**" if (b := words.synthetic(c)) else "", f"**{said[0]}**"]
     parts += [" ".join(said[1:]), _bullets(f"{k}: {v}" for k, v in words.facts(c).items() if v)]
-    parts += ["## Error per axis", f"Simulated minus measured; windows of {c.sim.window_s:g} s.", _axes(c)]
+    parts += ["## Error per axis", f"Simulated minus measured; {windows.label(c)}.", _axes(c)]
     parts += [_bullets(words.notes(c))]
     if c.other:
         parts += [f"## Beside {c.other_name}", "Free runs, on the rows that both have.", _other(c)]

@@ -8,7 +8,7 @@ from typing import Any
 
 from rovval import metrics
 from rovval.data import ChannelError, Comparison
-from rovval.report import words
+from rovval.report import windows, words
 from rovval.report.words import number, per_cent
 from rovval.units import DEGREE_UNITS, DEGREES
 
@@ -24,7 +24,7 @@ def text(comparison: Comparison) -> str:
     parts += [*wrap(words.verdict(c), 100), ""]
     axes = dict.fromkeys((*c.free, *c.windowed))
     rows = [line for axis in axes for line in _axis(axis, c.free.get(axis), c.windowed.get(axis))]
-    over = ["", "", "free run", "", "", "", "", "", f"{sim.window_s:g} s windows", "", "", ""]
+    over = ["", "", "free run", "", "", "", "", "", windows.label(c), "", "", ""]
     parts += [_grid([over, _HEAD, *rows]), ""] if rows else []
     if c.pose:
         lines = [line for name, row in c.pose.items() for line in _pose(name, row)]

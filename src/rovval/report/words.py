@@ -7,6 +7,7 @@ from math import floor, isfinite, log10
 from typing import Any
 
 from rovval.data import ChannelError, Comparison
+from rovval.report import windows
 from rovval.units import in_degrees
 
 LINEAR = ("surge", "sway", "heave")
@@ -73,15 +74,17 @@ def verdict(comparison: Comparison) -> str:
 
 def sentences(comparison: Comparison) -> list[str]:
     """One sentence, and what must be said beside it: the axes with the largest gap, and whether the simulator does better than predicting no motion."""
-    table, where = comparison.windowed, f"over windows of {comparison.sim.window_s:g} s"
+    table, where = comparison.windowed, f"over {windows.label(comparison)}"
     if not table:
         table, where = comparison.free, "over the free run"
     if not table:
-        return [_pose_only(comparison)]
+        return [s for s in (_pose_only(comparison), windows.shortened(comparison)) if s]
     lines, turns = [a for a in table if a in LINEAR], [a for a in table if a not in LINEAR]
     worst = [max(group, key=lambda a: table[a].rmse) for group in (lines, turns) if group]
     gaps = " and, turning, in ".join(_gap(a, table[a]) for a in worst)
     said = [f"{where.capitalize()}, the simulator is furthest from the vehicle in {gaps}; {_skill(table)}."]
+    if short := windows.shortened(comparison):
+        said.append(short)
     if comparison.other:
         said.append(_beside(comparison))
     if comparison.not_measured:
@@ -93,7 +96,7 @@ def _pose_only(comparison: Comparison) -> str:
     """For a log without velocities: the pose channels that it has."""
     gaps = listed([f"{TITLES[name]} ({quantity(row.rmse, row.unit)} rms)" for name, row in comparison.pose.items()])
     return (
-        f"No velocity was measured in this log. In windows of {comparison.sim.window_s:g} s, each started from the measured pose, "
+        f"No velocity was measured in this log. In {windows.label(comparison)}, started from the measured pose, "
         f"the simulator differs from the vehicle in {gaps}."
     )
 
@@ -131,12 +134,12 @@ def _skill(table: Mapping[str, ChannelError]) -> str:
 
 def notes(comparison: Comparison) -> list[str]:
     """What a reader must know beside the numbers: rows that could not be compared, and how they were counted."""
-    sim, result = comparison.sim, []
+    result = []
     for axis in comparison.windowed.keys() ^ comparison.free.keys():
         form = "free run" if axis in comparison.windowed else "windows"
         result.append(f"{axis}: measured, but no row of the {form} could be compared")
     result.append(
-        f"windows restart from the measured state every {sim.window_s:g} s; RMS over all their rows, the first one included"
+        f"{windows.label(comparison)}, each restarted from the measured state; RMS over all their rows, the first one included"
     )
     result.append("no motion: the error of predicting zero velocity; skill = 1 - MSE / MSE(no motion)")
     return result
