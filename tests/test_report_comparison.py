@@ -18,7 +18,7 @@ from report_cases import make_run, make_sim, motion
 from rovval import report, vehicle
 from rovval.compare import compare
 from rovval.data import Array, Comparison
-from rovval.errors import UsageProblem
+from rovval.errors import Finding, UsageProblem
 from rovval.report import html, markdown, plots, table, words
 from rovval.report import json as report_json
 from rovval.report.files import write_all
@@ -41,7 +41,7 @@ class Balance(HTMLParser):
         self.fetched: list[str] = []
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.fetched += [v or "" for k, v in attrs if k in ("src", "href", "srcset")]
+        self.fetched += [v or "" for k, v in attrs if k in ("src", "href", "srcset") and not (v or "").startswith("#")]
         if tag not in VOID:
             self.open.append(tag)
 
@@ -204,6 +204,19 @@ def test_a_log_without_velocities_has_no_empty_table_and_no_empty_plots() -> Non
     assert "free run" not in said
     assert "depth (" in said and "roll angle" in said and "phi" not in said
     assert ">Velocities<" not in html.text(c) and ">Velocities<" in html.text(case())
+    for said in (html.text(c), markdown.text(c)):
+        assert said.count(words.NO_VELOCITY) == 1 and ">not measured<" not in said and "| not measured" not in said
+    assert words.NO_VELOCITY not in html.text(case(absent=("q",)))
+
+
+def test_findings_are_counted_in_the_head_with_the_way_to_them() -> None:
+    c = case()
+    found = (Finding("repeated_row", "t", "twice"), Finding("gap", "u", "1 s"), Finding("gap", "v", "2 s"))
+    page = html.text(replace(c, run=replace(c.run, findings=found)))
+    check_html(page)
+    assert '<a href="#findings">3 findings in this log</a>: repeated row, gap (2).' in page.partition("<section")[0]
+    assert '<section id="findings">' in page
+    assert 'href="#findings"' not in html.text(replace(c, run=replace(c.run, findings=())))
 
 
 def windowed(n: int, window_s: float, **more: Any) -> Comparison:

@@ -25,7 +25,7 @@ def text(comparison: Comparison) -> str:
     thruster_pictures, thruster_places = _thrusters(c)
     body = "".join(
         [
-            page.head("Simulated against measured", run.id, words.synthetic(c), words.sentences(c), words.facts(c)),
+            page.head("Simulated against measured", run.id, words.synthetic(c), words.sentences(c), words.facts(c), html_tables.findings_note(c)),
             page.section("Error per axis", html_tables.axes(c), page.listing(words.notes(c)), lead="Simulated minus measured."),
             page.section(f"Beside {c.other_name}", html_tables.other(c), lead=_OTHER) if c.other else "",
             page.section("Velocities", page.switches(_keys(c)), places, lead=_how_drawn(c)) if pictures else "",
@@ -33,7 +33,7 @@ def text(comparison: Comparison) -> str:
             page.section("Depth and attitude in the windows", html_tables.pose(c), pose_places),
             page.section("Thruster speed as used", thruster_places),
             page.section("Time stamps", html_tables.clock(c)),
-            page.section("Findings in this log", html_tables.findings(c)),
+            page.section("Findings in this log", html_tables.findings(c), anchor="findings"),
             page.section("Assumed, and where the simulation stopped", page.listing([*c.sim.assumptions, *c.sim.stops])),
             page.section("Recording", _RECORDING),
             page.footer(" · ".join(f"{k} {v}" for k, v in versions().items()) + f" · sha256 {run.sha256[:16]}"),

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from html import escape
 
 from rovval import metrics
+from rovval.channels import AXES
 from rovval.data import ChannelError, Comparison
 from rovval.report import page, windows, words
 from rovval.report.table import skill
@@ -16,6 +18,8 @@ _DASH = "–"
 
 def axes(c: Comparison) -> str:
     """Free run and windows side by side, with the error relative to the motion as a bar."""
+    if len(c.not_measured) == len(AXES):
+        return f'<p class="lead">{words.NO_VELOCITY}</p>'
     over = (
         f'<tr class="over"><th></th><th></th><th class="first l" colspan="5">Free run</th>'
         f'<th class="first l" colspan="4">{windows.label(c).capitalize()}</th><th class="first"></th><th></th></tr>'
@@ -86,6 +90,16 @@ def findings(c: Comparison) -> str:
         f"<li><code>{escape(f.code)}</code><span>{escape(f.where)}: {escape(f.detail)}</span></li>" for f in c.run.findings
     )
     return f'<ul class="findings">{items}</ul>' if items else '<p class="lead">None.</p>'
+
+
+def findings_note(c: Comparison) -> str:
+    """How many there are and of which kinds, with the way to them; "" for none."""
+    kinds = Counter(f.code.replace("_", " ") for f in c.run.findings)
+    if not kinds:
+        return ""
+    said = ", ".join(f"{kind} ({count})" if count > 1 else kind for kind, count in kinds.items())
+    some = f"{kinds.total()} finding{'s'[: kinds.total() > 1]} in this log"
+    return f'<p class="note"><a href="#findings">{some}</a>: {escape(said)}.</p>'
 
 
 def _unit(row: ChannelError) -> str:

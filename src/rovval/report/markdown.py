@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from rovval.channels import AXES
 from rovval.data import ChannelError, Comparison
 from rovval.horizons import HORIZONS_S, horizons
 from rovval.report import windows, words
@@ -51,6 +52,8 @@ _bullets = bullets
 
 
 def _axes(c: Comparison) -> str:
+    if len(c.not_measured) == len(AXES):
+        return words.NO_VELOCITY
     header = ["axis", "mean error", "MAE", "RMSE", "IAE", "skill", "RMS, windows", "IAE, windows", "skill, windows", "no motion", "rows"]
     rows = []
     for axis in dict.fromkeys((*c.free, *c.windowed)):

@@ -38,23 +38,25 @@ def _script(data: Mapping[str, Any]) -> str:
     )
 
 
-def head(eyebrow: str, name: str, banner: str, verdict: Sequence[str], facts: Mapping[str, Any]) -> str:
-    """What a reader sees first: what this is, the banner of a made-up log, and the answer in a sentence."""
+def head(eyebrow: str, name: str, banner: str, verdict: Sequence[str], facts: Mapping[str, Any], note: str = "") -> str:
+    """What a reader sees first: what this is, the banner of a made-up log, the answer in a sentence, and a ready-made ``note``
+    (HTML) on what it rests on."""
     warn = f'<p class="banner">{escape(banner)}</p>' if banner else ""
     rest = f'<p class="rest">{escape(" ".join(verdict[1:]))}</p>' if verdict[1:] else ""
     items = "".join(f"<div><dt>{escape(k)}</dt><dd>{escape(str(v))}</dd></div>" for k, v in facts.items() if v)
     return (
         f'<p class="eyebrow">{escape(eyebrow)}</p><h1>{escape(name)}</h1>{warn}'
-        f'<p class="verdict">{escape(verdict[0])}</p>{rest}<dl class="facts">{items}</dl>'
+        f'<p class="verdict">{escape(verdict[0])}</p>{rest}{note}<dl class="facts">{items}</dl>'
     )
 
 
-def section(title: str, *parts: str, lead: str = "") -> str:
-    """A heading with what belongs under it; nothing when there is nothing."""
+def section(title: str, *parts: str, lead: str = "", anchor: str = "") -> str:
+    """A heading with what belongs under it; nothing when there is nothing. ``anchor`` is what a link to it names."""
     if not any(parts):
         return ""
     intro = f'<p class="lead">{escape(lead)}</p>' if lead else ""
-    return f"<section><h2>{escape(title)}</h2>{intro}{''.join(parts)}</section>\n"
+    place = f' id="{anchor}"' if anchor else ""
+    return f"<section{place}><h2>{escape(title)}</h2>{intro}{''.join(parts)}</section>\n"
 
 
 def listing(items: Iterable[str]) -> str:

@@ -13,6 +13,8 @@ from rovval.units import in_degrees
 LINEAR = ("surge", "sway", "heave")
 TITLES = {"z": "depth", "phi": "roll angle", "theta": "pitch angle", "psi": "heading"}
 
+NO_VELOCITY = "No velocity was measured in this log, so there is no error per axis; what was measured of the pose is compared below."
+
 
 def number(value: float | None, digits: int = 3) -> str:
     """A number with so many significant digits and no exponent while it stays readable: 0.0712, 12.3, 1240."""
