@@ -19,7 +19,7 @@ ROOMS = (
     ("compare", "horizons"),
     ("metrics",),
     ("simulate", "simfile"),
-    ("drive",),
+    ("drive", "limits"),
     ("plant",),
     ("effects",),
     ("vehicle",),

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from rovval.data import Array, Flags, Reason, Run, SimResult, Trajectory
 from rovval.drive import Drive, drive, start_states, startable
 from rovval.errors import SimulationStopped, UsageProblem
+from rovval.limits import first_beyond
 from rovval.plant import Plant, parse_settings
 from rovval.vehicle.model import Vehicle
 
@@ -103,13 +104,16 @@ def _stretches(
         begin = np.array([stretches[i][0] for i in members], dtype=np.int64)
         nu0, eta0, assumed = start_states(run, begin)
         motion = plant.simulate(driven.inputs, begin, length - 1, nu0, eta0, np.tile(beta, (len(begin), 1)))
+        halted = dict(zip(np.flatnonzero(motion.stopped >= 0).tolist(), motion.why, strict=True))
         for lane, number in enumerate(members):
-            good = length if motion.stopped[lane] < 0 else int(motion.stopped[lane])
+            good, why = first_beyond(motion.nu[lane]) or (length, "")
+            if 0 <= motion.stopped[lane] <= good:
+                good, why = int(motion.stopped[lane]), halted[lane]
             at = slice(begin[lane], begin[lane] + good)
             nu[at], eta[at] = motion.nu[lane, :good], motion.eta[lane, :good]
             reasons[at], stretch[at] = Reason.OK, number
             if good < length:
-                stops.append(f"stretch from {begin[lane] * run.dt:.1f} s stopped at {(begin[lane] + good) * run.dt:.1f} s: {motion.why[lane]}")
+                stops.append(f"stretch from {begin[lane] * run.dt:.1f} s stopped at {(begin[lane] + good) * run.dt:.1f} s: {why}")
     return Trajectory(nu, eta, reasons, stretch), tuple(stops), assumed
 
 

@@ -47,7 +47,7 @@ def command(
     """Simulate a run and say how far the simulator is from the vehicle on each axis; write the report.
 
     Errors are simulated minus measured. The report is json, md, html and a rerun recording. With --json and without --out
-    nothing is written.
+    nothing is written. Exit 4 where the simulation left sane limits, 1 where a tolerance is exceeded.
 
     \b
     Example:
@@ -64,6 +64,7 @@ def command(
     show("read", 0.0)
     run = logs.opened(source, profile, archive, quiet)
     nominal = vehicle_of(run, vehicle)
+    run = logs.held_against(run, nominal, quiet)
     other = None if with_ is None else other_velocities(with_, run, with_profile, archive)
     show("simulate", 0.3)
     sim = simulated(run, nominal, model.value, tuple(effect or ()), window)
@@ -74,6 +75,8 @@ def command(
     show("report", 1.0)
     if beyond := tolerances.exceeded(limits, document):
         output.say("\n".join(f"rovval: tolerance exceeded: {line}" for line in beyond))
+    logs.stopped(sim)
+    if beyond:
         raise typer.Exit(1)
 
 

@@ -66,8 +66,10 @@ def command(
     whole.check(None if str(json_) == "-" else json_, write_vehicle, reports and reports / "diagnosis.json")
     options.spare(vehicle, write_vehicle)
     runs = logs.together(sources, vehicle, profile, archive, quiet)
+    nominal = vehicle_of(runs[0], vehicle)
+    runs = [logs.held_against(run, nominal, quiet) for run in runs]
     found = diagnose(
-        runs, vehicle_of(runs[0], vehicle), model=model.value, window_s=window, calibration_slop=calibration_slop, seed=seed,
+        runs, nominal, model=model.value, window_s=window, calibration_slop=calibration_slop, seed=seed,
         progress=output.progress(quiet),
     )  # fmt: skip
     typed = {"--window": None if window == 10.0 else f"{window:g}", "--profile": profile, "--archive": None if str(archive) == "archive" else str(archive)}

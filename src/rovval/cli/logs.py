@@ -7,10 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rovval.cli import output
-from rovval.errors import UsageProblem
+from rovval.errors import SimulationStopped, UsageProblem
 
 if TYPE_CHECKING:
-    from rovval.data import Run
+    from rovval.data import Run, SimResult
+    from rovval.vehicle.model import Vehicle
 
 SHOWN = 6  # findings of a run in a terminal; the others stand in its report
 
@@ -22,6 +23,27 @@ def opened(source: str, profile: str | None, archive: Path, quiet: bool = False)
     run = store.open_run(source, profile, archive)
     tell(run, quiet)
     return run
+
+
+def held_against(run: Run, vehicle: Vehicle, quiet: bool = False) -> Run:
+    """The run beside the vehicle's file: what it exceeds there is among its findings, and said on stderr."""
+    from rovval.pipeline import steps
+
+    beside = steps.held_against(run, vehicle)
+    for finding in beside.findings[len(run.findings) :]:
+        output.say(f"{run.id}: {finding}", quiet)
+    return beside
+
+
+def stopped(sim: SimResult) -> None:
+    """Raises `SimulationStopped` where the free run left sane limits: what could be simulated is written and printed by then."""
+    if not sim.stops:
+        return
+    more = f" (and {len(sim.stops) - 1} more)" if len(sim.stops) > 1 else ""
+    raise SimulationStopped(
+        f"run {sim.run_id}: the simulation left sane limits: {sim.stops[0]}{more}; what came before is in the result",
+        "check unit and scale of the thruster speeds, and that the vehicle is the log's own",
+    )
 
 
 def together(sources: Sequence[str], vehicle: str | None, profile: str | None, archive: Path, quiet: bool = False) -> list[Run]:

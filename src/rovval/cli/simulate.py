@@ -38,7 +38,9 @@ def command(
     from rovval.pipeline.steps import simulated, vehicle_of
 
     run = logs.opened(source, profile, archive, quiet)
-    sim = simulated(run, vehicle_of(run, vehicle), model.value, tuple(effect or ()), window)
+    nominal = vehicle_of(run, vehicle)
+    run = logs.held_against(run, nominal, quiet)
+    sim = simulated(run, nominal, model.value, tuple(effect or ()), window)
     path = out or Path("reports") / run.id / f"{model.value}.parquet"
     simfile.save(sim, path)
     for line in (*sim.assumptions, *sim.stops):
@@ -48,6 +50,7 @@ def command(
         output.result_json(summary)
     else:
         output.result("\n".join(f"{key:<12} {_plain(value)}" for key, value in summary.items() if key != "schema"))
+    logs.stopped(sim)
 
 
 def _summary(sim: SimResult, path: Path) -> dict[str, Any]:

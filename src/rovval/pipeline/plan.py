@@ -127,13 +127,14 @@ def _task(pipeline: Pipeline, source: Source, log: Path, sha: str, content: tupl
 
 
 def _content(source: Source) -> tuple[str, str]:
-    """Content hashes of the source's vehicle and profile: an edited file makes its logs new."""
+    """Numbers of the source's vehicle and hash of its profile: an edited file makes its logs new."""
     from rovval import vehicle
     from rovval.ingest.profile import load_profile
 
     profile = load_profile(source.profile) if source.profile else None
     wanted = source.vehicle or (profile.vehicle_file if profile else "")
-    return vehicle.load(wanted).hash if wanted else "", profile.sha256 if profile else ""
+    numbers = vehicle.load(wanted).model_dump_json(exclude={"sources", "notes", "title"}) if wanted else ""
+    return numbers, profile.sha256 if profile else ""
 
 
 def _finished(task: Task) -> Mapping[str, Any] | None:

@@ -28,6 +28,15 @@ def vehicle_of(run: Run, wanted: str | None) -> Vehicle:
     )
 
 
+def held_against(run: Run, vehicle: Vehicle) -> Run:
+    """The run with what it shows beyond the limits of the vehicle's own file among its findings."""
+    from dataclasses import replace
+
+    from rovval.limits import overspeed
+
+    return replace(run, findings=tuple(dict.fromkeys((*run.findings, *overspeed(run, vehicle)))))
+
+
 def other_velocities(path: Path, run: Run, profile: str | None, archive: Path) -> Array:
     """Body velocities of another simulation of ``run`` on its grid (n, 6), NaN where there is none.
 

@@ -138,9 +138,10 @@ class _Bench:
     def compare(self) -> tuple[dict[str, Any], list[Path]]:
         from rovval import report
         from rovval.compare import compare
+        from rovval.pipeline.steps import held_against
         from rovval.report.json import document
 
-        comparison = compare(self.run, self.sim)
+        comparison = compare(held_against(self.run, self.vehicle), self.sim)
         files = report.write(comparison, self.task.folder / "comparison", self.vehicle)
         return {"comparison": document(comparison)}, list(files.values())
 

@@ -44,7 +44,7 @@ def row(record: Record, new: bool, beyond: Sequence[str]) -> Row:
         duration_s=record.get("duration_s"),
         window_s=window.get("seconds"),
         gap={axis: (found["rms"], found["unit"]) for axis, found in axes.items()},
-        findings=record.get("findings", 0),
+        findings=len(comparison["findings"]) if "findings" in comparison else record.get("findings", 0),
         stops=comparison.get("stops") or steps.get("simulate", {}).get("stops") or (),
         verdict=str(diagnosed.get("said") or diagnosed.get("verdict") or ""),
         causes=diagnosed.get("causes") or (),

@@ -87,6 +87,8 @@ def sentences(comparison: Comparison) -> list[str]:
     said = [f"{where.capitalize()}, the simulator is furthest from the vehicle in {gaps}; {_skill(table)}."]
     if short := windows.shortened(comparison):
         said.append(short)
+    if comparison.sim.stops:
+        said.append(f"The simulation left sane limits, and the rows after that are not counted: {comparison.sim.stops[0]}.")
     if comparison.other:
         said.append(_beside(comparison))
     if comparison.not_measured:

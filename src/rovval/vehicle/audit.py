@@ -22,7 +22,8 @@ def unsourced(vehicle: Vehicle) -> tuple[str, ...]:
         "mass", "inertia", "added_mass", "linear_drag", "quadratic_drag", "volume", "centre_of_gravity",
         "centre_of_buoyancy", "size", "density", "gravity", "thruster.position", "thruster.direction", "thruster.k_pos", "thruster.k_neg",
     )
-    extra = (*(("mixer",) if vehicle.mixer else ()), *(("pulse_table",) if vehicle.pulse_table else ()))
+    limits = ("thruster.rpm_max",) if any(t.rpm_max is not None for t in vehicle.thruster) else ()
+    extra = (*limits, *(("mixer",) if vehicle.mixer else ()), *(("pulse_table",) if vehicle.pulse_table else ()))
     return tuple(g for g in (*groups, *extra) if g not in vehicle.sources)
 
 

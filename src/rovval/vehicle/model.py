@@ -59,7 +59,8 @@ class Thruster(Strict):
 
     At rest in the water T = k_pos n^2 for n > 0 and -k_neg n^2 for n < 0 (n in rpm, N). With ``diameter`` and the advance-ratio
     rows (c1, c2, c3) the thrust becomes T (1 + c1/c0 J + ...): rho D^4 n|n| theta K_T(J_a), J_a = u_a / (n D), as the thesis's
-    Simulink model has it; k_pos and k_neg then hold the J = 0 part.
+    Simulink model has it; k_pos and k_neg then hold the J = 0 part. ``rpm_max``, if the file states it, is a limit for logs, not for the
+    simulator: a recorded speed beyond it is a finding.
     """
 
     name: str
@@ -71,6 +72,7 @@ class Thruster(Strict):
     advance_pos: Vector3 = (0.0, 0.0, 0.0)
     advance_neg: Vector3 = (0.0, 0.0, 0.0)
     handedness: Literal[-1, 1] = 1
+    rpm_max: Positive | None = None
 
 
 class Mixer(Strict):
@@ -122,8 +124,9 @@ class Vehicle(Strict):
 
     @property
     def hash(self) -> str:
-        """Short content hash: two vehicles with one hash are the same numbers."""
-        text = json.dumps(self.model_dump(mode="json", exclude={"sources", "notes", "title"}), sort_keys=True)
+        """Short content hash: two vehicles with one hash move alike."""
+        numbers = self.model_dump(mode="json", exclude={"sources": True, "notes": True, "title": True, "thruster": {"__all__": {"rpm_max"}}})
+        text = json.dumps(numbers, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 
