@@ -47,6 +47,9 @@ def test_what_needs_attention_comes_first():
     stopped = record(2)
     stopped["steps"]["compare"]["comparison"]["stops"] = ["stretch from 0.0 s stopped at 4.1 s"]
     text = said([record(0), record(1), stopped], aside)
+    document = summary.summarise("nightly", [record(0), stopped], (), (), (), (), 3.0, {})
+    assert document["left_sane_limits"] == [{"log": stopped["log"], "run": stopped["run"], "stops": ["stretch from 0.0 s stopped at 4.1 s"]}]
+    assert f"left limits  {stopped['log']}: stretch from 0.0 s" in summary.text(document)
     assert "2 beyond a tolerance, 1 failed, 1 quarantined and 1 left sane limits" in text
     order = [text.index(word) for word in ("Tolerance exceeded (2)", "Failed (1)", "Quarantined (1)", "left sane limits (1)", "Runs (3)")]
     assert order == sorted(order)

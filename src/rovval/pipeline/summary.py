@@ -23,9 +23,11 @@ def summarise(
 ) -> dict[str, Any]:
     """The summary document. ``why`` there was something to do, by `Plan.why`. Tolerances are held against every run of the plan, new or unchanged."""
     parsed = tolerances.parse(limits)
-    beyond = []
+    beyond, stopped = [], []
     for record in (*finished, *skipped):
         compared = record["steps"].get("compare")
+        if stops := record["steps"].get("simulate", {}).get("stops") or (compared["comparison"]["stops"] if compared else ()):
+            stopped.append({"log": record["log"], "run": record["run"], "stops": list(stops)})
         lines = tolerances.exceeded(parsed, compared["comparison"]) if compared else ()
         beyond += [{"log": record["log"], "run": record["run"], "limit": line} for line in lines]
     code = QUARANTINED if set_aside else BEYOND if beyond else DONE
@@ -41,10 +43,12 @@ def summarise(
             "quarantined": len(set_aside),
             "waiting": len(waiting),
             "tolerances_exceeded": len(beyond),
+            "left_sane_limits": len(stopped),
         },
         "why": dict(why),
         "done": [{"log": r["log"], "run": r["run"]} for r in finished],
         "tolerances_exceeded": beyond,
+        "left_sane_limits": stopped,
         "quarantined": [{k: r[k] for k in ("log", "kind", "reason", "next")} for r in set_aside],
         "waiting": [{"log": str(log), "why": why} for log, why in waiting],
     }
@@ -66,5 +70,6 @@ def text(summary: Mapping[str, Any]) -> str:
     lines += [f"  to do were   {reasons(summary['why'])}"] if summary["why"] else []
     lines += [f"  quarantined  {row['log']}: {row['reason'].removeprefix(row['log'] + ': ')}" for row in summary["quarantined"]]
     lines += [f"  exceeded     {row['log']}: {row['limit']}" for row in summary["tolerances_exceeded"]]
+    lines += [f"  left limits  {row['log']}: {row['stops'][0]}" for row in summary["left_sane_limits"]]
     lines += [f"  waiting      {row['log']}: {row['why']}" for row in summary["waiting"]]
     return "\n".join(lines)

@@ -55,7 +55,7 @@ def _verdict(runs: int, attention: Mapping[str, Sequence[Any]]) -> str:
 
 
 def _facts(summary: Mapping[str, Any]) -> dict[str, Any]:
-    counts = {what: str(n) for what, n in summary["counts"].items() if what != "tolerances_exceeded"}
+    counts = {what: str(n) for what, n in summary["counts"].items() if what not in ("tolerances_exceeded", "left_sane_limits")}
     return {"ended": summary["ended"], "took": duration(summary["seconds"]), **counts, "exit code": str(summary["exit_code"])}
 
 
