@@ -91,6 +91,17 @@ def test_keys_depend_on_what_a_step_depends_on(site):
         assert b != d
 
 
+def test_a_step_that_is_no_longer_asked_for_leaves_the_record_when_the_others_are_made_anew(site):
+    """An old diagnosis stood beside new comparisons."""
+    batch.run(batch_case.write_pipeline(site, steps='["ingest", "simulate"]'), workers=1)
+    record = next((site / "reports").glob("*/record.json"))
+    assert list(json.loads(record.read_text())["steps"]) == ["ingest", "simulate"]
+    batch.run(batch_case.write_pipeline(site, steps='["ingest"]'), workers=1)
+    assert list(json.loads(record.read_text())["steps"]) == ["ingest", "simulate"], "nothing is stale, nothing is lost"
+    batch.run(batch_case.write_pipeline(site, "window_s = 4.0", steps='["simulate"]'), workers=1)
+    assert list(json.loads(record.read_text())["steps"]) == ["simulate"]
+
+
 def test_a_bad_log_is_set_aside_with_its_reason_and_the_batch_goes_on(site):
     (site / "logs" / "bad.csv").write_text("this is,not a log\n1,2\n")
     (site / "logs" / "empty.csv").touch()

@@ -73,7 +73,8 @@ def set_aside(task: Task, kind: str, reason: str, code: int, hint: str = "", tra
 
 def _steps(task: Task) -> dict[str, Any]:
     record = read_record(task) or {"schema": "rovval.batch/1", "steps": {}}
-    record |= {"log": str(task.log), "sha256": task.sha256}
+    planned = {step: found for step, found in record["steps"].items() if step in dict(task.keys)}  # what is not would stay as it was
+    record |= {"log": str(task.log), "sha256": task.sha256, "steps": planned}
     bench = _Bench(task)
     stale = False
     for step, key in task.keys:

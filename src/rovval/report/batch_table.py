@@ -82,5 +82,5 @@ def _cause(row: Row) -> str:
 
 
 def _state(row: Row) -> str:
-    marks = [("new", "lead", row.new), ("beyond tolerance", "neg", row.beyond), ("left sane limits", "neg", row.stops)]
+    marks = [("new", "lead", row.new), ("tolerance", "neg", row.beyond), ("limits", "neg", row.stops)]
     return ", ".join(f'<span class="{css}">{what}</span>' for what, css, holds in marks if holds)
