@@ -11,6 +11,7 @@ from diagnose_case import foreign, merlin, own
 from rovval.compare import compare
 from rovval.data import Run
 from rovval.diagnose.fit import FitResult, fit
+from rovval.diagnose.fit_text import _changes
 from rovval.diagnose.tolerance import slop_prior
 from rovval.diagnose.tunable import chosen
 from rovval.errors import UsageProblem
@@ -148,3 +149,9 @@ def test_intervals_hold(slop):
 def test_fit_is_the_same_twice():
     run, done, _ = planted()
     assert fit([run], merlin(), ["quadratic_drag[surge]", LOSS]).document == done.document
+
+
+def test_a_gap_that_grows_is_said_to_grow():
+    said = _changes({"total": -0.34, "low": -0.5, "high": -0.1})
+    assert said == "grows by 34 % [10, 50]"
+    assert _changes({"total": 0.34, "low": 0.1, "high": 0.5}) == "shrinks by 34 % [10, 50]"

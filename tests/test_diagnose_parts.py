@@ -181,7 +181,7 @@ def spoilt(fault: dict[str, float]) -> Run:
 def parity_of(run: Run) -> dict[str, dict[str, object]]:
     part = cut(run, merlin(), "fossen", 10.0)
     sensor = tuple(i for i, s in enumerate(part.plant.slots) if load(s.effect).place == "sensor")
-    return {str(row["fault"]): row for row in faults(parity(part, sensor), part)}
+    return {str(row["fault"]): row for row in faults(parity(part, sensor), part, part.plant.null)}
 
 
 @pytest.mark.parametrize(

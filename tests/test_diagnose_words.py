@@ -8,6 +8,7 @@ import pytest
 
 from report_cases import make_diagnosis
 from rovval.diagnose.localise import Slice, worst
+from rovval.diagnose.nothing import opened
 from rovval.diagnose.words import chance, open_gap, sentence
 from rovval.report import diagnosis_html, diagnosis_markdown, diagnosis_words, table
 
@@ -144,3 +145,11 @@ def test_slices_of_one_quantity_are_named_once_an_axis():
     found = [slice_("yaw", "u < -0.3 m/s", 0.6), slice_("yaw", "|u| > 0.3 m/s", 0.7), slice_("sway", "|u| > 0.3 m/s", 0.5), slice_("yaw", "depth > 3 m", 0.4)]
     named = [(s.axis, s.regime) for s in worst(found, {"yaw": 1.0, "sway": 0.5})]
     assert named == [("yaw", "|u| > 0.3 m/s"), ("yaw", "depth > 3 m"), ("sway", "|u| > 0.3 m/s")]
+
+
+def test_an_open_gap_is_an_unknown_effect_in_the_document():
+    left = opened(null(0.04, 0.26))
+    assert left["axes"] == ["surge"] and left["depends_on"] == []
+    assert left["text"].startswith("noise and a calibration slop of 5 % account for only 30 % of the squared gap")
+    d = null(0.04, 0.26) | {"verdict": "unknown", "left": left}
+    assert "Unknown effect: noise and a calibration slop" in sentence(d) and not open_gap(d)

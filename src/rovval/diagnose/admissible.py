@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from rovval.diagnose.confirm import significance
+from rovval import effects
+from rovval.diagnose.confirm import PLACING, significance
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.separate import PER_PARAMETER, Rival, alike, form_share
 
@@ -10,6 +11,7 @@ HALF_REVERSED = 0.55  # 0.5 is a dead thruster; the margin is chosen
 LEAST_SIGMA = 2.2  # standard errors, slop included, by which an effect departs from nothing (tuning set: healthy logs reach 2.0)
 TOLERANCES = 3.0  # times the tolerance of calibration slop within which a coefficient is not worth a name
 LOSSES = 1.5  # the same for a loss of thrust that comes and goes
+GONE, DEAD = -0.9, 1.0  # of a coefficient, as little of it as the search looks for; of thrust, all of it lost
 SERIOUS = 0.5  # share of the best evidence from which a rival's gain counts
 NEARLY = 0.9  # of the best's gain
 LEAST_OF_BEST = 0.5  # of the gain of the best serious rival
@@ -27,14 +29,14 @@ def admissible(problem: Problem, weighed: list[Rival]) -> list[Rival]:
 
 
 def possible(problem: Problem, weighed: list[Rival]) -> list[Rival]:
-    """Finalists whose size is beyond what slop of all other coefficients could feign, best evidence first."""
-    rivals = _in_form(problem, weighed)
+    """Finalists whose size is beyond what slop of all other coefficients could feign and within what the library knows, best evidence first."""
+    rivals = [r for r in _in_form(problem, weighed) if not _beyond_the_library(problem, r)]
     return [r for r in rivals if significance(problem, r.fitted, r.hypothesis.slots) >= LEAST_SIGMA and _beyond_tolerance(problem, r)]
 
 
 def simplest(problem: Problem, rivals: list[Rival]) -> Rival:
     """Of the rivals that the form of an equation may set apart, the one with the fewest parameters, if it closes nearly as much as the best;
-    one that rests on a bound comes last."""
+    one that rests on a bound of its search comes last."""
     most, least = len(rivals[0].hypothesis.slots), (1.0 - form_share(problem.blocks)) * rivals[0].evidence
     tied = [
         r for r in rivals
@@ -42,7 +44,7 @@ def simplest(problem: Problem, rivals: list[Rival]) -> Rival:
         or alike(problem, r, rivals[0])
         or (r.evidence >= least and r.gain >= (NEARLY - PER_PARAMETER * max(most - len(r.hypothesis.slots), 0)) * rivals[0].gain)
     ]  # fmt: skip
-    return min(tied, key=lambda r: (bool(r.fitted.at_bound), len(r.hypothesis.slots), -r.evidence))
+    return min(tied, key=lambda r: (_beyond_the_library(problem, r), len(r.hypothesis.slots), -r.evidence))
 
 
 def _in_form(problem: Problem, weighed: list[Rival]) -> list[Rival]:
@@ -62,6 +64,14 @@ def _beyond_tolerance(problem: Problem, rival: Rival) -> bool:
     thrust = max((sd for s, sd in problem.slop.sd.items() if slots[s].effect == "thruster_degraded"), default=0.0)
     tolerance |= {s: LOSSES * thrust for s in rival.hypothesis.slots if slots[s].parameter.name == "loss" and s not in tolerance}
     return not tolerance or any(abs(beta[s] - origin[s]) >= limit for s, limit in tolerance.items())
+
+
+def _beyond_the_library(problem: Problem, rival: Rival) -> bool:
+    """Whether a size rests at a bound of its search: the fit would go on, to where no vehicle is. A coefficient may well vanish, and thrust too."""
+    slots = {s: problem.plant.slots[s].parameter for s in rival.hypothesis.slots}
+    levers = effects.load(problem.plant.slots[rival.hypothesis.slots[0]].effect).levers
+    at = {s: (slots[s], float(rival.fitted.beta[s])) for s in rival.fitted.at_bound if s in slots and slots[s].name not in (*PLACING, *levers)}
+    return any(not (p.name == "scale" and x <= p.low <= GONE) and not (p.name == "loss" and x >= p.high >= DEAD) for p, x in at.values())
 
 
 def _from_the_start(problem: Problem, rival: Rival) -> bool:

@@ -15,6 +15,7 @@ from rovval.diagnose.faults import faults
 from rovval.diagnose.gap import axis_rows, noise_loss
 from rovval.diagnose.localise import change_points, slices, worst
 from rovval.diagnose.miscalibrated import calibration
+from rovval.diagnose.nothing import open_gap, opened
 from rovval.diagnose.pictures import coherence_matrix, heat_map, traces
 from rovval.diagnose.problem import Problem, corrected_residuals
 from rovval.diagnose.select import Selection
@@ -51,7 +52,7 @@ def answer(
         "left": judgement.left,
         "calibration": calibration(problem, selection, judgement, before, slop, seed, progress),
         "harm": harm(shrunk),
-        "parity": [row for check, part in zip(problem.parity, problem.parts, strict=True) for row in faults(check, part)],
+        "parity": [row for check, part in zip(problem.parity, problem.parts, strict=True) for row in faults(check, part, problem.origin)],
         "heatmap": heat_map(problem.parts[0], before[0], seed),
         "traces": traces(problem, judgement.final, before),
         "coherence": coherence_matrix(problem, selection, judgement),
@@ -61,6 +62,8 @@ def answer(
         "left_out_s": sum(part.contact_s for part in problem.parts),
         "outliers": sum(part.outliers for part in problem.parts),
     }
+    if open_gap(document):
+        document |= {"verdict": "unknown", "left": opened(document)}
     document |= {"answer": first(document), "sentence": sentence(document)}
     found = settings(problem, judgement.final)
     return Diagnosis(document, found, with_effects(problem.plant.vehicle, found) if found else "")

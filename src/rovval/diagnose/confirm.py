@@ -37,6 +37,10 @@ class Confirmed:
     dynamic_loss: Array
     at_bound: tuple[int, ...]
 
+    def light(self) -> Confirmed:
+        """The fit without its slopes, which are the bulk of it; it cannot be gone on from."""
+        return replace(self, point=replace(self.point, linear=()))
+
 
 def confirm(problem: Problem, start: Array, slots: tuple[int, ...]) -> Confirmed:
     """Fit ``slots`` from ``start`` by re-simulation of all windows; score each fold with the parameters that the others give."""

@@ -5,22 +5,25 @@ from __future__ import annotations
 import numpy as np
 from scipy import stats
 
+from rovval.data import Array
 from rovval.diagnose.parity import Parity
 from rovval.diagnose.stretches import Stretches
 
 
-def faults(parity_rows: Parity, stretches: Stretches) -> list[dict[str, object]]:
-    """Each sensor effect fitted to the parity rows alone: value with 90 % interval and whether it is significant on its own."""
+def faults(parity_rows: Parity, stretches: Stretches, origin: Array) -> list[dict[str, object]]:
+    """Each sensor effect fitted to the parity rows alone: value with 90 % interval, and whether it differs from ``origin`` (k,), what the
+    vehicle's file says of the sensors (``was``), significantly on its own."""
     found: list[dict[str, object]] = []
     by_effect: dict[str, list[int]] = {}
     for i, column in enumerate(parity_rows.columns):
         if np.abs(parity_rows.traces[..., i]).max(initial=0.0) > 0:
             by_effect.setdefault(stretches.plant.slots[column].hypothesis, []).append(i)
-    total = float((parity_rows.rows**2).sum())
+    rows = parity_rows.rows - parity_rows.traces @ origin[list(parity_rows.columns)]  # of these only sensors leave a trace
+    total = float((rows**2).sum())
     for places in by_effect.values():
         trace = parity_rows.traces[..., places]
         H = np.einsum("wqi,wqj->ij", trace, trace) + 1e-12 * np.eye(len(places))
-        g = np.einsum("wqi,wq->wi", trace, parity_rows.rows)
+        g = np.einsum("wqi,wq->wi", trace, rows)
         value = np.linalg.solve(H, g.sum(axis=0))
         score = g - np.einsum("wqi,wqj,j->wi", trace, trace, value)
         bread = np.linalg.inv(H)
@@ -28,15 +31,17 @@ def faults(parity_rows: Parity, stretches: Stretches) -> list[dict[str, object]]
         t = float(stats.t.ppf(0.95, max(len(g) - len(places), 2)))
         share = float(g.sum(axis=0) @ value) / total if total > 0 else 0.0
         for j, place in enumerate(places):
-            slot = stretches.plant.slots[parity_rows.columns[place]]
-            low, high = float(value[j] - t * error[j]), float(value[j] + t * error[j])
+            slot_id = parity_rows.columns[place]
+            slot = stretches.plant.slots[slot_id]
+            low, high, was = float(value[j] - t * error[j]), float(value[j] + t * error[j]), float(origin[slot_id])
             found.append(
                 {
                     "check": "measured velocity against measured pose",
                     "fault": slot.key,
-                    "value": float(value[j]),
-                    "low": low,
-                    "high": high,
+                    "value": was + float(value[j]),
+                    "low": was + low,
+                    "high": was + high,
+                    "was": was,
                     "unit": slot.parameter.unit,
                     "share": share,
                     "significant": bool(low > 0 or high < 0) and share > 0.05,

@@ -17,8 +17,10 @@ from rovval.diagnose.separate import Losses, Rival, closed, coherence
 from rovval.diagnose.settle import stays
 
 FINALISTS = 10  # hypotheses that are re-simulated in a round
-SCREENED = 0.15  # of the best linear evidence: less is not re-simulated
+SCREENED = 0.15  # of the best linear evidence: less is not re-simulated,
+FEWEST, ANYWAY = 4, 20.0  # unless it is one of the first few and is strong evidence by itself
 TWIN, MOST_TWINS = 0.85, 4  # coherence from which a hypothesis is re-simulated beside the best finalist whatever the screen said
+PROMISED, RETRIED = 0.5, 2  # share of the tangent's evidence that a quick fit must keep, else it is settled with care; how many may be
 SHARPENED = 4  # finalists that are settled with slopes made at their own point
 
 
@@ -39,10 +41,11 @@ def finalists(
         start = _start(problem, data, h, step(data, ground.widened(prior_of(h)), problem.inflation), base.beta, slots)
         if h.name.startswith(REVERSED):
             start = _turned(problem, h, start)
-        fitted[h.name] = h, roughly(problem, start, slots, base.linear)
+        fitted[h.name] = h, roughly(problem, start, slots, base.linear).light()
 
     for h in ordered:
-        if h.name not in fitted and len(fitted) < FINALISTS and detection.evidence[h.label] > least:
+        promising = detection.evidence[h.label] > (least if len(fitted) >= FEWEST else min(least, ANYWAY))
+        if h.name not in fitted and len(fitted) < FINALISTS and promising:
             refit(h)
     if fitted:
         best = max(fitted.values(), key=lambda item: item[1].evidence)[0]
@@ -51,7 +54,17 @@ def finalists(
         for h in (*twins[:MOST_TWINS], *turned):
             if h.name not in fitted:
                 refit(h)
-    return _weighed(problem, list(fitted.values()), base, loss)
+    return _weighed(problem, list(_retried(problem, detection, fitted, whole_evidence(problem, base)).values()), base, loss)
+
+
+def _retried(
+    problem: Problem, detection: Detection, fitted: dict[str, tuple[Hypothesis, Confirmed]], ground: float
+) -> dict[str, tuple[Hypothesis, Confirmed]]:
+    """The fits, those settled with care that promise most and of which a quick fit, whose slopes stand still, kept little."""
+    short = [name for name, (h, quick) in fitted.items() if quick.evidence - ground < PROMISED * detection.evidence[h.label]]
+    short.sort(key=lambda name: -detection.evidence[fitted[name][0].label])
+    careful = {name: confirm(problem, fitted[name][1].point.beta, fitted[name][1].slots).light() for name in short[:RETRIED]}
+    return {name: (h, max((quick, careful.get(name, quick)), key=lambda one: one.evidence)) for name, (h, quick) in fitted.items()}
 
 
 def sharpened(problem: Problem, rivals: list[Rival], base: Point, loss: Losses) -> list[Rival]:
@@ -91,7 +104,18 @@ def _start(problem: Problem, data: Products, h: Hypothesis, moves: Array, beta: 
         slot = moved.get(column, column)
         if move and 0 <= slot < len(start) and slot not in still:
             parameter = problem.plant.slots[slot].parameter
+            if parameter.name == "amplitude" and start[slot] + move < parameter.low:
+                start, move = _half_a_turn_later(problem, h, start), -move
             start[slot] = float(np.clip(start[slot] + move, parameter.low, parameter.high))
+    return start
+
+
+def _half_a_turn_later(problem: Problem, h: Hypothesis, start: Array) -> Array:
+    """The start with the phase of a swing turned over: the same as a negative amplitude, which has no meaning."""
+    start = start.copy()
+    for slot in h.slots:
+        if problem.plant.slots[slot].parameter.name == "phase":
+            start[slot] = start[slot] - np.pi if start[slot] > 0 else start[slot] + np.pi
     return start
 
 

@@ -10,10 +10,7 @@ def text(document: dict[str, Any]) -> str:
     rows, shrunk = document["parameters"], document["shrinkage"]
     lines = [f"{document['run']}: {document['vehicle']}, model {document['model']}, {document['windows']} windows of {document['window_s']:g} s"]
     if rows:
-        lines.append(
-            f"The squared gap shrinks by {100 * shrunk['total']:.0f} % [{100 * shrunk['low']:.0f}, {100 * shrunk['high']:.0f}] on held-out windows with "
-            f"{len(rows)} parameter{'s' if len(rows) > 1 else ''} tuned."
-        )
+        lines.append(f"The squared gap {_changes(shrunk)} on held-out windows with {len(rows)} parameter{'s' if len(rows) > 1 else ''} tuned.")
         width = max(map(len, rows))
         lines += ["", f"{'tuned':{width}}       was      value   90 % interval"]
     for name, row in rows.items():
@@ -30,3 +27,9 @@ def text(document: dict[str, Any]) -> str:
     if not rows:
         lines += ["", "Nothing was tuned. Next: a log that moves on the axes, or turns the thrusters, that these parameters act on."]
     return "\n".join([*lines, ""])
+
+
+def _changes(shrunk: dict[str, Any]) -> str:
+    verb, sign = ("shrinks", 1) if shrunk["total"] >= 0 else ("grows", -1)
+    ends = sorted(100 * sign * shrunk[end] for end in ("low", "high"))
+    return f"{verb} by {100 * sign * shrunk['total']:.0f} % [{ends[0]:.0f}, {ends[1]:.0f}]"

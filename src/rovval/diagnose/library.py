@@ -18,7 +18,11 @@ from rovval.diagnose.stretches import Stretches
 from rovval.plant import Plant
 
 ONSETS = 9  # starting points for an onset, evenly inside the log
-FAR = {"cg_offset": (-5.0, -2.0, 2.0, 5.0), "time_offset": (-8.0, -4.0, 4.0, 8.0)}  # typical sizes of starting points away from the null value
+FAR = {  # typical sizes of starting points away from the null value (chosen)
+    "cg_offset": (-5.0, -2.0, 2.0, 5.0), "time_offset": (-8.0, -4.0, 4.0, 8.0), "thrust_lag": (3.0,), "velocity_filter_lag": (3.0,),
+}  # fmt: skip
+LEVER = 0.7  # of the furthest thruster's distance: where a force may act (chosen)
+LINES = 3  # periods that an effect begins from
 MOST_STARTS = 12  # of a hypothesis with several such parameters
 PRIOR_WIDTH = 4.0  # wide prior, in typical sizes: keeps a parameter that the log does not see from running away
 
@@ -37,10 +41,11 @@ class Hypothesis:
     directions: tuple[Direction, ...] = ()
 
 
-def hypotheses(parts: Sequence[Stretches], without: Sequence[str] = ()) -> tuple[list[Hypothesis], dict[str, str]]:
+def hypotheses(parts: Sequence[Stretches], without: Sequence[str] = (), periods: Sequence[float] = ()) -> tuple[list[Hypothesis], dict[str, str]]:
     """The competing hypotheses, and those that this log cannot test with the reason.
 
-    ``without`` names effects (``inflow_loss``) or hypotheses (``thruster_degraded[HFP]``) to leave out.
+    ``without`` names effects (``inflow_loss``) or hypotheses (``thruster_degraded[HFP]``) to leave out; ``periods`` (s), the most promising
+    first, are where those that swing begin.
     """
     plant, found, untestable = parts[0].plant, list[Hypothesis](), dict[str, str]()
     for name, slots in plant.hypotheses.items():
@@ -52,18 +57,18 @@ def hypotheses(parts: Sequence[Stretches], without: Sequence[str] = ()) -> tuple
             untestable[name] = f"needs {', '.join(missing)}, which this log does not hold"
             continue
         next_id = len(plant.slots) + sum(len(h.directions) for h in found)
-        found.extend(_starts(plant, name, effect, slots, parts, next_id))
+        found.extend(_starts(plant, name, effect, slots, parts, next_id, periods))
     return found, untestable
 
 
 def _starts(
-    plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], parts: Sequence[Stretches], next_id: int
+    plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], parts: Sequence[Stretches], next_id: int, periods: Sequence[float]
 ) -> list[Hypothesis]:
     """One hypothesis, or one for each starting point of the parameters that linearisation at the null value cannot see."""
-    grids = _grids(plant, effect, slots, parts)
+    grids = _grids(plant, effect, slots, parts, periods)
     if not grids:
         near = Hypothesis(name, name, slots, slots, tuple(PRIOR_WIDTH * plant.slots[s].parameter.typical for s in slots))
-        return [near, *_far(plant, name, effect, slots, next_id)]
+        return [near, *_far(plant, name, effect, slots, next_id), *_levers(plant, name, effect, slots, next_id)]
     linear = tuple(s for s in slots if s not in grids)
     points = list(product(*grids.values()))
     chosen = points if len(points) <= MOST_STARTS else [points[i] for i in np.linspace(0, len(points) - 1, MOST_STARTS).astype(int)]
@@ -79,7 +84,7 @@ def _starts(
 
 def _far(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], next_id: int) -> list[Hypothesis]:
     """Starting points well away from the null value: a vehicle that tumbles in simulation shows no useful slope of its trim there, nor do
-    commands that came a second late and step from one level to the next."""
+    commands that came a second late and step from one level to the next; a lag of half a second is no multiple of a short one."""
     found = list[Hypothesis]()
     for slot in slots:
         p = plant.slots[slot].parameter
@@ -94,8 +99,27 @@ def _far(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...]
     return found
 
 
-def _grids(plant: Plant, effect: effects.Effect, slots: tuple[int, ...], parts: Sequence[Stretches]) -> dict[int, tuple[float, ...]]:
-    """Starting values by slot: onsets spread over the log, other grids as the effect states them, held within the bounds."""
+def _levers(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], next_id: int) -> list[Hypothesis]:
+    """Starting points with the force well away from the origin, `LEVER` of the thrusters' reach ahead or astern: a force that is not there
+    yet turns nothing, wherever it would act, and once it is there the other levers show."""
+    levers = [s for s in slots if plant.slots[s].parameter.name in effect.levers]
+    own = [s for s in slots if s not in levers]
+    reach = LEVER * max(float(np.linalg.norm(t.position)) for t in plant.vehicle.thruster)
+    found = list[Hypothesis]()
+    for number, x in enumerate((-reach, reach) if levers else ()):
+        p = plant.slots[levers[0]].parameter
+        at = ((levers[0], float(np.clip(x, p.low, p.high))),)
+        directions = tuple(Direction(next_id + number * len(own) + i, at, slot) for i, slot in enumerate(own))
+        sd = tuple(PRIOR_WIDTH * plant.slots[s].parameter.typical for s in own)
+        found.append(Hypothesis(name, f"{name}@lever{number}", slots, tuple(d.id for d in directions), sd, at, directions))
+    return found
+
+
+def _grids(
+    plant: Plant, effect: effects.Effect, slots: tuple[int, ...], parts: Sequence[Stretches], periods: Sequence[float]
+) -> dict[int, tuple[float, ...]]:
+    """Starting values by slot: onsets spread over the log, the best of ``periods`` as far as `MOST_STARTS` lets them, other grids as the
+    effect states them, held within the bounds."""
     found = {}
     for slot in slots:
         parameter = plant.slots[slot].parameter
@@ -103,6 +127,9 @@ def _grids(plant: Plant, effect: effects.Effect, slots: tuple[int, ...], parts: 
             first, last = float(parts[0].start[0]), float(parts[0].start[-1])
             share = np.arange(1, ONSETS + 1) / (ONSETS + 1)
             found[slot] = tuple(float((first + (last - first) * s) * parts[0].run.dt) for s in share)
+        elif parameter.name == "period" and periods:
+            others = int(np.prod([len(values) for name, values in effect.grid.items() if name != "period"]))
+            found[slot] = tuple([p for p in periods if parameter.low <= p <= parameter.high][: min(LINES, max(MOST_STARTS // others, 1))])
         elif parameter.name in effect.grid:
             found[slot] = tuple(v for v in effect.grid[parameter.name] if parameter.low <= v <= parameter.high)
     return {slot: values for slot, values in found.items() if values}

@@ -33,11 +33,7 @@ def nothing(document: Mapping[str, Any]) -> str:
     known = f"noise and a calibration slop of {100 * slop:g} %" if slop else "noise"
     sensors, near = _sensors(document), _near(document)
     if open_gap(document):
-        accounted = whole(document["detection"]["slop"] + document["detection"]["noise"])
-        first = (
-            f"No cause is named, though {known} account for only {accounted} % of the squared gap: no effect of the library and no smooth force "
-            f"is shown to close the rest. It may be a disturbance{_largest(document)}, an effect in events, or motion that this log shows too little of"
-        )
+        first = f"No cause is named, though {_unaccounted(document, known)}"
         sensors = sensors and f". {sensors[0].upper()}{sensors[1:]}"
     elif near or sensors:
         first = f"No gap beyond {known} is shown in the simulated motion"
@@ -45,6 +41,24 @@ def nothing(document: Mapping[str, Any]) -> str:
     else:
         first = f"No gap beyond {known}: no effect of the library explains anything that {'such slop' if slop else 'noise'} does not"
     return f"{first}{sensors}.{f' {near}.' if near else ''}"
+
+
+def opened(document: Mapping[str, Any]) -> dict[str, Any]:
+    """An open gap as what is left of it: an effect that is unknown, since it is neither smooth nor in the library."""
+    axes = document["gap"]["axes"]
+    slop, sensors, near = document.get("calibration_slop"), _sensors(document), _near(document)
+    text = _unaccounted(document, f"noise and a calibration slop of {100 * slop:g} %" if slop else "noise")
+    text += f". {sensors[0].upper()}{sensors[1:]}" if sensors else ""
+    worst = max(axes, key=lambda axis: float(axes[axis]["share"]))
+    return {"axes": [worst], "depends_on": [], "share": 0.0, "text": f"{text}. {near}" if near else text}
+
+
+def _unaccounted(document: Mapping[str, Any], known: str) -> str:
+    accounted = whole(document["detection"]["slop"] + document["detection"]["noise"])
+    return (
+        f"{known} account for only {accounted} % of the squared gap: no effect of the library and no smooth force is shown to close the rest. "
+        f"It may be a disturbance{_largest(document)}, an effect in events, or motion that this log shows too little of"
+    )
 
 
 def _largest(document: Mapping[str, Any]) -> str:
@@ -91,6 +105,6 @@ def _sensors(document: Mapping[str, Any]) -> str:
 
 
 def _tolerances(row: Mapping[str, Any]) -> float:
-    """How many tolerances of a healthy sensor a row of the check is off; 0 where none is stated."""
+    """How many tolerances of a healthy sensor a row of the check is off what the vehicle's file says; 0 where none is stated."""
     tolerance = SENSORS.get(family(str(row.get("fault") or "")))
-    return abs(row["value"]) / tolerance if tolerance else 0.0
+    return abs(row["value"] - (row.get("was") or 0.0)) / tolerance if tolerance else 0.0

@@ -126,7 +126,7 @@ def _weighted(stretches: Stretches, nominal: Array, traces: Array, columns: tupl
     if not keep:
         return _none(m, columns, tuple(notes))
     rows = (nominal[..., keep] / sigma).reshape(m, -1)
-    scaled = (traces[..., keep, :] / sigma[:, None]).reshape(m, -1, k)
+    scaled = (traces[..., keep, :] / sigma[:, None]).reshape(m, rows.shape[1], k)
     inflation = _inflation(rows, scaled, free)
     gram = _gram(rows, scaled[..., free], tuple(columns[i] for i in free))
     factor = np.array([stretches.plant.slots[c].effect in FACTORS for c in gram.columns], dtype=bool)

@@ -23,7 +23,8 @@ from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem, at, columns_of
 from rovval.diagnose.products import Products
 from rovval.diagnose.separate import Losses, Rival, group
-from rovval.diagnose.settle import settle
+from rovval.diagnose.settle import healthy_point, resettled
+from rovval.diagnose.swings import retuned
 from rovval.diagnose.together import LEAST_EVIDENCE, Named, together, worthy
 
 MOST = 3  # effects at once
@@ -53,29 +54,37 @@ class Selection:
 
 def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Callable[[str, float], None]) -> Selection:
     """Search for the effects that explain the gap; see the module."""
-    healthy = settle(problem, problem.origin, ())
+    healthy = healthy_point(problem)
+    tuned = retuned(problem, library, healthy)
     named, spent = list[Named](), set[str]()
     rounds = list[_Round]()
     for number in range(ROUNDS):
-        progress(f"screening {len(library)} hypotheses, round {number + 1}", 0.3 + 0.1 * number)
-        open_now = [h for h in library if h.name not in {n.hypothesis.name for n in named} | spent]
-        rounds.append(_round(problem, library, open_now, named, healthy, seed + number))
+        progress(f"screening {len(tuned)} hypotheses, round {number + 1}", 0.3 + 0.1 * number)
+        open_now = [h for h in tuned if h.name not in {n.hypothesis.name for n in named} | spent]
+        rounds.append(_round(problem, tuned, open_now, named, healthy, seed + number))
         if rounds[-1].able:
             named = _pruned(problem, [*named, _found(problem, rounds[-1], seed)])
             if len(named) < MOST:
                 continue
         progress("weighing the causes beside each other", 0.35 + 0.1 * number)
+        healthy = _fairer(problem, healthy, named)
         kept = together(problem, named, healthy, seed)
         spent |= {n.hypothesis.name for n in named} - {n.hypothesis.name for n in kept}
         settled, named = len(kept) in (0, MOST, len(named)), kept
         if settled:
             break
     else:
+        healthy = _fairer(problem, healthy, named)
         named = together(problem, named, healthy, seed)
     final, tried = named[-1].fitted if named else None, tuple(r.told for r in rounds if r.told)
     last = rounds[-1].detection
     p, most, null = last.p_value(last.best), last.evidence[last.best], float(np.quantile(last.null, 0.95))
     return Selection(tuple(named), final, healthy, _ranking(problem, library, named, tried), tried, p, most, null)
+
+
+def _fairer(problem: Problem, healthy: Point, named: list[Named]) -> Point:
+    """The healthy vehicle, after another start beside the causes."""
+    return resettled(problem, healthy, named[-1].fitted.point, named[-1].fitted.slots) if named else healthy
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +126,9 @@ def _found(problem: Problem, one: _Round, seed: int) -> Named:
     """The best of those that may be added, with those that this log does not tell from it."""
     best = simplest(problem, one.able)
     members = tuple(sorted(group(problem, one.able, seed), key=lambda member: member[0] != best.hypothesis.name))
-    return Named(best.hypothesis, members, best.fitted, one.detection.p_value(best.hypothesis.label), best.evidence, tuple(one.able))
+    rivals = tuple(replace(r, fitted=r.fitted.light()) for r in one.able)
+    fitted = best.fitted if best.fitted.point.linear else confirm(problem, best.fitted.point.beta, best.fitted.slots)
+    return Named(best.hypothesis, members, fitted, one.detection.p_value(best.hypothesis.label), best.evidence, rivals)
 
 
 def _pruned(problem: Problem, named: list[Named]) -> list[Named]:

@@ -32,6 +32,10 @@ def sensed(run: Run) -> tuple[Run, tuple[Finding, ...]]:
     values, reasons, resampled = dict(run.values), dict(run.reasons), dict(run.resampled)
     found = list[Finding]()
     for name in (c for c in RATES if run.measured(c)):
+        if _never_changes(run.get(name)):
+            reasons[name] = np.full_like(reasons[name], Reason.SATURATED)
+            found.append(Finding("saturated", name, f"says {values[name][0]:.4g} (SI units) all along, which no sensor does, and was left out"))
+            continue
         stop = at_stop(run.get(name))
         if stop.any():
             reasons[name] = np.where(stop, Reason.SATURATED, reasons[name]).astype(np.uint8)
@@ -66,6 +70,12 @@ def at_stop(values: Array) -> Flags:
         if len(first) and float(np.nanmedian(rise)) > max(STEEP * noise, LEAST_STEP):
             stop |= here
     return stop
+
+
+def _never_changes(values: Array) -> bool:
+    """Whether a channel says the same thing other than 0 all along; a vehicle that keeps to one axis may well have zeros on another."""
+    known = values[np.isfinite(values)]
+    return bool(len(known) > 1 and np.ptp(known) == 0.0 and known[0] != 0.0)
 
 
 def pings(values: Array) -> tuple[int, int]:

@@ -19,10 +19,11 @@ from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem, beside, carried, products_about
 from rovval.plant import Plant
 
-ROUNDS = 5
+ROUNDS, FEW = 5, 3
 LITTLE = 1.0  # twice the log posterior: a smaller gain is not worth another step
 FAR, ANEW = 10.0, 2  # the same, from which slop's slopes are made anew, and how often at most
 SHORTER = (1.0, 0.4, 0.1)  # shares of the Gauss-Newton step that are tried
+EARLY = (2.5, 5.0)  # s of each window that are fitted before the whole of it (chosen)
 
 
 def settle(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[Linear, ...] | None = None, rounds: int = ROUNDS) -> Point:
@@ -40,6 +41,36 @@ def settle(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[L
             return reached
         point = _about(problem, reached.beta, point.columns, point.own, None)
     return _descended(problem, point, point.linear, rounds)
+
+
+def healthy_point(problem: Problem) -> Point:
+    """Where slop settles by itself. The beginning of each window is fitted first: over ten seconds a vehicle that rolls freely forgets how it
+    began, and a fit of the whole window from far away ends in the first of many valleys."""
+    beta = problem.origin
+    for seconds in EARLY:
+        beta = settle(_begun(problem, seconds), beta, ()).beta
+    return settle(problem, beta, ())
+
+
+def resettled(problem: Problem, before: Point, point: Point, slots: tuple[int, ...]) -> Point:
+    """The healthy vehicle, settled again from where slop stands at ``point``, its ``slots`` gone, or as it was ``before`` where that is better:
+    every search is local, and no cause is to gain by another start."""
+    start = point.beta.copy()
+    start[list(slots)] = problem.origin[list(slots)]
+    if settle(problem, start, (), before.linear, FEW).profile() >= before.profile():
+        return before
+    again = settle(problem, start, ())
+    return again if again.profile() < before.profile() else before
+
+
+def _begun(problem: Problem, seconds: float) -> Problem:
+    """The problem with nothing but the first ``seconds`` of each window."""
+    n = round(seconds / problem.parts[0].run.dt) + 1
+    parts = [
+        replace(p, steps=n - 1, y=p.y[:, :n], ok=p.ok[:, :n], pushed=None if p.pushed is None else p.pushed[:, :n])
+        for p in problem.parts if p.steps >= n
+    ]  # fmt: skip
+    return replace(problem, parts=tuple(parts), white=problem.white[:n]) if parts else problem
 
 
 def _columns(problem: Problem, slots: tuple[int, ...]) -> tuple[int, ...]:

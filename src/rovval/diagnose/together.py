@@ -77,8 +77,9 @@ def _without(problem: Problem, found: Sequence[Named], one: Named, healthy: Poin
 
 def jointly(problem: Problem, whole: Confirmed, kept: Sequence[Hypothesis], other: Rival | None = None) -> Confirmed:
     """The causes ``kept`` from where they stand in ``whole``, with another one from where it stood when it was weighed."""
-    start, slots = problem.origin.copy(), [s for h in kept for s in h.slots]
-    start[slots] = whole.beta[slots]
+    start, slots = whole.point.beta.copy(), [s for h in kept for s in h.slots]
+    gone = [s for s in whole.slots if s not in slots]
+    start[gone] = problem.origin[gone]
     if other:
         new = list(other.hypothesis.slots)
         start[new], slots = other.fitted.beta[new], [*slots, *new]

@@ -14,6 +14,8 @@ from rovval.diagnose.together import Named, jointly
 from rovval.diagnose.unknown import Forces, bare_forces, forces
 from rovval.diagnose.weigh import BROKEN, HOLDS, REAL, Weighed, of_sensor, strain, weigh
 
+NEAR = 0.05  # of the gap, held out: an effect that closes less is not near the truth, whatever its evidence (chosen)
+
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
@@ -60,7 +62,7 @@ def _nameless(problem: Problem, selection: Selection, weighed: Weighed | None, g
     """No gap, or an unknown cause where something is surely at work: a force, a strain, an effect that nearly fits."""
     total, skill, unsteady = (weighed.total, weighed.skill, weighed.unsteady) if weighed else (0.0, True, ())
     anything, strained = general.evidence(), strain(selection.healthy)
-    tried = max((worth if gain > 0 else worth / 3 for _, worth, gain in selection.rounds[0]), default=0.0) if selection.rounds else 0.0
+    tried = max((worth if gain > NEAR else worth / 3 for _, worth, gain in selection.rounds[0]), default=0.0) if selection.rounds else 0.0
     nearly = skill and (max(total, tried) > REAL or bool(unsteady))
     real = nearly or (anything > REAL and general.share(problem.folds) > HOLDS) or strained > BROKEN
     rest = left(problem, bare_forces(problem), selection.healthy, unsteady) if real else None

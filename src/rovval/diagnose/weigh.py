@@ -30,6 +30,7 @@ BETTER = 0.9  # of a cause's evidence: a generic force that has more is as near 
 ACTING = 0.15  # of what a cause closes: the axes on which it acts
 HARMS = 0.25  # of what causes close in all: a cause that opens more on one axis is the least bad (chosen)
 SKILL = 0.5  # of the squared motion: an axis on which more is left is not simulated at all (chosen)
+HARDLY = 0.15  # of what an axis erred before (chosen)
 REAL = 100.0  # twice the log Bayes factor of a generic force from which it is not a healthy vehicle's form (tuning set)
 HOLDS = 0.02  # of what is left: a generic force that closes less on held-out windows is a fit to these windows (chosen)
 REMAINS = 0.10  # of a cause's evidence: less left over is form, not another cause
@@ -69,7 +70,7 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
     beside, instead = rest.evidence(axes) if holds else 0.0, general.evidence(axes)
     excess, strained = _excess(problem, final.point, axes), strain(final.point)
     sensors = all(of_sensor(n) for n in selection.named)  # a force imitates a bias of the sensor that shows what it does
-    skill = not many or sensors or _skill(problem, closed, now)
+    skill = not many or sensors or _skill(problem, closed, was, now)
     outdone = many and not sensors and instead > BETTER * total
     varies = wavering(problem, final, selection.named) if many else {}
     unsteady = _unsteady(problem, selection, final, varies) if many else ()
@@ -110,10 +111,12 @@ def _acting(closed: Mapping[str, float]) -> tuple[str, ...]:
     return tuple(axis for axis in AXES if closed.get(axis, 0.0) > ACTING * max(sum(closed.values()), 1e-300))
 
 
-def _skill(problem: Problem, closed: Mapping[str, float], left: Mapping[str, float]) -> bool:
-    """Whether on the axis where they close most the simulator, causes added, errs well less than the vehicle moves. Where it does not, it
-    replays an autopilot's answers to disturbances that nobody logged, which shows nothing about the vehicle."""
+def _skill(problem: Problem, closed: Mapping[str, float], before: Mapping[str, float], left: Mapping[str, float]) -> bool:
+    """Whether on the axis where they close most the simulator, causes added, errs well less than the vehicle moves, or hardly errs any more.
+    Where it does neither, it replays an autopilot's answers to disturbances that nobody logged, which shows nothing about the vehicle."""
     axis = max(closed, key=lambda a: closed[a])
+    if left[axis] <= HARDLY * before[axis]:
+        return True
     moved = [np.where(part.ok, part.y - (part.y * part.ok).sum((0, 1)) / np.maximum(part.ok.sum((0, 1)), 1), 0.0) for part in problem.parts]
     return left[axis] <= SKILL * axis_weight(problem, moved)[axis]
 

@@ -60,7 +60,8 @@ class Parameter:
 class Effect:
     """One effect as an engineer reads it: where it enters, its equation with source, its parameters, what one sees, what it is
     confused with and what separates it. ``needs``: channels without which it cannot be tested. ``grid``: start points for
-    parameters that linearisation at the null value cannot see (``onset`` as a fraction of the run). ``competes`` False: a tolerance
+    parameters that linearisation at the null value cannot see (``onset`` as a fraction of the run); ``levers``: coordinates of the point
+    where a force acts, which it cannot see either, the one ahead first. ``competes`` False: a tolerance
     that healthy vehicles have, which a diagnosis takes into account and never names."""
 
     name: str
@@ -75,6 +76,7 @@ class Effect:
     axes: tuple[str, ...] = ()
     needs: tuple[str, ...] = ()
     grid: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    levers: tuple[str, ...] = ()
     competes: bool = True
 
     def __post_init__(self) -> None:

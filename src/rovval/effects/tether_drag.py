@@ -23,6 +23,7 @@ EFFECT = Effect(
     signature="opposes the velocity through the water alike in every body direction; grows with tether paid out",
     confused_with=("quadratic_drag", "linear_drag", "current_constant", "inflow_loss"),
     separates="the same speed ahead and sideways: a hull's drag differs, a tether's does not; the log of tether length",
+    levers=("x", "z"),
 )
 ROWS = ("coefficient", "per_length", "ax", "az")
 

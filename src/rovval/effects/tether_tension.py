@@ -25,6 +25,7 @@ EFFECT = Effect(
     signature="a force fixed to north and east, also when the vehicle lies still; a moment if it is attached aft",
     confused_with=("current_constant", "buoyancy_error", "cg_offset"),
     separates="a current's force depends on the vehicle's own speed, a pull's does not: two speeds on two headings",
+    levers=("x", "z"),
 )
 ROWS = ("north", "east", "down", "ax", "az")
 

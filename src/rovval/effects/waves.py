@@ -26,7 +26,7 @@ EFFECT = Effect(
     confused_with=("current_varying", "tether_tension"),
     separates="the same station at two depths; the spectrum",
     needs=("z",),
-    grid={"period": (3.0, 4.5, 6.0, 8.0, 11.0), "direction": (0.0, np.pi / 2), "phase": (0.0, np.pi / 2)},
+    grid={"period": (6.0,), "direction": (-np.pi / 2, 0.0, np.pi / 2, np.pi), "phase": (0.0, np.pi / 2)},
 )
 ROWS = ("velocity", "omega", "k", "north", "east", "phase")
 

@@ -1,0 +1,74 @@
+"""Periods at which what is left of a log swings: where the search for waves and for currents that come and go begins.
+
+A force of a period that is a little off is out of step with the true one after a few hundred seconds, and no slope leads there. So every
+period is tried on a body of one time constant, which needs no simulation: its velocity after a window's start, as a share of the
+residual velocities (north, east, down) of all windows (least squares; Lomb 1976 for samples with gaps).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rovval.data import Array, Flags
+from rovval.diagnose.library import Hypothesis, hypotheses
+from rovval.diagnose.linearise import Linear
+from rovval.diagnose.point import Point
+from rovval.diagnose.problem import Problem
+from rovval.diagnose.stretches import Stretches
+
+VELOCITY = ("u", "v", "w")
+SETTLES_S = 3.0  # time constant of the body: a third of a window of 10 s (`stretches`)
+FINE = 4.0  # periods tried in a whole one over the log: neighbours are a quarter of a turn apart at its end
+
+
+def retuned(problem: Problem, library: list[Hypothesis], point: Point) -> list[Hypothesis]:
+    """The library with the periods of its effects begun from where the residual about ``point`` swings most; as it is where no velocity
+    was measured."""
+    found, kept = lines(problem, point), {h.name for h in library}
+    fresh, _ = hypotheses(problem.parts, periods=[period for period, _ in found])
+    return [h for h in fresh if h.name in kept] if found else library
+
+
+def lines(problem: Problem, point: Point) -> tuple[tuple[float, float], ...]:
+    """(period in s, share of the residual velocities) of every local maximum, the largest share first."""
+    if not all(set(VELOCITY) <= set(part.channels) for part in problem.parts):
+        return ()
+    swung = [_windows(part, one) for part, one in zip(problem.parts, point.linear, strict=True)]
+    seconds = max(float(t.max() - t.min()) for t, _, _ in swung)
+    shortest = 4.0 * problem.parts[0].run.dt
+    rates = np.arange(1.0 / (2.0 * seconds), 1.0 / max(shortest, 2.0), 1.0 / (FINE * seconds))
+    share = np.array([_share(swung, 2.0 * np.pi * rate) for rate in rates])
+    tops = [i for i in range(1, len(rates) - 1) if share[i - 1] < share[i] >= share[i + 1]]
+    return tuple((1.0 / float(rates[i]), float(share[i])) for i in sorted(tops, key=lambda i: -share[i]))
+
+
+def _windows(part: Stretches, linear: Linear) -> tuple[Array, Array, Flags]:
+    """Times (m, n), residual velocities north, east and down (m, n, 3) with their start errors taken out, and where they are known (m, n)."""
+    at = [part.channels.index(c) for c in VELOCITY]
+    ok: Flags = np.asarray(part.ok[..., at].all(axis=-1) & linear.valid[:, None])
+    t = part.time()
+    psi = np.zeros(t.shape)
+    if part.run.measured("psi"):
+        psi = np.nan_to_num(part.run.get("psi")[np.minimum(np.round(t / part.run.dt).astype(int), len(part.run) - 1)])
+    u, v, w = np.moveaxis(np.where(ok[..., None], linear.r[..., at], 0.0), -1, 0)
+    world = np.stack([np.cos(psi) * u - np.sin(psi) * v, np.sin(psi) * u + np.cos(psi) * v, w], axis=-1)
+    return t, _started(t, ok, world), ok
+
+
+def _started(t: Array, ok: Flags, x: Array) -> Array:
+    """Values (m, n, c) without the best multiple of what a wrong start velocity of each window leaves of itself."""
+    fades = np.where(ok, np.exp(-(t - t[:, :1]) / SETTLES_S), 0.0)[..., None]
+    much = (fades * x).sum(axis=1, keepdims=True) / np.maximum((fades**2).sum(axis=1, keepdims=True), 1e-12)
+    return np.where(ok[..., None], x - fades * much, 0.0)
+
+
+def _share(swung: list[tuple[Array, Array, Flags]], omega: float) -> float:
+    """Share of the residual velocities that a force of angular frequency ``omega`` explains."""
+    gram, cross, total = np.zeros((2, 2)), np.zeros((2, 3)), 0.0
+    for t, left, ok in swung:
+        begun = np.exp(1j * omega * t[:, :1] - (t - t[:, :1]) / SETTLES_S)
+        answer = (np.exp(1j * omega * t) - begun) / (1.0 / SETTLES_S + 1j * omega)
+        x = _started(t, ok, np.stack([answer.real, answer.imag], axis=-1)).reshape(-1, 2)
+        y = left.reshape(-1, 3)
+        gram, cross, total = gram + x.T @ x, cross + x.T @ y, total + float((y**2).sum())
+    return float((cross * np.linalg.solve(gram + 1e-12 * np.eye(2), cross)).sum()) / max(total, 1e-300)

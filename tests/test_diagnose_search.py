@@ -1,0 +1,144 @@
+"""Where the search begins: effects whose place, period or size no slope at nothing shows, and fits that would end in the first valley."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from diagnose_case import foreign, merlin, own
+from rovval.diagnose import diagnose
+from rovval.diagnose.admissible import _beyond_the_library
+from rovval.diagnose.confirm import confirm
+from rovval.diagnose.finalists import _half_a_turn_later
+from rovval.diagnose.library import LEVER, Hypothesis, hypotheses
+from rovval.diagnose.problem import Problem, pose
+from rovval.diagnose.separate import Rival
+from rovval.diagnose.settle import healthy_point, resettled, settle
+from rovval.diagnose.stretches import cut_all
+from rovval.diagnose.swings import lines
+from rovval.store import open_run
+from rovval.vehicle import load
+
+
+@functools.cache
+def posed(*effects: str) -> tuple[Problem, list[Hypothesis]]:
+    parts, _ = cut_all([own(effects, 5, 200.0)], merlin(), "fossen", 10.0)
+    library = hypotheses(parts)[0]
+    return pose(parts, library, 0.05), library
+
+
+def slot(problem: Problem, key: str) -> int:
+    return next(i for i, s in enumerate(problem.plant.slots) if s.key == key)
+
+
+@pytest.mark.parametrize("period", [7.7, 12.4])
+def test_the_period_of_waves_is_the_strongest_line(period):
+    p, _ = posed(f"waves:amplitude=1,period={period},direction=2.6,phase=-2.0")
+    (best, share), *others = lines(p, settle(p, p.origin, ()))
+    assert best == pytest.approx(period, rel=0.02)
+    assert share > 0.3 and all(share > 2 * other for _, other in others)
+
+
+def test_a_healthy_log_has_no_line():
+    p, _ = posed()
+    assert max((share for _, share in lines(p, settle(p, p.origin, ()))), default=0.0) < 0.1
+
+
+@pytest.mark.parametrize(
+    ("effect", "name"),
+    [("waves:amplitude=1,period=9.3,direction=2.6,phase=-2.0", "waves"), ("current_varying:north=0.15,east=-0.1,period=83,phase=2.5", "current_varying")],
+)
+def test_what_swings_is_found_whatever_its_period_and_phase(effect, name):
+    document = diagnose([own((effect,), 5, 240.0)], merlin()).document
+    assert [c["effect"] for c in document["causes"]] == [name], document["sentence"]
+    found, true = document["causes"][0]["parameters"]["period"]["value"], float(effect.split("period=")[1].split(",")[0])
+    assert found == pytest.approx(true, rel=0.03) and document["shrinkage"]["total"] > 0.8
+
+
+def test_waves_of_the_independent_plant_are_found(tmp_path: Path):
+    document = diagnose([foreign(tmp_path, (("waves", "", 1.5),), 31, 240.0, 0.03)], merlin()).document
+    assert "waves" in [c["effect"] for c in document["causes"]], document["sentence"]
+
+
+def test_a_negative_amplitude_is_half_a_turn():
+    p, library = posed()
+    h, phase = next(h for h in library if h.name == "waves"), slot(p, "waves.phase")
+    for before, after in ((0.0, np.pi), (np.pi / 2, -np.pi / 2)):
+        start = p.origin.copy()
+        start[phase] = before
+        assert _half_a_turn_later(p, h, start)[phase] == pytest.approx(after)
+        assert start[phase] == before
+
+
+def test_a_pull_may_begin_ahead_or_astern():
+    p, library = posed()
+    x, reach = slot(p, "tether_tension.x"), LEVER * max(float(np.linalg.norm(t.position)) for t in merlin().thruster)
+    starts = [dict(h.at)[x] for h in library if h.name == "tether_tension" and h.at]
+    assert starts == pytest.approx([-min(reach, 2.0), min(reach, 2.0)])
+    document = diagnose([own(("tether_tension:north=250,east=120,x=-1.4",), 5, 200.0)], merlin()).document
+    assert document["causes"][0]["effect"] == "tether_tension", document["sentence"]
+    assert document["causes"][0]["parameters"]["x"]["value"] == pytest.approx(-1.4, abs=0.4)
+
+
+def test_a_long_lag_is_found_though_it_is_no_multiple_of_a_short_one():
+    document = diagnose([own(("velocity_filter_lag:tau=0.9",), 5, 200.0)], merlin()).document
+    assert document["causes"][0]["effect"] == "velocity_filter_lag", document["sentence"]
+
+
+def rolling(folder: Path) -> Problem:
+    from rovval.blind.log import write_csv
+    from rovval.blind.plant import fly
+
+    path = folder / "rolling.csv"
+    write_csv(fly(Path(str(load.__globals__["__file__"])).parent / "library" / "bluerov2_heavy.toml", "rich", [], 12, 150.0, 0.05), path)
+    parts, _ = cut_all([open_run(path, "merlin")], load("bluerov2_heavy"), "fossen", 10.0)
+    return pose(parts, hypotheses(parts)[0], 0.05)
+
+
+def test_the_beginning_first_ends_no_higher(tmp_path: Path):
+    """A vehicle that rolls freely on a log of the independent plant: a fit of whole windows from far away stops in the first valley."""
+    p = rolling(tmp_path)
+    far, near = settle(p, p.origin, ()), healthy_point(p)
+    assert near.profile() <= 1.02 * far.profile()
+
+
+def test_no_cause_gains_by_another_start():
+    p, _ = posed("inflow_loss:loss=0.4")
+    healthy, slots = settle(p, p.origin, ()), (slot(p, "inflow_loss.loss"),)
+    cause = confirm(p, p.origin, slots)
+    again = resettled(p, healthy, cause.point, slots)
+    assert again.profile() <= healthy.profile()
+    assert all(again.beta[s] == p.origin[s] for s in slots)
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "value", "beyond"),
+    [
+        ("cross_drag", "cross_drag.sway_to_yaw", -0.5, True), ("cross_drag", "cross_drag.sway_to_yaw", -0.3, False),
+        ("quadratic_drag[surge]", "quadratic_drag[surge].scale", -0.95, False), ("quadratic_drag[surge]", "quadratic_drag[surge].scale", 9.0, True),
+        ("thruster_degraded[HFP]", "thruster_degraded[HFP].loss", 1.0, False), ("thruster_degraded[HFP]", "thruster_degraded[HFP].loss", -0.5, True),
+        ("tether_tension", "tether_tension.x", 2.0, False),
+    ],
+)  # fmt: skip
+def test_a_size_at_the_end_of_its_search_is_no_cause_unless_it_is_the_end_of_the_thing(name, key, value, beyond):
+    p, library = posed()
+    h, where = next(h for h in library if h.name == name), slot(p, key)
+    beta = p.origin.copy()
+    beta[where] = value
+    bounds = p.plant.slots[where].parameter
+    fitted: Any = SimpleNamespace(beta=beta, at_bound=(where,) if value in (bounds.low, bounds.high) else ())
+    assert _beyond_the_library(p, Rival(h, fitted, 100.0, 0.5, 0.0)) is beyond
+
+
+def test_a_channel_that_never_changes_is_no_measurement():
+    run = own((), 5, 100.0)
+    stuck = replace(run, values={**run.values, "u": np.full(len(run), 0.5)})
+    document = diagnose([stuck], merlin()).document
+    assert "u" not in document["gap"]["axes"] and any("all along" in row["detail"] for row in document["log"])
+    assert document["verdict"] == "no_gap", document["sentence"]
