@@ -16,6 +16,7 @@ from rovval.diagnose.cleaned import ANGLES
 from rovval.diagnose.stretches import VELOCITY_CHANNELS, Stretches, difference, predicted
 
 POSE_INDEX = {6: 3, 7: 4, 8: 2, 9: 5}  # start states after the six velocities: roll, pitch, depth, heading
+AT_ONCE = 60  # windows that are simulated before their slopes are taken: ten minutes of log, some 0.3 GB
 LANES = 20_000  # lanes a call, to bound memory (about 200 MB)
 STEP = 0.25  # finite-difference step as a share of a parameter's typical size
 UNLOGGED = 0.3  # m/s, rad/s, rad: start of what was neither logged nor follows from the pose: anything slow is possible (chosen)
@@ -66,29 +67,35 @@ def linearise(
     stretches: Stretches, beta: Array, columns: tuple[int, ...], directions: Sequence[Direction] = (), coarse: tuple[int, ...] = ()
 ) -> Linear:
     """Residual and sensitivities about ``beta`` (k,) for every window; columns ``coarse``, behind the others, by one-sided differences."""
-    states = _state_steps(stretches)
+    states, drifting, m = _state_steps(stretches), _drifting(stretches), stretches.count
     lanes = _lanes(stretches, beta, states, columns, directions) + _one_sided(stretches, beta, coarse)
-    windows = stretches.count
-    b = np.repeat(np.stack([lane.beta for lane in lanes]), windows, axis=0)
-    nu = np.concatenate([stretches.nu0 + lane.nu for lane in lanes])
-    eta = np.concatenate([stretches.eta0 + lane.eta for lane in lanes])
-    out, fine = simulate_windows(stretches, b, nu, eta, np.tile(np.arange(windows), len(lanes)))
-    out = out.reshape(len(lanes), windows, stretches.steps + 1, len(stretches.channels))
-    nominal = out[0]
     ids = (*columns, *(d.id for d in directions), *coarse)
-    J, S = np.zeros((*nominal.shape, len(states) + len(_drifting(stretches)))), np.zeros((*nominal.shape, len(ids)))
-    for i, channel in enumerate(_drifting(stretches)):
+    shape = (m, stretches.steps + 1, len(stretches.channels))
+    r, S, J, valid = np.zeros(shape), np.zeros((*shape, len(ids))), np.zeros((*shape, len(states) + len(drifting))), np.zeros(m, dtype=bool)
+    for i, channel in enumerate(drifting):
         J[..., channel, len(states) + i] = 1.0
     place = {column: i for i, column in enumerate(ids)}
-    for i, lane in enumerate(lanes):
-        if lane.state >= 0:
-            J[..., lane.state] = difference(stretches, out[i], nominal) / lane.step
-        elif lane.column >= 0 and lane.step:
-            S[..., place[lane.column]] = difference(stretches, out[i], out[lane.against]) / lane.step
+    for begin in range(0, m, AT_ONCE):
+        which = np.arange(begin, min(begin + AT_ONCE, m))
+        out, valid[which] = _simulated(stretches, lanes, which)
+        for i, lane in enumerate(lanes):
+            if lane.state >= 0:
+                J[which, ..., lane.state] = difference(stretches, out[i], out[0]) / lane.step
+            elif lane.column >= 0 and lane.step:
+                S[which, ..., place[lane.column]] = difference(stretches, out[i], out[lane.against]) / lane.step
+        r[which] = np.where(stretches.ok[which], difference(stretches, stretches.y[which], out[0]), 0.0)
     if stretches.pushed is not None:
         J = np.concatenate([J, stretches.pushed], axis=-1)
-    r = np.where(stretches.ok, difference(stretches, stretches.y, nominal), 0.0)
-    return Linear(r, S, J, ids, np.asarray(fine.reshape(len(lanes), windows).all(axis=0)))
+    return Linear(r, S, J, ids, valid)
+
+
+def _simulated(stretches: Stretches, lanes: Sequence[Lane], which: np.ndarray) -> tuple[Array, np.ndarray]:
+    """Every lane of the windows ``which``: predicted channels (lanes, windows, n, c), and which windows did not stop in any lane."""
+    b = np.repeat(np.stack([lane.beta for lane in lanes]), len(which), axis=0)
+    nu = np.concatenate([stretches.nu0[which] + lane.nu for lane in lanes])
+    eta = np.concatenate([stretches.eta0[which] + lane.eta for lane in lanes])
+    out, fine = simulate_windows(stretches, b, nu, eta, np.tile(which, len(lanes)))
+    return out.reshape(len(lanes), len(which), *out.shape[1:]), np.asarray(fine.reshape(len(lanes), len(which)).all(axis=0))
 
 
 @dataclass(frozen=True, slots=True)

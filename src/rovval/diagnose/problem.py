@@ -24,7 +24,7 @@ from rovval.simulate import carried_effects
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """``parts`` one per run; ``origin`` (k,) the parameters it starts from; ``at_null`` the linearisation at the nominal vehicle, ``dynamic`` and
+    """``parts`` one per run; ``origin`` (k,) the parameters it starts from; ``at_null`` residuals and nuisances at the nominal vehicle, ``dynamic`` and
     ``data`` the products there (without and with parity) in the metric of ``white`` (n, c) and disturbances, ``gap`` and ``gap_data`` the same in
     that of ``variance`` (n, c), in which the gap is told and no disturbance taken out; ``inflation`` the design effect of autocorrelated
     residuals; ``disturbance`` what pushed the vehicle that nobody logged."""
@@ -71,8 +71,9 @@ def pose(parts: tuple[Stretches, ...], library: Sequence[Hypothesis], slop: floa
     gap = joined_of(seen.parts, seen.linear, seen.variance, state_spread)
     checks = tuple(parity(part, columns) for part in parts)
     kinematic = joined([check.moved(origin, dynamic.columns).products(seen.inflation) for check in checks])
+    at_null = tuple(replace(one, S=one.S[..., :0].copy(), columns=()) for one in seen.linear)  # the slopes are the bulk of a problem
     return Problem(
-        seen.parts, origin, seen.variance, seen.white, prior, seen.linear, dynamic, dynamic + kinematic, gap, gap + kinematic, checks, folds,
+        seen.parts, origin, seen.variance, seen.white, prior, at_null, dynamic, dynamic + kinematic, gap, gap + kinematic, checks, folds,
         seen.inflation, run_of_window, seen.disturbance,
     )  # fmt: skip
 

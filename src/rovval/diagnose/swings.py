@@ -18,7 +18,8 @@ from rovval.diagnose.stretches import Stretches
 
 VELOCITY = ("u", "v", "w")
 SETTLES_S = 3.0  # time constant of the body: a third of a window of 10 s (`stretches`)
-FINE = 4.0  # periods tried in a whole one over the log: neighbours are a quarter of a turn apart at its end
+FINE = 3.0  # rates tried in one turn over the log: neighbours are a third of a turn apart at its end
+SHORTEST_S = 2.0  # the shortest period of an effect; ten samples of it are enough
 
 
 def retuned(problem: Problem, library: list[Hypothesis], point: Point) -> list[Hypothesis]:
@@ -35,8 +36,7 @@ def lines(problem: Problem, point: Point) -> tuple[tuple[float, float], ...]:
         return ()
     swung = [_windows(part, one) for part, one in zip(problem.parts, point.linear, strict=True)]
     seconds = max(float(t.max() - t.min()) for t, _, _ in swung)
-    shortest = 4.0 * problem.parts[0].run.dt
-    rates = np.arange(1.0 / (2.0 * seconds), 1.0 / max(shortest, 2.0), 1.0 / (FINE * seconds))
+    rates = np.arange(1.0 / (2.0 * seconds), 1.0 / SHORTEST_S, 1.0 / (FINE * seconds))
     share = np.array([_share(swung, 2.0 * np.pi * rate) for rate in rates])
     tops = [i for i in range(1, len(rates) - 1) if share[i - 1] < share[i] >= share[i + 1]]
     return tuple((1.0 / float(rates[i]), float(share[i])) for i in sorted(tops, key=lambda i: -share[i]))
@@ -44,13 +44,13 @@ def lines(problem: Problem, point: Point) -> tuple[tuple[float, float], ...]:
 
 def _windows(part: Stretches, linear: Linear) -> tuple[Array, Array, Flags]:
     """Times (m, n), residual velocities north, east and down (m, n, 3) with their start errors taken out, and where they are known (m, n)."""
-    at = [part.channels.index(c) for c in VELOCITY]
-    ok: Flags = np.asarray(part.ok[..., at].all(axis=-1) & linear.valid[:, None])
-    t = part.time()
+    at, every = [part.channels.index(c) for c in VELOCITY], max(round(SHORTEST_S / 10.0 / part.run.dt), 1)
+    ok: Flags = np.asarray(part.ok[:, ::every, at].all(axis=-1) & linear.valid[:, None])
+    t = part.time()[:, ::every]
     psi = np.zeros(t.shape)
     if part.run.measured("psi"):
         psi = np.nan_to_num(part.run.get("psi")[np.minimum(np.round(t / part.run.dt).astype(int), len(part.run) - 1)])
-    u, v, w = np.moveaxis(np.where(ok[..., None], linear.r[..., at], 0.0), -1, 0)
+    u, v, w = np.moveaxis(np.where(ok[..., None], linear.r[:, ::every, at], 0.0), -1, 0)
     world = np.stack([np.cos(psi) * u - np.sin(psi) * v, np.sin(psi) * u + np.cos(psi) * v, w], axis=-1)
     return t, _started(t, ok, world), ok
 

@@ -8,7 +8,7 @@ what the unexplained force varies.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -68,8 +68,7 @@ def forces(problem: Problem, point: Point) -> Forces:
 
 def bare_forces(problem: Problem) -> Forces:
     """The same about the vehicle as it is, with nothing beside them: what the gap itself looks like."""
-    still = tuple(replace(one, S=one.S[..., :0], columns=()) for one in problem.at_null)
-    return _beside(problem, problem.origin, still, np.zeros(0), np.zeros(0))
+    return _beside(problem, problem.origin, problem.at_null, np.zeros(0), np.zeros(0))
 
 
 def _beside(problem: Problem, beta: Array, linear: Sequence[Linear], precision: Array, pull: Array) -> Forces:
