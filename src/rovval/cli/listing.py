@@ -126,6 +126,7 @@ def _effect(name: str) -> Shown:
         f"what separates it: {effect.separates}",
     ]
     lines += [f"needs: {', '.join(effect.needs)}"] if effect.needs else []
+    lines += [] if effect.competes else ["a tolerance that healthy vehicles have: a diagnosis takes it into account and never names it as a cause"]
     lines += ["", "use: " + ", ".join(uses) + (f"  (per {effect.per}: {', '.join(target)})" if target else "")]
     return "\n".join(lines), lambda: _effect_document(effect)
 
