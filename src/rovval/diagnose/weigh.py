@@ -27,6 +27,7 @@ from rovval.diagnose.unknown import Forces, forces
 from rovval.diagnose.wavering import drifting, wavering
 
 BETTER = 0.9  # of a cause's evidence: a generic force that has more is as near to the truth (chosen)
+FORMLESS = 20.0  # twice the log Bayes factor of what is beside a cause, from which it is more than the form of an equation (chosen)
 ACTING = 0.15  # of what a cause closes: the axes on which it acts
 HARMS = 0.25  # of what causes close in all: a cause that opens more on one axis is the least bad (chosen)
 SKILL = 0.5  # of the squared motion: an axis on which more is left is not simulated at all (chosen)
@@ -75,7 +76,7 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
     varies = wavering(problem, final, selection.named) if many else {}
     unsteady = _unsteady(problem, selection, final, varies) if many else ()
     broken = not skill or strained > BROKEN or harmful or max(varies.values(), default=0.0) > max(WAVERS * total, LEAST_EVIDENCE)
-    least_bad = outdone or broken or max(beside, excess) > form_share(problem.blocks) * total
+    least_bad = outdone or broken or max(beside, excess) > max(form_share(problem.blocks) * total, FORMLESS)
     kinematic = float((problem.gap_data.c - problem.gap.c).sum()) > float(problem.gap.c.sum())
     parity_led = kinematic and any(of_sensor(n) for n in selection.named)
     sure = _shrinks(problem, final, before, axes) and strained <= STRAINED

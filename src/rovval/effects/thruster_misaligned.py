@@ -10,7 +10,7 @@ import numpy as np
 from rovval.effects import Effect, Parameter
 from rovval.effects._lanes import Array, Lanes
 
-SOURCE = "1 to 10 degrees (diagnosis.md A10)"
+SOURCE = "1 to 10 degrees (diagnosis.md A10); the bounds hold one that was knocked round or mounted across"
 
 EFFECT = Effect(
     name="thruster_misaligned",
@@ -19,8 +19,8 @@ EFFECT = Effect(
     equation="e_i <- e_i turned by yaw about the body's z axis, then by tilt about the horizontal axis across e_i (about x for a vertical "
     "thruster, whose yaw turns about y); thrust and moment follow (thesis 3.15; diagnosis.md A10).",
     parameters=(
-        Parameter("yaw", "rad", -0.6, 0.6, 0.0, 0.05, SOURCE),
-        Parameter("tilt", "rad", -0.6, 0.6, 0.0, 0.05, SOURCE),
+        Parameter("yaw", "rad", -1.4, 1.4, 0.0, 0.05, SOURCE),
+        Parameter("tilt", "rad", -1.4, 1.4, 0.0, 0.05, SOURCE),
     ),
     per="thruster",
     signature="a force across that thruster, growing with its thrust",
