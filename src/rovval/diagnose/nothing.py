@@ -9,7 +9,7 @@ from rovval.diagnose.phrases import family, size, value, whole
 from rovval.diagnose.together import LEAST_EVIDENCE
 from rovval.diagnose.tolerance import SENSORS
 
-OPEN = 2.0 / 3.0  # share of a gap that neither noise nor slop accounts for, from which "no gap" would say too much (some forty healthy logs of opened sets: 0.51 at most)
+OPEN = 2.0 / 3.0  # share of a gap that neither noise nor slop accounts for, from which "no gap" would say too much (healthy logs: 0.51 at most)
 NEAR_GAIN, NEAR_EVIDENCE = 0.3, 2.0  # chosen: what closes as much of the gap, with evidence at all, is told though it is not named
 
 
