@@ -68,18 +68,19 @@ def _starts(
     grids = _grids(plant, effect, slots, parts, periods)
     if not grids:
         near = Hypothesis(name, name, slots, slots, tuple(PRIOR_WIDTH * plant.slots[s].parameter.typical for s in slots))
-        return [near, *_far(plant, name, effect, slots, next_id), *_levers(plant, name, effect, slots, next_id)]
-    linear = tuple(s for s in slots if s not in grids)
+        far = _far(plant, name, effect, slots, next_id)
+        return [near, *far, *_levers(plant, name, effect, slots, next_id + len(far))]
+    own = tuple(s for s in slots if s not in grids) or (-1,)
     points = list(product(*grids.values()))
     chosen = points if len(points) <= MOST_STARTS else [points[i] for i in np.linspace(0, len(points) - 1, MOST_STARTS).astype(int)]
-    found = []
-    for number, point in enumerate(chosen):
-        at = tuple(zip(grids, point, strict=True))
-        own = linear or (-1,)
-        directions = tuple(Direction(next_id + number * len(own) + i, at, slot) for i, slot in enumerate(own))
-        sd = tuple(PRIOR_WIDTH * (plant.slots[s].parameter.typical if s >= 0 else 0.5) for s in own)
-        found.append(Hypothesis(name, f"{name}@{number}", slots, tuple(d.id for d in directions), sd, at, directions))
-    return found
+    return [_begun(plant, f"{name}@{i}", slots, own, tuple(zip(grids, point, strict=True)), next_id + i * len(own)) for i, point in enumerate(chosen)]
+
+
+def _begun(plant: Plant, label: str, slots: tuple[int, ...], own: tuple[int, ...], at: tuple[tuple[int, float], ...], next_id: int) -> Hypothesis:
+    """A hypothesis whose slots ``own`` are free (-1: the whole change) where the others are moved to ``at``."""
+    directions = tuple(Direction(next_id + i, at, slot) for i, slot in enumerate(own))
+    sd = tuple(PRIOR_WIDTH * (plant.slots[s].parameter.typical if s >= 0 else 0.5) for s in own)
+    return Hypothesis(label.partition("@")[0], label, slots, tuple(d.id for d in directions), sd, at, directions)
 
 
 def _far(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], next_id: int) -> list[Hypothesis]:
@@ -88,14 +89,9 @@ def _far(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...]
     found = list[Hypothesis]()
     for slot in slots:
         p = plant.slots[slot].parameter
-        for size in FAR.get(effect.name, ()):
-            value = p.null + size * p.typical
+        for value in (p.null + size * p.typical for size in FAR.get(effect.name, ())):
             if p.low <= value <= p.high:
-                number = len(found)
-                at = ((slot, value),)
-                found.append(
-                    Hypothesis(name, f"{name}@far{number}", slots, (next_id + number,), (0.5 * PRIOR_WIDTH,), at, (Direction(next_id + number, at, -1),))
-                )
+                found.append(_begun(plant, f"{name}@far{len(found)}", slots, (-1,), ((slot, value),), next_id + len(found)))
     return found
 
 
@@ -103,16 +99,12 @@ def _levers(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, .
     """Starting points with the force well away from the origin, `LEVER` of the thrusters' reach ahead or astern: a force that is not there
     yet turns nothing, wherever it would act, and once it is there the other levers show."""
     levers = [s for s in slots if plant.slots[s].parameter.name in effect.levers]
-    own = [s for s in slots if s not in levers]
+    if not levers:
+        return []
+    own, p = tuple(s for s in slots if s not in levers), plant.slots[levers[0]].parameter
     reach = LEVER * max(float(np.linalg.norm(t.position)) for t in plant.vehicle.thruster)
-    found = list[Hypothesis]()
-    for number, x in enumerate((-reach, reach) if levers else ()):
-        p = plant.slots[levers[0]].parameter
-        at = ((levers[0], float(np.clip(x, p.low, p.high))),)
-        directions = tuple(Direction(next_id + number * len(own) + i, at, slot) for i, slot in enumerate(own))
-        sd = tuple(PRIOR_WIDTH * plant.slots[s].parameter.typical for s in own)
-        found.append(Hypothesis(name, f"{name}@lever{number}", slots, tuple(d.id for d in directions), sd, at, directions))
-    return found
+    ends = [((levers[0], float(np.clip(x, p.low, p.high))),) for x in (-reach, reach)]
+    return [_begun(plant, f"{name}@lever{i}", slots, own, at, next_id + i * len(own)) for i, at in enumerate(ends)]
 
 
 def _grids(
@@ -127,9 +119,9 @@ def _grids(
             first, last = float(parts[0].start[0]), float(parts[0].start[-1])
             share = np.arange(1, ONSETS + 1) / (ONSETS + 1)
             found[slot] = tuple(float((first + (last - first) * s) * parts[0].run.dt) for s in share)
-        elif parameter.name == "period" and periods:
-            others = int(np.prod([len(values) for name, values in effect.grid.items() if name != "period"]))
-            found[slot] = tuple([p for p in periods if parameter.low <= p <= parameter.high][: min(LINES, max(MOST_STARTS // others, 1))])
         elif parameter.name in effect.grid:
             found[slot] = tuple(v for v in effect.grid[parameter.name] if parameter.low <= v <= parameter.high)
+            if parameter.name == "period" and (here := [p for p in periods if parameter.low <= p <= parameter.high]):
+                others = int(np.prod([len(values) for name, values in effect.grid.items() if name != "period"]))
+                found[slot] = tuple(here[: min(LINES, max(MOST_STARTS // others, 1))])
     return {slot: values for slot, values in found.items() if values}
