@@ -123,7 +123,7 @@ def test_no_cause_gains_by_another_start():
         ("cross_drag", "cross_drag.sway_to_yaw", -0.5, True), ("cross_drag", "cross_drag.sway_to_yaw", -0.3, False),
         ("quadratic_drag[surge]", "quadratic_drag[surge].scale", -0.95, False), ("quadratic_drag[surge]", "quadratic_drag[surge].scale", 9.0, True),
         ("thruster_degraded[HFP]", "thruster_degraded[HFP].loss", 1.0, False), ("thruster_degraded[HFP]", "thruster_degraded[HFP].loss", -0.5, True),
-        ("tether_tension", "tether_tension.x", 2.0, False),
+        ("tether_tension", "tether_tension.x", 2.0, False), ("tether_drag", "tether_drag.per_length", 0.0, False), ("waves", "waves.amplitude", 3.0, True),
     ],
 )  # fmt: skip
 def test_a_size_at_the_end_of_its_search_is_no_cause_unless_it_is_the_end_of_the_thing(name, key, value, beyond):

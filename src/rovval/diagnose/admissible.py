@@ -67,11 +67,13 @@ def _beyond_tolerance(problem: Problem, rival: Rival) -> bool:
 
 
 def _beyond_the_library(problem: Problem, rival: Rival) -> bool:
-    """Whether a size rests at a bound of its search: the fit would go on, to where no vehicle is. A coefficient may well vanish, and thrust too."""
+    """Whether a size rests at a bound of its search: the fit would go on, to where no vehicle is. A coefficient may well vanish, thrust too, and what a
+    log does not show rests where nothing is at work."""
     slots = {s: problem.plant.slots[s].parameter for s in rival.hypothesis.slots}
     levers = effects.load(problem.plant.slots[rival.hypothesis.slots[0]].effect).levers
-    at = {s: (slots[s], float(rival.fitted.beta[s])) for s in rival.fitted.at_bound if s in slots and slots[s].name not in (*PLACING, *levers)}
-    return any(not (p.name == "scale" and x <= p.low <= GONE) and not (p.name == "loss" and x >= p.high >= DEAD) for p, x in at.values())
+    sized = [(slots[s], float(rival.fitted.beta[s])) for s in rival.fitted.at_bound if s in slots and slots[s].name not in (*PLACING, *levers)]
+    ended = (x != p.null and not (p.name == "scale" and x <= p.low <= GONE) and not (p.name == "loss" and x >= p.high >= DEAD) for p, x in sized)
+    return any(ended)
 
 
 def _from_the_start(problem: Problem, rival: Rival) -> bool:
