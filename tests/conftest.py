@@ -5,6 +5,9 @@ from pathlib import Path
 
 import pytest
 
+for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  # read once, when numpy is first imported: its matrices are
+    os.environ.setdefault(threads, "1")  # small here, and threads that wait for one another cost three times the work itself
+
 ROOT = Path(__file__).parent.parent
 REAL_DATA = ROOT.parent / "shared" / "data"
 
