@@ -34,7 +34,7 @@ def sensed(run: Run) -> tuple[Run, tuple[Finding, ...]]:
     for name in (c for c in RATES if run.measured(c)):
         if _never_changes(run.get(name)):
             reasons[name] = np.full_like(reasons[name], Reason.SATURATED)
-            found.append(Finding("saturated", name, f"says {values[name][0]:.4g} (SI units) all along, which no sensor does, and was left out"))
+            found.append(Finding("saturated", name, f"says {np.nanmax(run.get(name)):.4g} (SI units) all along, which no sensor does, and was left out"))
             continue
         stop = at_stop(run.get(name))
         if stop.any():

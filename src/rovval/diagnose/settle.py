@@ -19,7 +19,7 @@ from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem, beside, carried, products_about
 from rovval.plant import Plant
 
-ROUNDS, FEW = 5, 3
+ROUNDS, FEW = 5, 3  # damped steps of a fit, and of one that only has to show whether it is worth more
 LITTLE = 1.0  # twice the log posterior: a smaller gain is not worth another step
 FAR, ANEW = 10.0, 2  # the same, from which slop's slopes are made anew, and how often at most
 SHORTER = (1.0, 0.4, 0.1)  # shares of the Gauss-Newton step that are tried
