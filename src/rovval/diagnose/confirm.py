@@ -16,10 +16,9 @@ from rovval.diagnose.contest import Fold, losses
 from rovval.diagnose.linearise import Linear
 from rovval.diagnose.point import Point, whole_evidence
 from rovval.diagnose.problem import Problem, gap_at
-from rovval.diagnose.settle import moved, settle
+from rovval.diagnose.settle import FEW, moved, settle
 
 INTERVAL = 0.90
-ROUGH = 3  # rounds
 PLACING = ("onset", "period", "phase", "direction", "height", "reach", "radius", "depth")
 ONSET_SEARCH_S = (-12.0, -6.0, -3.0, -1.5, 1.5, 3.0, 6.0, 12.0)
 
@@ -49,7 +48,7 @@ def confirm(problem: Problem, start: Array, slots: tuple[int, ...]) -> Confirmed
 
 def roughly(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[Linear, ...]) -> Confirmed:
     """As `confirm`, quicker: slop's slopes from nearby, few rounds, an onset where it began."""
-    return _scored(problem, settle(problem, start, slots, near, ROUGH), slots)
+    return _scored(problem, settle(problem, start, slots, near, FEW), slots)
 
 
 def _onset_tuned(problem: Problem, point: Point, slots: tuple[int, ...]) -> Point:
