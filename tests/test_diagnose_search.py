@@ -14,7 +14,7 @@ import pytest
 from diagnose_case import foreign, merlin, own
 from rovval.diagnose import diagnose
 from rovval.diagnose.admissible import _beyond_the_library
-from rovval.diagnose.confirm import confirm
+from rovval.diagnose.confirm import confirm, errors
 from rovval.diagnose.finalists import _half_a_turn_later
 from rovval.diagnose.library import LEVER, Hypothesis, hypotheses
 from rovval.diagnose.problem import Problem, pose
@@ -142,3 +142,52 @@ def test_a_channel_that_never_changes_is_no_measurement():
     document = diagnose([stuck], merlin()).document
     assert "u" not in document["gap"]["axes"] and any("all along" in row["detail"] for row in document["log"])
     assert document["verdict"] == "no_gap", document["sentence"]
+
+
+@pytest.mark.parametrize(
+    ("planted", "name"),
+    [
+        ((("density_gradient", "", -0.8),), "density_gradient"), ((("thruster_deadband", "", 2.3),), "thruster_deadband"),
+        ((("crossflow_loss", "", 1.5),), "crossflow_loss"), ((("current_shear", "", 1.2),), "current_shear"),
+    ],
+)  # fmt: skip
+def test_what_is_large_or_has_its_datum_in_the_log_is_found(tmp_path: Path, planted, name):
+    """A loss or a dead band beyond what is usual, and a change with depth about a depth that the log goes through; independent plant."""
+    document = diagnose([foreign(tmp_path, planted, 41, 240.0, 0.03)], merlin()).document
+    assert name in document["causes"][0]["group"][:2], document["sentence"]
+
+
+def test_a_change_with_depth_begins_at_depths_of_the_log():
+    p, library = posed()
+    z = np.concatenate([part.eta0[:, 2] for part in p.parts])
+    for name in ("density_gradient", "current_shear"):
+        data = [dict(h.at)[slot(p, f"{name}.depth")] for h in library if h.name == name]
+        assert len(data) == 3 and z.min() < min(data) < max(data) < z.max()
+
+
+def test_a_drag_that_is_gone_altogether_is_significant_though_it_rests_on_its_bound():
+    """The slope that is left on a bound belongs to no window: it widens no interval."""
+    p, _ = posed("linear_drag[sway]:scale=-0.95")
+    where = slot(p, "linear_drag[sway].scale")
+    start = p.origin.copy()
+    start[where] = -0.95
+    fitted = confirm(p, start, (where,))
+    point, first = fitted.point, np.arange(len(fitted.point.columns)) == 0
+    pushed = replace(point.data, b=point.data.b - first * 0.2 * point.curvature[0, 0])
+    on_bound = replace(fitted, point=replace(point, data=pushed, side=np.where(first, -1.0, 0.0)))
+    assert errors(p, on_bound)[0] < 1.5 * errors(p, fitted)[0]
+
+
+def test_an_offset_along_one_axis_is_tried_by_itself():
+    """Three parameters free for one that is off are evidence lost: beside a strong cause a small offset shows only alone."""
+    p, library = posed()
+    assert {h.slots for h in library if h.label in ("cg_offset@x", "cg_offset@y", "cg_offset@z")} == {(slot(p, f"cg_offset.{c}"),) for c in "xyz"}
+    document = diagnose([own(("cg_offset:y=0.012",), 5, 200.0)], merlin()).document
+    (cause,) = document["causes"]
+    assert cause["effect"] == "cg_offset" and cause["parameters"]["y"]["value"] == pytest.approx(0.012, rel=0.15)
+
+
+def test_thrust_across_a_stream_is_lost_and_never_turned_round():
+    from rovval.effects.crossflow_loss import thrust
+
+    assert thrust(1.0, 100.0, np.array([0.0, 0.5, 1.0, 3.0])).tolist() == [100.0, 50.0, 0.0, 0.0]

@@ -95,6 +95,7 @@ def errors(problem: Problem, fitted: Confirmed) -> Array:
     point, k = fitted.point, len(fitted.slots)
     bread = np.linalg.inv(point.curvature)
     score = point.data.b - np.einsum("wij,j->wi", point.data.A, point.solved(point.curvature, point.slope))
+    score -= score.mean(axis=0)  # not zero on a bound, which takes up the rest
     pairs = score[: len(score) // 2 * 2].reshape(-1, 2, len(bread)).sum(axis=1)
     half = bread[:k] @ pairs.T
     sandwich = (half**2).sum(axis=1) * (len(score) / max(2 * len(pairs), 1)) * len(pairs) / max(len(pairs) - k, 1)

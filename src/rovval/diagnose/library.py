@@ -22,6 +22,7 @@ FAR = {  # typical sizes of starting points away from the null value (chosen)
     "cg_offset": (-5.0, -2.0, 2.0, 5.0), "time_offset": (-8.0, -4.0, 4.0, 8.0), "thrust_lag": (3.0,), "velocity_filter_lag": (3.0,),
 }  # fmt: skip
 LEVER = 0.7  # of the furthest thruster's distance: where a force may act (chosen)
+DEPTHS = (0.25, 0.5, 0.75)  # quantiles of a log's depth where what changes with depth may have its datum (chosen)
 LINES = 3  # periods that an effect begins from
 MOST_STARTS = 12  # of a hypothesis with several such parameters
 PRIOR_WIDTH = 4.0  # wide prior, in typical sizes: keeps a parameter that the log does not see from running away
@@ -69,7 +70,7 @@ def _starts(
     if not grids:
         near = Hypothesis(name, name, slots, slots, tuple(PRIOR_WIDTH * plant.slots[s].parameter.typical for s in slots))
         far = _far(plant, name, effect, slots, next_id)
-        return [near, *far, *_levers(plant, name, effect, slots, next_id + len(far))]
+        return [near, *_alone(plant, name, effect, slots), *far, *_levers(plant, name, effect, slots, next_id + len(far))]
     own = tuple(s for s in slots if s not in grids) or (-1,)
     points = list(product(*grids.values()))
     chosen = points if len(points) <= MOST_STARTS else [points[i] for i in np.linspace(0, len(points) - 1, MOST_STARTS).astype(int)]
@@ -81,6 +82,12 @@ def _begun(plant: Plant, label: str, slots: tuple[int, ...], own: tuple[int, ...
     directions = tuple(Direction(next_id + i, at, slot) for i, slot in enumerate(own))
     sd = tuple(PRIOR_WIDTH * (plant.slots[s].parameter.typical if s >= 0 else 0.5) for s in own)
     return Hypothesis(label.partition("@")[0], label, slots, tuple(d.id for d in directions), sd, at, directions)
+
+
+def _alone(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...]) -> list[Hypothesis]:
+    """Each parameter without the others, where they may be apart: three that are free for one that is off are evidence lost."""
+    chosen = [(s, plant.slots[s].parameter) for s in slots if effect.apart and len(slots) > 1]
+    return [Hypothesis(name, f"{name}@{p.name}", (s,), (s,), (PRIOR_WIDTH * p.typical,)) for s, p in chosen]
 
 
 def _far(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], next_id: int) -> list[Hypothesis]:
@@ -107,6 +114,12 @@ def _levers(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, .
     return [_begun(plant, f"{name}@lever{i}", slots, own, at, next_id + i * len(own)) for i, at in enumerate(ends)]
 
 
+def _depths(parts: Sequence[Stretches]) -> tuple[float, ...]:
+    """Depths (m, down) high, in the middle and low in what the logs went through: a datum far outside makes a change with depth look like a constant."""
+    z = np.concatenate([part.eta0[:, 2] for part in parts])
+    return tuple(dict.fromkeys(float(d) for d in np.quantile(z, DEPTHS)))
+
+
 def _grids(
     plant: Plant, effect: effects.Effect, slots: tuple[int, ...], parts: Sequence[Stretches], periods: Sequence[float]
 ) -> dict[int, tuple[float, ...]]:
@@ -119,6 +132,8 @@ def _grids(
             first, last = float(parts[0].start[0]), float(parts[0].start[-1])
             share = np.arange(1, ONSETS + 1) / (ONSETS + 1)
             found[slot] = tuple(float((first + (last - first) * s) * parts[0].run.dt) for s in share)
+        elif parameter.name == "depth":
+            found[slot] = _depths(parts)
         elif parameter.name in effect.grid:
             found[slot] = tuple(v for v in effect.grid[parameter.name] if parameter.low <= v <= parameter.high)
             if parameter.name == "period" and (here := [p for p in periods if parameter.low <= p <= parameter.high]):

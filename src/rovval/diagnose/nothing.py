@@ -10,7 +10,8 @@ from rovval.diagnose.together import LEAST_EVIDENCE
 from rovval.diagnose.tolerance import SENSORS
 
 OPEN = 2.0 / 3.0  # share of a gap that neither noise nor slop accounts for, from which "no gap" would say too much (healthy logs: 0.51 at most)
-NEAR_GAIN, NEAR_EVIDENCE = 0.3, 2.0  # chosen: what closes as much of the gap, with evidence at all, is told though it is not named
+NEAR_GAIN, NEAR_EVIDENCE = 0.3, 2.0  # chosen: what closes as much of the gap, with evidence at all, is told though it is not named,
+LESS_GAIN, MORE_EVIDENCE = 0.15, 20.0  # and what closes less with more evidence
 
 
 def open_gap(document: Mapping[str, Any]) -> bool:
@@ -74,7 +75,8 @@ def _nearest(document: Mapping[str, Any]) -> Mapping[str, Any] | None:
     rounds = document.get("finalists") or ()
     if document.get("verdict") != "no_gap" or not rounds:
         return None
-    near = [r for r in rounds[0] if (r.get("gain") or 0.0) >= NEAR_GAIN and (r.get("evidence") or 0.0) > NEAR_EVIDENCE]
+    weighed = [(r, r.get("gain") or 0.0, r.get("evidence") or 0.0) for r in rounds[0]]
+    near = [r for r, gain, worth in weighed if (gain >= NEAR_GAIN and worth > NEAR_EVIDENCE) or (gain >= LESS_GAIN and worth > MORE_EVIDENCE)]
     return max(near, key=lambda r: float(r["evidence"]), default=None)
 
 

@@ -89,10 +89,12 @@ def _fairer(problem: Problem, healthy: Point, named: list[Named]) -> Point:
 
 @dataclass(frozen=True, slots=True)
 class _Round:
-    """The detection of a round, the finalists that may be added, and (name, evidence, held-out gain) of all that were weighed."""
+    """The detection of a round, the finalists that may be added, all that could be the cause, and (name, evidence, held-out gain) of all
+    that were weighed."""
 
     detection: Detection
     able: list[Rival]
+    rivals: list[Rival]
     told: tuple[tuple[str, float, float], ...]
 
 
@@ -106,11 +108,15 @@ def _round(problem: Problem, library: list[Hypothesis], open_now: list[Hypothesi
     detection = _detect(problem, data, open_now, chosen, seed)
     most = detection.evidence[detection.best]
     if most < PROMISING * LEAST_EVIDENCE or (detection.p_value(detection.best) > FALSE_ALARM and most < PLAIN):
-        return _Round(detection, [], ())
+        return _Round(detection, [], [], ())
     weighed = finalists(problem, data, open_now, detection, base, chosen, loss)
     able = admissible(problem, sharpened(problem, admissible(problem, weighed), base, loss))
     told = tuple((r.hypothesis.name, r.evidence, r.gain) for r in able or weighed)
-    return _Round(detection, [r for r in able if worthy(r, alone=not named)] or _waiting(problem, weighed, base, loss, sum(n.evidence for n in named)), told)
+    best = [r for r in able if worthy(r, alone=not named)]
+    if best:
+        return _Round(detection, best, able, told)
+    waiting = _waiting(problem, weighed, base, loss, sum(n.evidence for n in named))
+    return _Round(detection, waiting, waiting, told)
 
 
 def _waiting(problem: Problem, weighed: list[Rival], base: Point, loss: Losses, stands: float) -> list[Rival]:
@@ -125,8 +131,11 @@ def _waiting(problem: Problem, weighed: list[Rival], base: Point, loss: Losses, 
 def _found(problem: Problem, one: _Round, seed: int) -> Named:
     """The best of those that may be added, with those that this log does not tell from it."""
     best = simplest(problem, one.able)
-    members = tuple(sorted(group(problem, one.able, seed), key=lambda member: member[0] != best.hypothesis.name))
-    rivals = tuple(replace(r, fitted=r.fitted.light()) for r in one.able)
+    members = group(problem, one.rivals, seed)
+    if best.hypothesis.name not in dict(members):  # one that closes too little to be named has far more evidence
+        members = group(problem, one.able, seed)
+    members = tuple(sorted(members, key=lambda member: member[0] != best.hypothesis.name))
+    rivals = tuple(replace(r, fitted=r.fitted.light()) for r in one.rivals)
     fitted = best.fitted if best.fitted.point.linear else confirm(problem, best.fitted.point.beta, best.fitted.slots)
     return Named(best.hypothesis, members, fitted, one.detection.p_value(best.hypothesis.label), best.evidence, rivals)
 

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from rovval.diagnose.confirm import Confirmed, confirm, roughly
 from rovval.diagnose.library import Hypothesis
 from rovval.diagnose.point import Point, whole_evidence
@@ -50,12 +52,13 @@ def together(problem: Problem, named: Sequence[Named], healthy: Point, seed: int
         found = _renamed(problem, found, i, healthy, seed)
     while found:
         whole, alone = found[-1].fitted, len(found) == 1
-        added = [_beside(n.hypothesis, whole, _without(problem, found, n, healthy)) for n in found]
+        without = [_without(problem, found, n, healthy) for n in found]
+        added = [_beside(n.hypothesis, whole, ground) for n, ground in zip(found, without, strict=True)]
         found = [replace(n, evidence=one.evidence) for n, one in zip(found, added, strict=True)]
-        weak = [n for n, one in zip(found, added, strict=True) if not worthy(one, alone)]
-        if not weak:
+        if all(worthy(one, alone) for one in added):
             break
-        found = _dropped(problem, found, min(weak, key=lambda n: n.evidence))
+        stands = [_worth(problem, healthy, ground) for ground in without]
+        found = _dropped(problem, found, found[int(np.argmax(stands))])
     return [_apart(n, {other.hypothesis.name for other in found if other is not n}) for n in found]
 
 
@@ -73,6 +76,12 @@ def _without(problem: Problem, found: Sequence[Named], one: Named, healthy: Poin
         return _Ground(whole_evidence(problem, healthy), (problem.gap_data.c, problem.gap.c))
     fitted = jointly(problem, found[-1].fitted, [n.hypothesis for n in rest])
     return _Ground(fitted.evidence, (fitted.loss, fitted.dynamic_loss))
+
+
+def _worth(problem: Problem, healthy: Point, ground: _Ground) -> float:
+    """Evidence of what stands without a cause, times what it closes of the gap."""
+    gain, _ = closed((problem.gap_data.c, problem.gap.c), ground.loss)
+    return (ground.evidence - whole_evidence(problem, healthy)) * max(gain, 0.0)
 
 
 def jointly(problem: Problem, whole: Confirmed, kept: Sequence[Hypothesis], other: Rival | None = None) -> Confirmed:

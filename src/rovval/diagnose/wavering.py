@@ -25,7 +25,7 @@ from rovval.vehicle.model import allocation
 
 DRIFT, SURE = 0.5, 5.0  # of the value, and standard errors (opened sets: 30 true causes drift by 0.24 at most, or by 3.3 standard errors)
 SHARES = (0.1, 0.2, 0.4, 0.8)  # of the value, or of the thruster's thrust: rms by which it may vary
-WANDERS = ("gyro_bias", "attitude_bias")  # wander by nature (in-run instability of a gyro's and an AHRS's data sheet)
+WANDERS = ("gyro_bias", "attitude_bias", "clock_drift")  # wander by nature (in-run instability of a gyro's, an AHRS's and a clock's data sheet)
 
 
 def wavering(problem: Problem, final: Confirmed, named: Sequence[Named]) -> dict[str, float]:
@@ -74,7 +74,8 @@ def _windows(problem: Problem, point: Point, step: Array, named: Named) -> float
     found = [0.0]
     for slot in _sized(problem, point, named):
         value, A, b = _windowed(problem, point, step, slot)
-        own = Products(A[:, None, None], b[:, None], point.data.c, (slot,))
+        about = b - A * b.sum() / max(float(A.sum()), 1e-300)  # its mean, which on a bound is not zero
+        own = Products(A[:, None, None], about[:, None], point.data.c, (slot,))
         found += [_varies(own, share * value, problem.inflation) for share in SHARES]
     return max(found)
 

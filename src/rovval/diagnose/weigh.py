@@ -26,7 +26,7 @@ from rovval.diagnose.together import LEAST_EVIDENCE, Named
 from rovval.diagnose.unknown import Forces, forces
 from rovval.diagnose.wavering import drifting, wavering
 
-BETTER = 0.9  # of a cause's evidence: a generic force that has more is as near to the truth (chosen)
+BETTER = 1.0  # of a cause's evidence: a generic force that has more is nearer to the truth (chosen)
 FORMLESS = 20.0  # twice the log Bayes factor of what is beside a cause, from which it is more than the form of an equation (chosen)
 ACTING = 0.15  # of what a cause closes: the axes on which it acts
 HARMS = 0.25  # of what causes close in all: a cause that opens more on one axis is the least bad (chosen)

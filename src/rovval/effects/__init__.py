@@ -61,7 +61,8 @@ class Effect:
     """One effect as an engineer reads it: where it enters, its equation with source, its parameters, what one sees, what it is
     confused with and what separates it. ``needs``: channels without which it cannot be tested. ``grid``: start points for
     parameters that linearisation at the null value cannot see (``onset`` as a fraction of the run); ``levers``: coordinates of the point
-    where a force acts, which it cannot see either, the one ahead first. ``competes`` False: a tolerance
+    where a force acts, which it cannot see either, the one ahead first. ``apart``: each parameter may well be at work without the others,
+    as an offset along one of three axes, and is tried by itself, too. ``competes`` False: a tolerance
     that healthy vehicles have, which a diagnosis takes into account and never names."""
 
     name: str
@@ -77,6 +78,7 @@ class Effect:
     needs: tuple[str, ...] = ()
     grid: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     levers: tuple[str, ...] = ()
+    apart: bool = False
     competes: bool = True
 
     def __post_init__(self) -> None:

@@ -29,6 +29,7 @@ EFFECT = Effect(
     confused_with=("cg_offset", "dvl_misalignment", "buoyancy_error"),
     separates="depth rate against u sin(theta): no dynamics needed",
     needs=("phi", "theta"),
+    apart=True,
 )
 
 

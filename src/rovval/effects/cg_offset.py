@@ -25,6 +25,7 @@ EFFECT = Effect(
     signature="a standing pitch or roll angle; a moment when accelerating; z changes the righting moment and its period",
     confused_with=("attitude_bias", "propeller_torque", "inertia_error", "payload_change"),
     separates="lie still: an attitude bias has no dynamics; a free roll gives the period",
+    apart=True,
 )
 
 

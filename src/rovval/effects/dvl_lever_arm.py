@@ -30,6 +30,7 @@ EFFECT = Effect(
     signature="sway and surge that come and go with the turn rate",
     confused_with=("cross_drag", "added_mass", "cg_offset"),
     separates="velocity against position in a turn on the spot: no dynamics needed",
+    apart=True,
 )
 
 

@@ -30,6 +30,7 @@ EFFECT = Effect(
     signature="sway follows surge at once, without any dynamics",
     confused_with=("compass_deviation", "cross_drag", "current_constant", "thruster_misaligned"),
     separates="velocity against position and depth rate: no dynamics needed",
+    apart=True,
 )
 
 

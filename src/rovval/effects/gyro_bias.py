@@ -25,6 +25,7 @@ EFFECT = Effect(
     signature="a rate that does not go away when lying still, and an attitude that does not follow it",
     confused_with=("propeller_torque", "cg_offset"),
     separates="attitude rate against p q r: no dynamics needed",
+    apart=True,
 )
 
 

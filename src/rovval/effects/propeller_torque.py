@@ -13,7 +13,7 @@ EFFECT = Effect(
     title="Propeller torque",
     place="input",
     equation="moment handedness arm T_i e_i, arm = K_Q D / K_T (Fossen 2021, 9.4; diagnosis.md A13).",
-    parameters=(Parameter("arm", "m", -0.2, 0.2, 0.0, 0.01, "1 to 3 cm of torque per newton (diagnosis.md A13)"),),
+    parameters=(Parameter("arm", "m", -0.6, 0.6, 0.0, 0.01, "1 to 3 cm of torque per newton (diagnosis.md A13); searched well beyond"),),
     signature="roll, pitch or yaw that grows with thrust where handedness does not cancel",
     confused_with=("cg_offset", "thruster_misaligned"),
     separates="drive one thruster: torque is about its own axis",

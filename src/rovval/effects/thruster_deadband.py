@@ -14,7 +14,7 @@ EFFECT = Effect(
     place="input",
     equation="n <- sgn(n) max(|n| - width, 0) on the acting speed of every thruster (diagnosis.md A3; Bessa 2006).",
     parameters=(
-        Parameter("width", "rev/s", 0.0, 20.0, 0.0, 2.5, "0 to 12 % of full command; T200: 300 rpm (diagnosis.md A3)", "speed"),
+        Parameter("width", "rev/s", 0.0, 60.0, 0.0, 2.5, "0 to 12 % of full command; T200: 300 rpm (diagnosis.md A3); searched to full speed", "speed"),
     ),
     signature="small commands do nothing: hunting about a hover, weak answers to small steps",
     confused_with=("rpm_scale", "linear_drag", "reverse_asymmetry"),
