@@ -62,8 +62,8 @@ def command(
     from rovval.diagnose import diagnose
     from rovval.pipeline.steps import vehicle_of
 
-    reports = Path("reports") if out is None and json_ is None else out
-    whole.check(None if str(json_) == "-" else json_, write_vehicle, reports and reports / "diagnosis.json")
+    anywhere = _folder(out, json_, "")
+    whole.check(None if str(json_) == "-" else json_, write_vehicle, anywhere and anywhere / "diagnosis.json")
     options.spare(vehicle, write_vehicle)
     runs = logs.together(sources, vehicle, profile, archive, quiet)
     nominal = vehicle_of(runs[0], vehicle)
@@ -74,11 +74,15 @@ def command(
     )  # fmt: skip
     typed = {"--window": None if window == 10.0 else f"{window:g}", "--profile": profile, "--archive": None if str(archive) == "archive" else str(archive)}
     _as_typed(found, dict(zip((run.id for run in runs), sources, strict=True)), vehicle, typed)
-    folder = Path("reports") / runs[0].id / "diagnosis" if out is None and json_ is None else out
     for line in found.document["runs_left_out"]:
         output.say(f"left out: {line}", quiet)
     _print(found, json_, quiet)
-    _write(found, folder, write_vehicle, quiet)
+    _write(found, _folder(out, json_, runs[0].id), write_vehicle, quiet)
+
+
+def _folder(out: Path | None, json_: Path | None, run: str) -> Path | None:
+    """Where the report goes: where it was asked for, else into the run's own folder; nowhere where only JSON was asked for."""
+    return out if out or json_ else Path("reports") / run / "diagnosis"
 
 
 def _as_typed(found: Diagnosis, sources: dict[str, str], vehicle: str | None, options: dict[str, str | None]) -> None:

@@ -13,7 +13,7 @@ from itertools import product
 import numpy as np
 
 from rovval import effects
-from rovval.diagnose.linearise import Direction
+from rovval.diagnose.lanes import Direction
 from rovval.diagnose.stretches import Stretches
 from rovval.plant import Plant
 

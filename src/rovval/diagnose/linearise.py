@@ -1,7 +1,7 @@
 """Residuals of the windows and their sensitivity to every parameter of the library and to the windows' initial states.
 
-One batched simulation per block of windows: nominal, each initial state, each effect parameter one step away. What later stages
-need is kept as inner products per window (`Products`), after the initial state is marginalised with its measurement error.
+One batched simulation of all `lanes` per block of windows. What later stages need is kept as inner products per window (`Products`), after the
+initial state is marginalised with its measurement error.
 """
 
 from __future__ import annotations
@@ -13,27 +13,15 @@ import numpy as np
 
 from rovval.data import Array
 from rovval.diagnose.cleaned import ANGLES
+from rovval.diagnose.lanes import Direction, Lane, lanes_of, one_sided, state_steps
 from rovval.diagnose.stretches import VELOCITY_CHANNELS, Stretches, difference, predicted
 
-POSE_INDEX = {6: 3, 7: 4, 8: 2, 9: 5}  # start states after the six velocities: roll, pitch, depth, heading
 AT_ONCE = 60  # windows that are simulated before their slopes are taken: ten minutes of log, some 0.3 GB
 LANES = 20_000  # lanes a call, to bound memory (about 200 MB)
-STEP = 0.25  # finite-difference step as a share of a parameter's typical size
 UNLOGGED = 0.3  # m/s, rad/s, rad: start of what was neither logged nor follows from the pose: anything slow is possible (chosen)
 FROM_SLOPE = 0.01  # m/s, rad/s: least error of a start taken as the slope of the logged pose over a second (chosen)
 POSE_SLOPE = {"u": "x", "v": "y", "w": "z", "p": "phi", "q": "theta", "r": "psi"}
 ATTITUDE_DRIFT = 0.004  # rad: slow error of an AHRS within a window, 0.2 degrees (MTi class data sheets)
-STATE_STEP = (0.02, 0.02, 0.02, 0.01, 0.01, 0.01, 0.01, 0.01, 0.02)  # m/s, rad/s, rad, m: about twice the noise of good sensors
-
-
-@dataclass(frozen=True, slots=True)
-class Direction:
-    """A column that does not start at the point reached but where the slots ``at`` are moved to (an onset, a period): the sensitivity
-    there to ``slot``, or, where ``slot`` is -1, the change from the point reached to there. ``id`` is past the plant's slots."""
-
-    id: int
-    at: tuple[tuple[int, float], ...]
-    slot: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,8 +55,8 @@ def linearise(
     stretches: Stretches, beta: Array, columns: tuple[int, ...], directions: Sequence[Direction] = (), coarse: tuple[int, ...] = ()
 ) -> Linear:
     """Residual and sensitivities about ``beta`` (k,) for every window; columns ``coarse``, behind the others, by one-sided differences."""
-    states, drifting, m = _state_steps(stretches), _drifting(stretches), stretches.count
-    lanes = _lanes(stretches, beta, states, columns, directions) + _one_sided(stretches, beta, coarse)
+    states, drifting, m = state_steps(stretches), _drifting(stretches), stretches.count
+    lanes = lanes_of(stretches, beta, states, columns, directions) + one_sided(stretches, beta, coarse)
     ids = (*columns, *(d.id for d in directions), *coarse)
     shape = (m, stretches.steps + 1, len(stretches.channels))
     r, S, J, valid = np.zeros(shape), np.zeros((*shape, len(ids))), np.zeros((*shape, len(states) + len(drifting))), np.zeros(m, dtype=bool)
@@ -98,88 +86,11 @@ def _simulated(stretches: Stretches, lanes: Sequence[Lane], which: np.ndarray) -
     return out.reshape(len(lanes), len(which), *out.shape[1:]), np.asarray(fine.reshape(len(lanes), len(which)).all(axis=0))
 
 
-@dataclass(frozen=True, slots=True)
-class Lane:
-    """One simulation of every window: parameters, offset of the start states, and which derivative it serves: (its output less that
-    of lane ``against``) / ``step`` for a state or a column; a step of 0 serves none."""
-
-    beta: Array
-    nu: Array
-    eta: Array
-    state: int = -1
-    column: int = -1
-    step: float = 0.0
-    against: int = 0
-
-
-def _lanes(
-    stretches: Stretches, beta: Array, states: list[tuple[int, float]], columns: tuple[int, ...], directions: Sequence[Direction]
-) -> list[Lane]:
-    """Nominal first, then start states, then parameters (central differences inside the bounds), then directions."""
-    still = np.zeros(6)
-    lanes = [Lane(beta, still, still)]
-    for i, (index, step) in enumerate(states):
-        unit = np.zeros(6)
-        unit[index if index < 6 else POSE_INDEX[index]] = step
-        lanes.append(Lane(beta, unit if index < 6 else still, still if index < 6 else unit, state=i, step=step))
-    for column in columns:
-        up, down = _both_ways(stretches, beta, column)
-        lanes.append(Lane(_moved(beta, [(column, beta[column] + down)]), still, still) if down else lanes[0])
-        lanes.append(Lane(_moved(beta, [(column, beta[column] + up)]), still, still, column=column, step=up - down, against=len(lanes) - 1))
-    bases: dict[tuple[tuple[int, float], ...], int] = {}
-    for d in directions:
-        there = _moved(beta, list(d.at))
-        if d.slot < 0:
-            lanes.append(Lane(there, still, still, column=d.id, step=1.0))
-            continue
-        if d.at not in bases:
-            bases[d.at] = len(lanes)
-            lanes.append(Lane(there, still, still))
-        up, _ = _both_ways(stretches, there, d.slot)
-        lanes.append(Lane(_moved(there, [(d.slot, there[d.slot] + up)]), still, still, column=d.id, step=up, against=bases[d.at]))
-    return lanes
-
-
-def _one_sided(stretches: Stretches, beta: Array, columns: tuple[int, ...]) -> list[Lane]:
-    """One lane a parameter, the way that its bounds leave open."""
-    still, lanes = np.zeros(6), []
-    for column in columns:
-        up, down = _both_ways(stretches, beta, column)
-        lanes.append(Lane(_moved(beta, [(column, beta[column] + (up or down))]), still, still, column=column, step=up or down))
-    return lanes
-
-
-def _both_ways(stretches: Stretches, beta: Array, column: int) -> tuple[float, float]:
-    """Steps up and down of a parameter that stay within its bounds; 0 for the way that is barred."""
-    parameter = stretches.plant.slots[column].parameter
-    step = STEP * parameter.typical
-    up = step if beta[column] + step <= parameter.high else 0.0
-    down = -step if beta[column] - step >= parameter.low else 0.0
-    return (up, down) if up or down else (parameter.high - beta[column], 0.0)
-
-
-def _moved(beta: Array, to: Sequence[tuple[int, float]]) -> Array:
-    there = beta.copy()
-    for slot, value in to:
-        there[slot] = value
-    return there
-
-
 def residual(stretches: Stretches, beta: Array) -> tuple[Array, np.ndarray]:
     """Measured - simulated (m, n, c) at ``beta`` (k,), and which windows did not stop."""
     which = np.arange(stretches.count)
     out, fine = simulate_windows(stretches, np.tile(beta, (stretches.count, 1)), stretches.nu0, stretches.eta0, which)
     return np.where(stretches.ok, difference(stretches, stretches.y, out), 0.0), fine
-
-
-def _state_steps(stretches: Stretches) -> list[tuple[int, float]]:
-    """Initial states that are marginalised: six velocities, roll, pitch, and depth where it is a residual channel."""
-    chosen = list(enumerate(STATE_STEP[:8]))
-    if "z" in stretches.channels:
-        chosen.append((8, STATE_STEP[8]))
-    if "psi" in stretches.channels:
-        chosen.append((9, STATE_STEP[7]))
-    return chosen
 
 
 def _drifting(stretches: Stretches) -> list[int]:
@@ -199,7 +110,7 @@ def state_spread(stretches: Stretches) -> Array:
     noise = dict(zip(stretches.channels, stretches.noise, strict=True))
     run = stretches.run
     found = []
-    for index, _ in _state_steps(stretches):
+    for index, _ in state_steps(stretches):
         name = (*VELOCITY_CHANNELS, "phi", "theta", "z", "psi")[index]
         if run.measured(name):
             least = 0.01 if name in ANGLES else 0.005

@@ -9,6 +9,7 @@ from rovval.diagnose.phrases import family, size, value, whole
 from rovval.diagnose.together import LEAST_EVIDENCE
 from rovval.diagnose.tolerance import SENSORS
 
+NOISE = "noise"
 OPEN = 2.0 / 3.0  # share of a gap that neither noise nor slop accounts for, from which "no gap" would say too much (healthy logs: 0.51 at most)
 NEAR_GAIN, NEAR_EVIDENCE = 0.3, 2.0  # chosen: what closes as much of the gap, with evidence at all, is told though it is not named,
 LESS_GAIN, MORE_EVIDENCE = 0.15, 20.0  # and what closes less with more evidence
@@ -30,9 +31,7 @@ def undecided(document: Mapping[str, Any]) -> bool:
 
 def nothing(document: Mapping[str, Any]) -> str:
     """That no cause is named, and what was seen all the same: what the sensors' own check shows, and what came nearest."""
-    slop = document.get("calibration_slop")
-    known = f"noise and a calibration slop of {100 * slop:g} %" if slop else "noise"
-    sensors, near = _sensors(document), _near(document)
+    known, sensors, near = _known(document), _sensors(document), _near(document)
     if open_gap(document):
         first = f"No cause is named, though {_unaccounted(document, known)}"
         sensors = sensors and f". {sensors[0].upper()}{sensors[1:]}"
@@ -40,18 +39,24 @@ def nothing(document: Mapping[str, Any]) -> str:
         first = f"No gap beyond {known} is shown in the simulated motion"
         sensors = sensors and f"{', but' if undecided(document) else ';'} {sensors}"
     else:
-        first = f"No gap beyond {known}: no effect of the library explains anything that {'such slop' if slop else 'noise'} does not"
+        first = f"No gap beyond {known}: no effect of the library explains anything that {'such slop' if known != NOISE else NOISE} does not"
     return f"{first}{sensors}.{f' {near}.' if near else ''}"
 
 
 def opened(document: Mapping[str, Any]) -> dict[str, Any]:
     """An open gap as what is left of it: an effect that is unknown, since it is neither smooth nor in the library."""
     axes = document["gap"]["axes"]
-    slop, sensors, near = document.get("calibration_slop"), _sensors(document), _near(document)
-    text = _unaccounted(document, f"noise and a calibration slop of {100 * slop:g} %" if slop else "noise")
+    sensors, near = _sensors(document), _near(document)
+    text = _unaccounted(document, _known(document))
     text += f". {sensors[0].upper()}{sensors[1:]}" if sensors else ""
     worst = max(axes, key=lambda axis: float(axes[axis]["share"]))
     return {"axes": [worst], "depends_on": [], "share": 0.0, "text": f"{text}. {near}" if near else text}
+
+
+def _known(document: Mapping[str, Any]) -> str:
+    """What a gap may be without any cause."""
+    slop = document.get("calibration_slop")
+    return f"{NOISE} and a calibration slop of {100 * slop:g} %" if slop else NOISE
 
 
 def _unaccounted(document: Mapping[str, Any], known: str) -> str:
