@@ -8,9 +8,11 @@ from rovval.channels import AXES
 from rovval.data import Comparison
 from rovval.report import words
 
+EYE = (-1.6, -1.4, -1.1)  # of the vehicle's longest side: from astern, to port and above, with room for its arrows (chosen)
 
-def blueprint(comparison: Comparison, body: str, corrected: bool) -> Any:
-    """World, vehicle with its thrusts (the ``body`` that they are drawn on) and notes left; the curves in tabs right."""
+
+def blueprint(comparison: Comparison, body: str, corrected: bool, longest: float) -> Any:
+    """World, vehicle with its thrusts (the ``body`` that they are drawn on, ``longest`` m) and notes left; the curves in tabs right."""
     import rerun.blueprint as rrb
 
     c = comparison
@@ -30,7 +32,8 @@ def blueprint(comparison: Comparison, body: str, corrected: bool) -> Any:
     third = ", corrected (green)" if corrected else ""
     tracks = "Measured (white), windows (orange), free run (blue)" if body == "measured" else "Free run (blue)"
     world = rrb.Spatial3DView(origin="/world", name=f"{tracks}{third}: north-east-down")
-    near = rrb.Spatial3DView(origin=f"/world/{body.replace(' ', '_')}", name=f"Thrusts on the vehicle ({body})")
+    eye = rrb.EyeControls3D(position=[longest * x for x in EYE], look_target=(0.0, 0.0, 0.0), eye_up=(0.0, 0.0, -1.0))
+    near = rrb.Spatial3DView(origin=f"/world/{body.replace(' ', '_')}", name=f"Thrusts on the vehicle ({body})", eye_controls=eye)
     left = rrb.Vertical(world, near, rrb.TextDocumentView(origin="/notes", name="Notes"), row_shares=[5, 4, 2])
     return rrb.Blueprint(
         rrb.Horizontal(left, rrb.Tabs(*tabs, active_tab=0), column_shares=[2, 3]),

@@ -28,7 +28,7 @@ def write(comparison: Comparison, path: Path, vehicle: Vehicle, corrected: SimRe
 
     c, run = comparison, comparison.run
     stream = rr.RecordingStream("rovval", recording_id=run.id, send_properties=False)
-    stream.save(path, default_blueprint=blueprint(c, "measured" if world.is_placed(c) else "free run", corrected is not None))
+    stream.save(path, default_blueprint=blueprint(c, "measured" if world.is_placed(c) else "free run", corrected is not None, max(vehicle.body.size)))
     banner = " SYNTHETIC" if words.synthetic(c) else ""
     stream.send_recording_name(f"{run.id} ({c.sim.model}){banner}")
     clock = [rr.TimeColumn("run_time", duration=run.t)]
