@@ -11,10 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from diagnose_case import foreign, merlin, own
+from diagnose_case import LIBRARY, foreign, merlin, own
+from rovval.data import Run
 from rovval.diagnose import diagnose
 from rovval.diagnose.admissible import _beyond_the_library
 from rovval.diagnose.confirm import confirm, errors
+from rovval.diagnose.excited import LARGE, LEAST_SIGMA, excited
 from rovval.diagnose.finalists import _half_a_turn_later
 from rovval.diagnose.library import LEVER, Hypothesis, hypotheses
 from rovval.diagnose.problem import Problem, pose
@@ -91,13 +93,19 @@ def test_a_long_lag_is_found_though_it_is_no_multiple_of_a_short_one():
     assert document["causes"][0]["effect"] == "velocity_filter_lag", document["sentence"]
 
 
-def rolling(folder: Path) -> Problem:
+def bluerov2(folder: Path, name: str, seed: int, seconds: float, slop: float, *effects: tuple[str, str, float]) -> Run:
+    """A log of the independent plant, flown open-loop."""
     from rovval.blind.log import write_csv
     from rovval.blind.plant import fly
+    from rovval.blind.spec import Planted
 
-    path = folder / "rolling.csv"
-    write_csv(fly(Path(str(load.__globals__["__file__"])).parent / "library" / "bluerov2_heavy.toml", "rich", [], 12, 150.0, 0.05), path)
-    parts, _ = cut_all([open_run(path, "merlin")], load("bluerov2_heavy"), "fossen", 10.0)
+    planted = [Planted(name, target or None, severity) for name, target, severity in effects]
+    write_csv(fly(LIBRARY / "bluerov2_heavy.toml", "rich", planted, seed, seconds, slop), folder / name)
+    return open_run(folder / name, "merlin")
+
+
+def rolling(folder: Path) -> Problem:
+    parts, _ = cut_all([bluerov2(folder, "rolling.csv", 12, 150.0, 0.05)], load("bluerov2_heavy"), "fossen", 10.0)
     return pose(parts, hypotheses(parts)[0], 0.05)
 
 
@@ -191,3 +199,19 @@ def test_thrust_across_a_stream_is_lost_and_never_turned_round():
     from rovval.effects.crossflow_loss import thrust
 
     assert thrust(1.0, 100.0, np.array([0.0, 0.5, 1.0, 3.0])).tolist() == [100.0, 50.0, 0.0, 0.0]
+
+
+def test_what_only_shows_when_it_is_large_competes_and_is_not_called_absent():
+    p, library = posed()
+    kept, silent = excited(p, library)
+    names = {h.name for h in kept}
+    assert silent.keys() & names and silent.keys() - names and not (names | silent.keys()) ^ {h.name for h in library}
+    assert all(float(why.split("with ")[1].split()[0]) >= LEAST_SIGMA / LARGE for name, why in silent.items() if name in names)
+
+
+def test_what_is_named_is_not_called_untestable(tmp_path: Path):
+    """A thruster that is turned far round shows, though a turn of typical size would not."""
+    document = diagnose([bluerov2(tmp_path, "turned.csv", 12, 200.0, 0.03, ("thruster_misaligned", "T1", -2.0))], load("bluerov2_heavy")).document
+    assert [c["effect"] for c in document["causes"]] == ["thruster_misaligned[T1]"], document["sentence"]
+    untestable = {row["effect"] for row in document["not_testable"]}
+    assert "thruster_misaligned[T2]" in untestable and "thruster_misaligned[T1]" not in untestable

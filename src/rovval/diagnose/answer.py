@@ -44,7 +44,7 @@ def answer(
         "causes": causes(problem, judgement, before, seed),
         "shrinkage": shrunk,
         "ranking": [{"effect": name, "score": score} for name, score in selection.ranking],
-        "not_testable": [{"effect": name, "why": why} for name, why in sorted(untestable.items())],
+        "not_testable": [{"effect": name, "why": why} for name, why in sorted(untestable.items()) if name not in judgement.groups],
         **next_flight.rows(problem, next_flight.advise(problem, judgement)),
         "detection": _detection(problem, selection, judgement),
         "finalists": [[{"effect": n, "evidence": e, "gain": g} for n, e, g in one] for one in selection.rounds],

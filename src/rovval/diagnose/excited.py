@@ -1,4 +1,4 @@
-"""Which hypotheses a log can show at all: the others neither compete nor are called absent."""
+"""Which hypotheses a log can show: of the others none is called absent, and those that it could not show though they were large do not compete."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from rovval.diagnose.library import PRIOR_WIDTH, Hypothesis
 from rovval.diagnose.problem import Problem
 
 LEAST_SIGMA = 3.0  # standard errors by which an effect of typical size must show (research E.6: detectability below 3 says nothing)
+LARGE = 3.0  # typical sizes: an effect so large must show as much, or it does not compete (chosen)
 
 
 def excited(problem: Problem, library: list[Hypothesis]) -> tuple[list[Hypothesis], dict[str, str]]:
-    """Hypotheses of which a typical size would show in this log, and the others with the reason."""
+    """Hypotheses of which a `LARGE` size would show in this log, and those of which a typical size would not, with the reason."""
     information = np.einsum("wii->i", problem.data.A) / problem.inflation
     place = {column: i for i, column in enumerate(problem.data.columns)}
     seen: dict[str, float] = {}
@@ -24,4 +25,4 @@ def excited(problem: Problem, library: list[Hypothesis]) -> tuple[list[Hypothesi
         for name, sigma in seen.items()
         if sigma < LEAST_SIGMA
     }
-    return [h for h in library if h.name not in silent], silent
+    return [h for h in library if LARGE * seen[h.name] >= LEAST_SIGMA], silent
