@@ -156,12 +156,13 @@ def test_a_channel_that_never_changes_is_no_measurement():
     ("planted", "name"),
     [
         ((("density_gradient", "", -0.8),), "density_gradient"), ((("thruster_deadband", "", 2.3),), "thruster_deadband"),
-        ((("crossflow_loss", "", 1.5),), "crossflow_loss"), ((("current_shear", "", 1.2),), "current_shear"),
+        pytest.param((("crossflow_loss", "", 1.5),), "crossflow_loss", marks=pytest.mark.slow),
+        pytest.param((("current_shear", "", 1.2),), "current_shear", marks=pytest.mark.slow),
     ],
 )  # fmt: skip
 def test_what_is_large_or_has_its_datum_in_the_log_is_found(tmp_path: Path, planted, name):
     """A loss or a dead band beyond what is usual, and a change with depth about a depth that the log goes through; independent plant."""
-    document = diagnose([foreign(tmp_path, planted, 41, 240.0, 0.03)], merlin()).document
+    document = diagnose([foreign(tmp_path, planted, 41, 160.0, 0.03)], merlin()).document
     assert name in document["causes"][0]["group"][:2], document["sentence"]
 
 
