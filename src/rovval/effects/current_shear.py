@@ -14,8 +14,8 @@ EFFECT = Effect(
     place="water",
     equation="v_c = (north, east) (z - depth), its change along the path (north, east) dz/dt (diagnosis.md E2).",
     parameters=(
-        Parameter("north", "1/s", -0.2, 0.2, 0.0, 0.02, "0 to 0.1 1/s (diagnosis.md E2)"),
-        Parameter("east", "1/s", -0.2, 0.2, 0.0, 0.02, "0 to 0.1 1/s (diagnosis.md E2)"),
+        Parameter("north", "1/s", -1.0, 1.0, 0.0, 0.02, "0 to 0.1 1/s (diagnosis.md E2); across a salt wedge up to 1"),
+        Parameter("east", "1/s", -1.0, 1.0, 0.0, 0.02, "0 to 0.1 1/s (diagnosis.md E2); across a salt wedge up to 1"),
         Parameter("depth", "m", -10.0, 6000.0, 0.0, 10.0, "where the shear's part is zero: set it to the log's mean depth"),
     ),
     signature="a body force that grows with depth and turns with the heading",

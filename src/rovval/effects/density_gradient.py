@@ -15,7 +15,7 @@ EFFECT = Effect(
     equation="B(z) = B + gradient (z - depth) g V at the centre of buoyancy (diagnosis.md E6). Drag and thrust, which change by the same "
     "fraction (per mille), are left as they are. Compressibility of the vehicle is the same line with the other sign (B5).",
     parameters=(
-        Parameter("gradient", "kg/m4", -5.0, 5.0, 0.0, 1.0, "a thermocline of some kg/m3 over some metres; +-3 % in all (diagnosis.md E6)"),
+        Parameter("gradient", "kg/m4", -20.0, 20.0, 0.0, 1.0, "some kg/m3 over some metres (diagnosis.md E6); a halocline: 30 over two"),
         Parameter("depth", "m", -10.0, 6000.0, 0.0, 10.0, "where the change is zero: set it to the log's mean depth"),
     ),
     signature="a vertical force that grows with depth, at every heading and speed",
