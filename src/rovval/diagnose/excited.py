@@ -6,9 +6,10 @@ import numpy as np
 
 from rovval.diagnose.library import PRIOR_WIDTH, Hypothesis
 from rovval.diagnose.problem import Problem
+from rovval.diagnose.separate import FEW
 
 LEAST_SIGMA = 3.0  # standard errors by which an effect of typical size must show (research E.6: detectability below 3 says nothing)
-LARGE = 3.0  # typical sizes: an effect so large must show as much, or it does not compete (chosen)
+LARGE = 3.0  # typical sizes: an effect so large must show as much, or it does not compete (chosen); of few windows, a typical one must
 
 
 def excited(problem: Problem, library: list[Hypothesis]) -> tuple[list[Hypothesis], dict[str, str]]:
@@ -25,4 +26,5 @@ def excited(problem: Problem, library: list[Hypothesis]) -> tuple[list[Hypothesi
         for name, sigma in seen.items()
         if sigma < LEAST_SIGMA
     }
-    return [h for h in library if LARGE * seen[h.name] >= LEAST_SIGMA], silent
+    largest = LARGE if problem.blocks >= FEW else 1.0
+    return [h for h in library if largest * seen[h.name] >= LEAST_SIGMA], silent
