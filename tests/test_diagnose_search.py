@@ -188,7 +188,7 @@ def test_a_drag_that_is_gone_altogether_is_significant_though_it_rests_on_its_bo
 
 
 def test_an_offset_along_one_axis_is_tried_by_itself():
-    """Three parameters free for one that is off are evidence lost: beside a strong cause a small offset shows only alone."""
+    """Three parameters free for one that is off are evidence lost."""
     p, library = posed()
     assert {h.slots for h in library if h.label in ("cg_offset@x", "cg_offset@y", "cg_offset@z")} == {(slot(p, f"cg_offset.{c}"),) for c in "xyz"}
     document = diagnose([own(("cg_offset:y=0.012",), 5, 200.0)], merlin()).document

@@ -86,7 +86,7 @@ def _begun(plant: Plant, label: str, slots: tuple[int, ...], own: tuple[int, ...
 
 def _alone(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...]) -> list[Hypothesis]:
     """Each parameter without the others, where they may be apart: three that are free for one that is off are evidence lost."""
-    chosen = [(s, plant.slots[s].parameter) for s in slots if effect.apart and len(slots) > 1]
+    chosen = [(s, plant.slots[s].parameter) for s in slots if effect.apart]
     return [Hypothesis(name, f"{name}@{p.name}", (s,), (s,), (PRIOR_WIDTH * p.typical,)) for s, p in chosen]
 
 

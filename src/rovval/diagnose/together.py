@@ -57,7 +57,8 @@ def together(problem: Problem, named: Sequence[Named], healthy: Point, seed: int
         found = [replace(n, evidence=one.evidence) for n, one in zip(found, added, strict=True)]
         if all(worthy(one, alone) for one in added):
             break
-        stands = [_worth(problem, healthy, ground) for ground in without]
+        nothing = whole_evidence(problem, healthy)
+        stands = [_worth(problem, ground, nothing) for ground in without]
         found = _dropped(problem, found, found[int(np.argmax(stands))])
     return [_apart(n, {other.hypothesis.name for other in found if other is not n}) for n in found]
 
@@ -78,10 +79,10 @@ def _without(problem: Problem, found: Sequence[Named], one: Named, healthy: Poin
     return _Ground(fitted.evidence, (fitted.loss, fitted.dynamic_loss))
 
 
-def _worth(problem: Problem, healthy: Point, ground: _Ground) -> float:
-    """Evidence of what stands without a cause, times what it closes of the gap."""
+def _worth(problem: Problem, ground: _Ground, nothing: float) -> float:
+    """Evidence of what stands without a cause, over that of ``nothing`` at all, times what it closes of the gap."""
     gain, _ = closed((problem.gap_data.c, problem.gap.c), ground.loss)
-    return (ground.evidence - whole_evidence(problem, healthy)) * max(gain, 0.0)
+    return (ground.evidence - nothing) * max(gain, 0.0)
 
 
 def jointly(problem: Problem, whole: Confirmed, kept: Sequence[Hypothesis], other: Rival | None = None) -> Confirmed:
