@@ -23,7 +23,7 @@ from rovval.blind.motor import motor
 from rovval.blind.params import nominal
 from rovval.blind.rotation import euler, matrix, quaternion
 from rovval.blind.scales import rpm_for, scales
-from rovval.blind.spec import STEP_S, Flight, Planted, stream
+from rovval.blind.spec import AXES, STEP_S, Flight, Planted, stream
 from rovval.blind.surroundings import draw_setting
 from rovval.blind.visibility import Given, gap, visibility
 
@@ -93,6 +93,20 @@ def test_energy_never_grows_without_thrust(name: str) -> None:
     levels = np.array([energy(body, y) for y in run(body, thrown(body), 30.0)])
     assert np.all(np.diff(levels) <= 1e-5 * abs(levels[0]))
     assert levels[-1] < levels[0]
+
+
+@pytest.mark.parametrize("name", ["merlin", "bluerov2_heavy", "minerva"])
+@pytest.mark.parametrize("effect", ["linear_drag", "quadratic_drag"])
+def test_no_planted_drag_pushes_the_vehicle_on(name: str, effect: str) -> None:
+    """Less drag than the file states is less drag, never a push, on a vehicle within slop (`SURE`) as well; more is more."""
+    hull = read_hull(vehicle(name))
+    setting = draw_setting(hull, scales(hull), 1, 60.0)
+    own = getattr(hull, effect)
+    for axis, target in enumerate(AXES):
+        plantings = (build(Planted(effect, target, s), hull, scales(hull), setting) for s in (-1.0, 1.0))
+        less, more = (float(np.asarray(planted.values["coefficient"])) for planted in plantings)
+        assert 0.8 * own[axis] + less >= 0.0
+        assert more > 0.0 and abs(less) == more
 
 
 def test_without_drag_energy_and_world_momentum_are_kept(merlin: Path) -> None:

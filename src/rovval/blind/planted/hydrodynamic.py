@@ -9,6 +9,7 @@ from rovval.blind.params import Params
 from rovval.blind.spec import AXES, Array
 
 TURN = 0.5  # rad/s, the working rate of roll, pitch and yaw drag (chosen)
+SURE = 0.8  # of a coefficient of the file, four standard deviations of 5 % slop below it
 
 
 def working_drag(plan: Planting, axis: int) -> tuple[float, float]:
@@ -16,6 +17,12 @@ def working_drag(plan: Planting, axis: int) -> tuple[float, float]:
     speed = plan.scale.speed if axis < 3 else TURN
     lin, quad = float(plan.hull.linear_drag[axis]), float(plan.hull.quadratic_drag[axis])
     return speed, lin * speed + quad * speed * speed
+
+
+def passive(own: float, coefficient: float) -> float:
+    """What is added to an axis's ``own`` coefficient of drag. Where more would be taken away than a vehicle within slop is sure to have, so
+    that the water would push it on, as much is added."""
+    return coefficient if SURE * own + coefficient >= 0.0 else abs(coefficient)
 
 
 class QuadraticDrag(Effect):
@@ -29,7 +36,7 @@ class QuadraticDrag(Effect):
     def setup(self, plan: Planting) -> None:
         """Coefficient at working speed."""
         self.ref, drag = working_drag(plan, self.axis)
-        self.coefficient = 0.5 * self.s * drag / self.ref**2
+        self.coefficient = passive(float(plan.hull.quadratic_drag[self.axis]), 0.5 * self.s * drag / self.ref**2)
         self.values = {"coefficient": self.coefficient, "reference_speed": self.ref, "reynolds_power": -0.2}
 
     def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
@@ -51,7 +58,7 @@ class LinearDrag(Effect):
     def setup(self, plan: Planting) -> None:
         """Coefficient, N s/m or N m s."""
         ref, drag = working_drag(plan, self.axis)
-        self.coefficient = 0.4 * self.s * drag / ref
+        self.coefficient = passive(float(plan.hull.linear_drag[self.axis]), 0.4 * self.s * drag / ref)
         self.values = {"coefficient": self.coefficient}
 
     def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
