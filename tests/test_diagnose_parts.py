@@ -18,7 +18,7 @@ from rovval.diagnose.linearise import Linear
 from rovval.diagnose.localise import axis_channels, change_points, slices, worst
 from rovval.diagnose.parity import parity
 from rovval.diagnose.problem import pose
-from rovval.diagnose.products import Products, products, start_corrected
+from rovval.diagnose.products import Products, beside, products, scaled, start_corrected
 from rovval.diagnose.separate import coherence
 from rovval.diagnose.stretches import Stretches, cut
 from rovval.effects import load
@@ -53,6 +53,25 @@ def test_a_stopped_window_counts_nothing():
     linear, ok, variance, spread = random_linear()
     got = products(replace(linear, valid=np.arange(6) != 2), ok, variance, spread)
     assert not got.A[2].any() and not got.b[2].any() and got.c[2] == 0.0
+
+
+def test_slopes_that_stand_still_give_the_same_products():
+    """Own columns beside those of a linearisation nearby, in its metric, with another residual: as if all were made anew; a window that stops
+    in either counts nothing."""
+    near, ok, variance, spread = random_linear(3)
+    own = replace(random_linear(4, k=2)[0], columns=(11, 3), valid=np.arange(6) != 4)
+    got = beside(own, scaled(replace(near, valid=np.arange(6) != 2), ok, variance, spread), (13, 10))
+    S = np.concatenate([own.S, near.S[..., [3, 0]]], axis=-1)
+    whole = Linear(own.r, S, near.J, (11, 3, 13, 10), (np.arange(6) != 2) & (np.arange(6) != 4))
+    want, there = products(whole, ok, variance, spread), got.products(own.r)
+    assert there.columns == want.columns
+    np.testing.assert_array_equal(got.linear.S, S)
+    for one, other in ((there.A, want.A), (there.b, want.b), (there.c, want.c)):
+        np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-9)
+    other_r = RNG(5).normal(size=own.r.shape)
+    moved = products(replace(whole, r=other_r), ok, variance, spread)
+    np.testing.assert_allclose(got.products(other_r).b, moved.b, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(got.products(other_r).c, moved.c, rtol=1e-9, atol=1e-9)
 
 
 def test_start_states_are_taken_out_as_ridge_regression_does():

@@ -48,7 +48,7 @@ def settings(problem: Problem, final: Confirmed | None) -> tuple[str, ...]:
 def _cause(problem: Problem, judgement: Judgement, named: Named, before: list[Array], seed: int) -> dict[str, object]:
     assert judgement.final is not None
     h, final = named.hypothesis, judgement.final
-    alone = final if len(judgement.named) == 1 else roughly(problem, only(problem, final, h), h.slots, final.point.linear)
+    alone = final if len(judgement.named) == 1 else roughly(problem, only(problem, final, h), h.slots, final.point.scaled)
     return {
         "effect": h.name,
         "title": effects.load(h.name.partition("[")[0]).title,

@@ -13,9 +13,9 @@ from scipy import stats
 
 from rovval.data import Array
 from rovval.diagnose.contest import Fold, losses
-from rovval.diagnose.linearise import Linear
 from rovval.diagnose.point import Point, whole_evidence
 from rovval.diagnose.problem import Problem, gap_at
+from rovval.diagnose.products import Scaled
 from rovval.diagnose.settle import FEW, moved, settle
 
 INTERVAL = 0.90
@@ -38,7 +38,7 @@ class Confirmed:
 
     def light(self) -> Confirmed:
         """The fit without its slopes, which are the bulk of it; it cannot be gone on from."""
-        return replace(self, point=replace(self.point, linear=()))
+        return replace(self, point=replace(self.point, scaled=()))
 
 
 def confirm(problem: Problem, start: Array, slots: tuple[int, ...]) -> Confirmed:
@@ -46,7 +46,7 @@ def confirm(problem: Problem, start: Array, slots: tuple[int, ...]) -> Confirmed
     return _scored(problem, _onset_tuned(problem, settle(problem, start, slots), slots), slots)
 
 
-def roughly(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[Linear, ...]) -> Confirmed:
+def roughly(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[Scaled, ...]) -> Confirmed:
     """As `confirm`, quicker: slop's slopes from nearby, few rounds, an onset where it began."""
     return _scored(problem, settle(problem, start, slots, near, FEW), slots)
 

@@ -41,7 +41,7 @@ def finalists(
         start = _start(problem, data, h, step(data, ground.widened(prior_of(h)), problem.inflation), base.beta, slots)
         if h.name.startswith(REVERSED):
             start = _turned(problem, h, start)
-        fitted[h.name] = h, roughly(problem, start, slots, base.linear).light()
+        fitted[h.name] = h, roughly(problem, start, slots, base.scaled).light()
 
     for h in ordered:
         promising = detection.evidence[h.label] > (least if len(fitted) >= FEWEST else min(least, ANYWAY))

@@ -52,10 +52,12 @@ def simulate_windows(stretches: Stretches, beta: Array, nu0: Array, eta0: Array,
 
 
 def linearise(
-    stretches: Stretches, beta: Array, columns: tuple[int, ...], directions: Sequence[Direction] = (), coarse: tuple[int, ...] = ()
-) -> Linear:
-    """Residual and sensitivities about ``beta`` (k,) for every window; columns ``coarse``, behind the others, by one-sided differences."""
-    states, drifting, m = state_steps(stretches), _drifting(stretches), stretches.count
+    stretches: Stretches, beta: Array, columns: tuple[int, ...], directions: Sequence[Direction] = (), coarse: tuple[int, ...] = (),
+    starts: bool = True,
+) -> Linear:  # fmt: skip
+    """Residual and sensitivities about ``beta`` (k,) for every window; columns ``coarse``, behind the others, by one-sided differences; without
+    ``starts`` nothing about the windows' initial states."""
+    states, drifting, m = state_steps(stretches) if starts else [], _drifting(stretches), stretches.count
     lanes = lanes_of(stretches, beta, states, columns, directions) + one_sided(stretches, beta, coarse)
     ids = (*columns, *(d.id for d in directions), *coarse)
     shape = (m, stretches.steps + 1, len(stretches.channels))

@@ -91,7 +91,7 @@ def _fitted(problem: Problem, selection: Selection, judgement: Judgement) -> Con
         if set(able) == set(free):
             break
         free = able
-        point = roughly(problem, near.beta, (*causes, *free), near.linear).point
+        point = roughly(problem, near.beta, (*causes, *free), near.scaled).point
     rough, *_ = tuned(problem, (*causes, *free), near, causes)
     return confirm(problem, rough.point.beta, rough.slots) if rough else None
 

@@ -10,25 +10,30 @@ from rovval.data import Array
 from rovval.diagnose.contest import losses
 from rovval.diagnose.linearise import Linear
 from rovval.diagnose.problem import Problem
-from rovval.diagnose.products import Products
+from rovval.diagnose.products import Products, Scaled
 
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """Parameters ``beta`` (k,), slop moved; ``columns`` the ``own`` slots of the effects, then slop; the linearisation and its products there;
+    """Parameters ``beta`` (k,), slop moved; ``columns`` the ``own`` slots of the effects, then slop; the linearisations and their products there;
     ``precision`` of each column's prior, ``offset`` from where that stands, ``side``: -1 and 1 on a lower and upper bound, else 0, and
     ``still``: which columns stay in the tangent."""
 
     beta: Array
     columns: tuple[int, ...]
     own: int
-    linear: tuple[Linear, ...]
+    scaled: tuple[Scaled, ...]
     dynamic: Products
     data: Products
     precision: Array
     offset: Array
     side: Array
     still: np.ndarray
+
+    @property
+    def linear(self) -> tuple[Linear, ...]:
+        """The linearisation of each run."""
+        return tuple(one.linear for one in self.scaled)
 
     @property
     def slope(self) -> Array:

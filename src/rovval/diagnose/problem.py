@@ -15,7 +15,7 @@ from rovval.diagnose.library import Hypothesis
 from rovval.diagnose.linearise import Linear, linearise, residual, spread, state_spread
 from rovval.diagnose.metric import joined_of, metric
 from rovval.diagnose.parity import Parity, parity
-from rovval.diagnose.products import Products, elsewhere, joined, start_corrected
+from rovval.diagnose.products import Products, Scaled, joined, scaled, start_corrected
 from rovval.diagnose.steadied import discount, gains, loosened
 from rovval.diagnose.stretches import Stretches
 from rovval.diagnose.tolerance import slop_prior
@@ -88,7 +88,8 @@ def columns_of(library: Sequence[Hypothesis], slop: Prior) -> tuple[tuple[int, .
 
 def at(problem: Problem, beta: Array, columns: tuple[int, ...], directions: Sequence[Direction] = ()) -> Products:
     """Products of every window about ``beta`` for the given columns, parity with them."""
-    return products_about(problem, beta, tuple(linearise(part, beta, columns, directions) for part in problem.parts))[1]
+    dynamic = joined_of(problem.parts, [linearise(part, beta, columns, directions) for part in problem.parts], problem.white, spread)
+    return dynamic + _kinematic(problem, beta, dynamic.columns)
 
 
 def gap_at(problem: Problem, beta: Array, columns: tuple[int, ...]) -> tuple[Products, Products]:
@@ -97,32 +98,28 @@ def gap_at(problem: Problem, beta: Array, columns: tuple[int, ...]) -> tuple[Pro
     return dynamic, dynamic + _kinematic(problem, beta, columns)
 
 
-def beside(linear: Linear, other: Linear, columns: tuple[int, ...]) -> Linear:
-    """The same linearisation with further columns, whose slopes are taken from another one."""
-    place, k = [other.columns.index(c) for c in columns], len(linear.columns)
-    S = np.empty((*linear.r.shape, k + len(columns)))
-    S[..., :k] = linear.S
-    np.take(other.S, place, axis=-1, out=S[..., k:])
-    return replace(linear, S=S, columns=(*linear.columns, *columns))
+def in_metric(problem: Problem, linear: Sequence[Linear]) -> tuple[Scaled, ...]:
+    """Linearisations in the metric of the problem, disturbances and initial states as nuisances."""
+    return tuple(scaled(one, part.ok, problem.white, spread(part)) for part, one in zip(problem.parts, linear, strict=True))
 
 
-def products_about(problem: Problem, beta: Array, linear: tuple[Linear, ...]) -> tuple[Products, Products]:
+def products_about(problem: Problem, beta: Array, linear: Sequence[Scaled]) -> tuple[Products, Products]:
     """Products of linearisations about ``beta``: (dynamics alone, dynamics and parity)."""
-    dynamic = joined_of(problem.parts, linear, problem.white, spread)
+    dynamic = joined([one.products(one.linear.r) for one in linear])
     return dynamic, dynamic + _kinematic(problem, beta, dynamic.columns)
 
 
-def carried(problem: Problem, beta: Array, linear: tuple[Linear, ...], there: Products) -> Products | None:
-    """Products about ``beta``, parity with them, by one simulation: the slopes are those of ``linear``, whose products are ``there``. None
-    where a window that ran there does not run here."""
-    b, c = list[Array](), list[Array]()
+def carried(problem: Problem, beta: Array, linear: Sequence[Scaled]) -> Products | None:
+    """Products about ``beta``, parity with them, by one simulation: the slopes are those of ``linear``. None where a window that ran there
+    does not run here."""
+    found = list[Products]()
     for part, one in zip(problem.parts, linear, strict=True):
         r, fine = residual(part, beta)
-        if not fine[one.valid].all():
+        if not fine[one.linear.valid].all():
             return None
-        for whole, share in zip((b, c), elsewhere(one, r, part.ok, problem.white, spread(part)), strict=True):
-            whole.append(share)
-    return replace(there, b=np.concatenate(b), c=np.concatenate(c)) + _kinematic(problem, beta, there.columns)
+        found.append(one.products(r))
+    dynamic = joined(found)
+    return dynamic + _kinematic(problem, beta, dynamic.columns)
 
 
 def corrected_residuals(problem: Problem, beta: Array | None = None) -> list[Array]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from rovval.data import Array
 from rovval.diagnose.linearise import Linear
@@ -45,35 +46,88 @@ def joined(parts: list[Products]) -> Products:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class Scaled:
+    """A linearisation in the metric: slopes ``x`` (m, n c, k) over the standard errors, of which ``root`` (m, n c) is the inverse, and nuisances
+    ``q`` (m, n c, s) turned so that S^T V^-1 S = x^T x - y^T y =: ``A`` (m, k, k) with ``y`` = q^T x (m, s, k)."""
+
+    linear: Linear
+    root: Array
+    q: Array
+    x: Array
+    y: Array
+    A: Array
+
+    def products(self, r: Array) -> Products:
+        """Products of a residual ``r`` (m, n, c) with these slopes."""
+        scaled = r.reshape(self.root.shape) * self.root
+        z = _onto(self.q, scaled)
+        return Products(self.A, _onto(self.x, scaled) - _onto(self.y, z), (scaled**2).sum(axis=1) - (z**2).sum(axis=1), self.linear.columns)
+
+
 def products(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> Products:
     """Products of every window; ``variance`` (n, c), ``spread`` (s,) standard error of its first nuisances, which are marginalised."""
     m, k = len(linear.r), linear.S.shape[-1]
     A, b, c = np.zeros((m, k, k)), np.zeros((m, k)), np.zeros(m)
-    root = 1.0 / np.sqrt(variance)
-    for w in range(m):
-        if not linear.valid[w]:
-            continue
-        weight = np.where(ok[w], root, 0.0).reshape(-1, 1)
-        x = np.concatenate([linear.S[w].reshape(len(weight), k), linear.r[w].reshape(-1, 1)], axis=1) * weight
-        j = linear.J[w].reshape(len(weight), -1)[:, : len(spread)] * weight * spread
-        gram = x.T @ x
-        cross = j.T @ x
-        gram -= cross.T @ np.linalg.solve(np.eye(j.shape[1]) + j.T @ j, cross)
-        A[w], b[w], c[w] = gram[:k, :k], gram[:k, k], gram[k, k]
+    for w in map(int, np.flatnonzero(linear.valid)):
+        root, q, x, y = _window(linear, w, ok, variance, spread)
+        r = linear.r[w].reshape(-1) * root
+        z = q.T @ r
+        A[w], b[w], c[w] = x.T @ x - y.T @ y, x.T @ r - y.T @ z, r @ r - z @ z
     return Products(A, b, c, linear.columns)
 
 
-def elsewhere(linear: Linear, r: Array, ok: np.ndarray, variance: Array, spread: Array) -> tuple[Array, Array]:
-    """``b`` (m, k) and ``c`` (m,) of another residual ``r`` (m, n, c), the slopes as they were: a fifth of the work of `products`."""
-    m, k = len(r), linear.S.shape[-1]
-    b, c = np.zeros((m, k)), np.zeros(m)
-    root = 1.0 / np.sqrt(variance)
-    for w in np.flatnonzero(linear.valid):
-        weight = np.where(ok[w], root, 0.0).reshape(-1)
-        x, j = r[w].reshape(-1) * weight, linear.J[w].reshape(len(weight), -1) * weight[:, None] * spread
-        x = weight * (x - j @ np.linalg.solve(np.eye(j.shape[1]) + j.T @ j, j.T @ x))
-        b[w], c[w] = x @ linear.S[w].reshape(len(weight), k), x @ r[w].reshape(-1)
-    return b, c
+def scaled(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> Scaled:
+    """A linearisation in the metric, kept for products with many residuals; arguments as for `products`."""
+    m, n, k = len(linear.r), linear.r[0].size, linear.S.shape[-1]
+    root, q, x, y = np.zeros((m, n)), np.zeros((m, n, len(spread))), np.zeros((m, n, k)), np.zeros((m, len(spread), k))
+    for w in map(int, np.flatnonzero(linear.valid)):
+        root[w], q[w], x[w], y[w] = _window(linear, w, ok, variance, spread)
+    return Scaled(linear, root, q, x, y, _gram(x, x) - _gram(y, y))
+
+
+def beside(own: Linear, other: Scaled, columns: tuple[int, ...]) -> Scaled:
+    """A linearisation with further ``columns``, whose slopes are taken from another one nearby, and its nuisances with them."""
+    place, k, m = [other.linear.columns.index(c) for c in columns], len(own.columns), len(own.r)
+    root = np.where((own.valid & other.linear.valid)[:, None], other.root, 0.0)
+    mine = own.S.reshape(*root.shape, k) * root[..., None]
+    S, x = _joined(own.S, other.linear.S, place), _joined(mine, other.x, place)
+    y = _joined(_gram(other.q, mine), other.y, place)
+    A = np.empty((m, k + len(place), k + len(place)))
+    A[:, k:, k:] = other.A[:, place][..., place]
+    A[:, :k] = _gram(mine, x) - _gram(y[..., :k], y)
+    A[:, k:, :k] = np.swapaxes(A[:, :k, k:], 1, 2)
+    A[root.max(axis=1) == 0.0] = 0.0
+    linear = Linear(own.r, S, other.linear.J, (*own.columns, *columns), own.valid & other.linear.valid)
+    return Scaled(linear, root, other.q, x, y, A)
+
+
+def _window(linear: Linear, w: int, ok: np.ndarray, variance: Array, spread: Array) -> tuple[Array, Array, Array, Array]:
+    """Of one window: inverse standard errors (n c,), turned nuisances (n c, s), scaled slopes (n c, k), and the product of the latter two."""
+    root = np.where(ok[w], 1.0 / np.sqrt(variance), 0.0).reshape(-1)
+    x = linear.S[w].reshape(len(root), -1) * root[:, None]
+    j = linear.J[w].reshape(len(root), -1)[:, : len(spread)] * root[:, None] * spread
+    q = solve_triangular(np.linalg.cholesky(np.eye(j.shape[1]) + j.T @ j), j.T, lower=True).T
+    return root, q, x, q.T @ x
+
+
+def _onto(a: Array, b: Array) -> Array:
+    """a^T b of every window: (m, n, k), (m, n) -> (m, k)."""
+    return np.asarray((b[:, None, :] @ a)[:, 0])
+
+
+def _gram(a: Array, b: Array) -> Array:
+    """a^T b of every window: (m, n, k), (m, n, l) -> (m, k, l)."""
+    return np.asarray(np.swapaxes(a, 1, 2) @ b)
+
+
+def _joined(own: Array, other: Array, place: list[int]) -> Array:
+    """Own columns, then those of the other at ``place``."""
+    k = own.shape[-1]
+    out = np.empty((*own.shape[:-1], k + len(place)))
+    out[..., :k] = own
+    np.take(other, place, axis=-1, out=out[..., k:])
+    return out
 
 
 def start_corrected(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> Array:

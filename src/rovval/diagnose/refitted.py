@@ -16,7 +16,7 @@ import numpy as np
 from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed
 from rovval.diagnose.contest import Fold, folds_of
-from rovval.diagnose.problem import Problem, corrected_residuals, gap_at, pose
+from rovval.diagnose.problem import Problem, corrected_residuals, gap_at, in_metric, pose
 from rovval.diagnose.settle import settle
 from rovval.diagnose.shrinkage import told
 from rovval.diagnose.stretches import Stretches
@@ -45,8 +45,10 @@ def _folds(problem: Problem) -> tuple[Fold, ...]:
 def _without(problem: Problem, fitted: Confirmed, fold: Fold, slop: float) -> Array:
     """Parameters (k,) of the fitted slots that the other windows give, from where all of them stood; slop's slopes stay."""
     parts = [_some(part, which) for part, which in _by_run(problem, problem.parts, fold.train) if which.any()]
-    near = [replace(one, S=one.S[which]) for one, which in _by_run(problem, fitted.point.linear, fold.train) if which.any()]
-    point = settle(pose(tuple(parts), (), slop), fitted.point.beta, fitted.slots, tuple(near))
+    slopes = [(one.S[which], one.columns) for one, which in _by_run(problem, fitted.point.linear, fold.train) if which.any()]
+    less = pose(tuple(parts), (), slop)
+    near = [replace(one, S=S, columns=columns) for one, (S, columns) in zip(less.at_null, slopes, strict=True)]
+    point = settle(less, fitted.point.beta, fitted.slots, in_metric(less, near))
     beta = problem.origin.copy()
     beta[list(fitted.slots)] = point.beta[list(fitted.slots)]
     return beta

@@ -136,7 +136,7 @@ def _found(problem: Problem, one: _Round, seed: int) -> Named:
         members = group(problem, one.able, seed)
     members = tuple(sorted(members, key=lambda member: member[0] != best.hypothesis.name))
     rivals = tuple(replace(r, fitted=r.fitted.light()) for r in one.rivals)
-    fitted = best.fitted if best.fitted.point.linear else confirm(problem, best.fitted.point.beta, best.fitted.slots)
+    fitted = best.fitted if best.fitted.point.scaled else confirm(problem, best.fitted.point.beta, best.fitted.slots)
     return Named(best.hypothesis, members, fitted, one.detection.p_value(best.hypothesis.label), best.evidence, rivals)
 
 
@@ -147,7 +147,7 @@ def _pruned(problem: Problem, named: list[Named]) -> list[Named]:
         slots = tuple(s for s in whole.slots if s not in one.hypothesis.slots)
         start = whole.beta.copy()
         start[list(one.hypothesis.slots)] = problem.origin[list(one.hypothesis.slots)]
-        without = roughly(problem, start, slots, whole.point.linear)
+        without = roughly(problem, start, slots, whole.point.scaled)
         if without.evidence > whole.evidence - NEEDLESS:
             without = confirm(problem, without.point.beta, slots)
             rest = [n for n in named if n is not one]

@@ -14,9 +14,10 @@ import numpy as np
 from rovval import effects
 from rovval.data import Array
 from rovval.diagnose.library import PRIOR_WIDTH
-from rovval.diagnose.linearise import Linear, linearise
+from rovval.diagnose.linearise import linearise
 from rovval.diagnose.point import Point
-from rovval.diagnose.problem import Problem, beside, carried, products_about
+from rovval.diagnose.problem import Problem, carried, in_metric, products_about
+from rovval.diagnose.products import Scaled, beside
 from rovval.plant import Plant
 
 ROUNDS, FEW = 5, 3  # damped steps of a fit, and of one that only has to show whether it is worth more
@@ -26,21 +27,21 @@ SHORTER = (1.0, 0.4, 0.1)  # shares of the Gauss-Newton step that are tried
 EARLY = (2.5, 5.0)  # s of each window that are fitted before the whole of it (chosen)
 
 
-def settle(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[Linear, ...] | None = None, rounds: int = ROUNDS) -> Point:
+def settle(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[Scaled, ...] | None = None, rounds: int = ROUNDS) -> Point:
     """Fit ``slots`` and slop jointly from ``start``.
 
-    With ``near``, slop's slopes are taken from a linearisation nearby; else they are made at ``start``, and made anew, `ANEW` times at
-    most, where the fit ends far from it. Slop moves in the simulation all the same.
+    With ``near``, the slopes of slop and of the windows' starts are taken from a linearisation nearby; else they are made at ``start``, and
+    made anew, `ANEW` times at most, where the fit ends far from it. Slop moves in the simulation all the same.
     """
     if near is not None:
         return _descended(problem, _about(problem, start, _columns(problem, slots), len(slots), near), near, rounds)
     point = _about(problem, start, _columns(problem, slots), len(slots), None)
     for _ in range(ANEW):
-        reached = _descended(problem, point, point.linear, rounds)
+        reached = _descended(problem, point, point.scaled, rounds)
         if point.cost() - reached.cost() < FAR * problem.inflation:
             return reached
         point = _about(problem, reached.beta, point.columns, point.own, None)
-    return _descended(problem, point, point.linear, rounds)
+    return _descended(problem, point, point.scaled, rounds)
 
 
 def healthy_point(problem: Problem) -> Point:
@@ -57,7 +58,7 @@ def resettled(problem: Problem, before: Point, point: Point, slots: tuple[int, .
     every search is local, and no cause is to gain by another start."""
     start = point.beta.copy()
     start[list(slots)] = problem.origin[list(slots)]
-    if settle(problem, start, (), before.linear, FEW).profile() >= before.profile():
+    if settle(problem, start, (), before.scaled, FEW).profile() >= before.profile():
         return before
     again = settle(problem, start, ())
     return again if again.profile() < before.profile() else before
@@ -77,7 +78,7 @@ def _columns(problem: Problem, slots: tuple[int, ...]) -> tuple[int, ...]:
     return (*slots, *(c for c in problem.slop.sd if c not in slots))
 
 
-def _descended(problem: Problem, point: Point, slopes: tuple[Linear, ...], rounds: int) -> Point:
+def _descended(problem: Problem, point: Point, slopes: tuple[Scaled, ...], rounds: int) -> Point:
     """The point that damped steps reach, slop's ``slopes`` kept."""
     for _ in range(rounds):
         better = _better(problem, point, slopes)
@@ -93,7 +94,7 @@ def moved(problem: Problem, point: Point, slot: int, value: float) -> Point:
     """The point with one slot elsewhere, slop's slopes kept."""
     beta = point.beta.copy()
     beta[slot] = value
-    return _about(problem, beta, point.columns, point.own, point.linear)
+    return _about(problem, beta, point.columns, point.own, point.scaled)
 
 
 def stays(plant: Plant) -> frozenset[int]:
@@ -101,17 +102,18 @@ def stays(plant: Plant) -> frozenset[int]:
     return frozenset(i for i, slot in enumerate(plant.slots) if effects.load(slot.effect).place == "sensor")
 
 
-def _about(problem: Problem, beta: Array, columns: tuple[int, ...], own: int, near: tuple[Linear, ...] | None) -> Point:
-    """Linearise about ``beta``: all columns, or the own ones with slop's slopes from ``near``."""
-    coarse = columns[own:] if near is None else ()
-    linear = tuple(linearise(part, beta, columns[:own], coarse=coarse) for part in problem.parts)
-    if near is not None:
-        linear = tuple(beside(one, other, columns[own:]) for one, other in zip(linear, near, strict=True))
-    return _point(problem, beta, own, linear)
+def _about(problem: Problem, beta: Array, columns: tuple[int, ...], own: int, near: tuple[Scaled, ...] | None) -> Point:
+    """Linearise about ``beta``: all columns, or the own ones with the slopes of slop and of the windows' starts from ``near``."""
+    if near is None:
+        there = in_metric(problem, [linearise(part, beta, columns[:own], coarse=columns[own:]) for part in problem.parts])
+    else:
+        mine = [linearise(part, beta, columns[:own], starts=False) for part in problem.parts]
+        there = tuple(beside(one, other, columns[own:]) for one, other in zip(mine, near, strict=True))
+    return _point(problem, beta, own, there)
 
 
-def _point(problem: Problem, beta: Array, own: int, linear: tuple[Linear, ...]) -> Point:
-    dynamic, data = products_about(problem, beta, linear)
+def _point(problem: Problem, beta: Array, own: int, there: tuple[Scaled, ...]) -> Point:
+    dynamic, data = products_about(problem, beta, there)
     columns = data.columns
     parameters = [problem.plant.slots[s].parameter for s in columns]
     width = np.array([PRIOR_WIDTH * p.typical for p in parameters[:own]] + [problem.slop.sd[s] for s in columns[own:]])
@@ -119,15 +121,15 @@ def _point(problem: Problem, beta: Array, own: int, linear: tuple[Linear, ...]) 
     side = np.array([float(x >= p.high) - float(x <= p.low) for x, p in zip(at, parameters, strict=True)])
     sensors = stays(problem.plant)
     still = np.array([i >= own and s in sensors for i, s in enumerate(columns)], dtype=bool)
-    return Point(beta, columns, own, linear, dynamic, data, problem.inflation / width**2, at - problem.origin[list(columns)], side, still)
+    return Point(beta, columns, own, there, dynamic, data, problem.inflation / width**2, at - problem.origin[list(columns)], side, still)
 
 
-def _better(problem: Problem, point: Point, near: tuple[Linear, ...]) -> Point | None:
+def _better(problem: Problem, point: Point, near: tuple[Scaled, ...]) -> Point | None:
     """The next point of a damped Gauss-Newton iteration, None where no step gains more than a `LITTLE`."""
     step = np.where(point.still, 0.0, point.solved(point.curvature, point.slope))
     for share in SHORTER:
         beta = _clipped(problem, point, share * step)
-        data = carried(problem, beta, point.linear, point.dynamic)
+        data = carried(problem, beta, point.scaled)
         if data is None:
             continue
         trial = replace(point, beta=beta, data=data, offset=point.offset + (beta - point.beta)[list(point.columns)])

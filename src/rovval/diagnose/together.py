@@ -93,7 +93,7 @@ def jointly(problem: Problem, whole: Confirmed, kept: Sequence[Hypothesis], othe
     if other:
         new = list(other.hypothesis.slots)
         start[new], slots = other.fitted.beta[new], [*slots, *new]
-    return roughly(problem, start, tuple(dict.fromkeys(slots)), whole.point.linear)
+    return roughly(problem, start, tuple(dict.fromkeys(slots)), whole.point.scaled)
 
 
 def _renamed(problem: Problem, found: list[Named], i: int, healthy: Point, seed: int) -> list[Named]:

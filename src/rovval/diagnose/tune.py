@@ -59,7 +59,7 @@ def tuned(
     """
     out = dict[int, dict[str, Any]]()
     while slots:
-        fitted = confirm(problem, problem.origin, slots) if near is None else roughly(problem, near.beta, slots, near.linear)
+        fitted = confirm(problem, problem.origin, slots) if near is None else roughly(problem, near.beta, slots, near.scaled)
         bounds = [interval(float(fitted.beta[s]), float(e), problem.blocks) for s, e in zip(slots, errors(problem, fitted), strict=True)]
         low, high = np.array(bounds).T
         half = 0.5 * (high - low) / [problem.plant.slots[s].parameter.typical for s in slots]
