@@ -19,7 +19,7 @@ from rovval.diagnose.products import Scaled
 from rovval.diagnose.settle import FEW, moved, settle
 
 INTERVAL = 0.90
-PLACING = ("onset", "period", "phase", "direction", "height", "reach", "radius", "depth")
+PLACING = ("onset", "period", "phase", "direction", "height", "reach", "radius", "depth", "dead")
 ONSET_SEARCH_S = (-12.0, -6.0, -3.0, -1.5, 1.5, 3.0, 6.0, 12.0)
 
 
