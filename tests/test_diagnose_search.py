@@ -15,10 +15,11 @@ from diagnose_case import LIBRARY, foreign, merlin, own
 from rovval.data import Run
 from rovval.diagnose import diagnose
 from rovval.diagnose.admissible import _beyond_the_library
+from rovval.diagnose.breaks import FEWEST, _split
 from rovval.diagnose.confirm import confirm, errors
 from rovval.diagnose.excited import LARGE, LEAST_SIGMA, excited
 from rovval.diagnose.finalists import _half_a_turn_later
-from rovval.diagnose.library import LEVER, Hypothesis, hypotheses
+from rovval.diagnose.library import LEVER, MOST_STARTS, Hypothesis, hypotheses
 from rovval.diagnose.problem import Problem, pose
 from rovval.diagnose.separate import Rival
 from rovval.diagnose.settle import healthy_point, resettled, settle
@@ -216,3 +217,38 @@ def test_what_is_named_is_not_called_untestable(tmp_path: Path):
     assert [c["effect"] for c in document["causes"]] == ["thruster_misaligned[T1]"], document["sentence"]
     untestable = {row["effect"] for row in document["not_testable"]}
     assert "thruster_misaligned[T2]" in untestable and "thruster_misaligned[T1]" not in untestable
+
+
+@pytest.mark.parametrize("at", [3, 10, 17])
+def test_a_break_is_where_the_level_steps(at):
+    noise = np.random.default_rng(at).normal(0.0, 0.2, 20)
+    found = _split(noise + np.where(np.arange(20) < at, 0.0, 2.0), 5, 2)
+    assert max(found)[1] == 5 + at
+    assert all(5 + FEWEST <= i <= 25 - FEWEST for _, i in found)
+    assert _split(noise[: 2 * FEWEST - 1], 0, 2) == []
+
+
+def test_what_is_caught_on_the_way_begins_where_the_vehicle_was():
+    parts, _ = cut_all([own((), 5, 200.0)], merlin(), "fossen", 10.0)
+    library, _ = hypotheses(parts, breaks=[120.0])
+    names = {i: s.parameter.name for i, s in enumerate(parts[0].plant.slots)}
+    starts = [{names[s]: value for s, value in h.at} for h in library if h.name == "tether_snag"]
+    assert {120.0, 115.0, 110.0, 105.0} <= {round(at["onset"], 6) for at in starts} and len(starts) <= 3 * MOST_STARTS
+    run = parts[0].run
+    for at in starts:
+        for place, channel in {"north": "x", "east": "y", "down": "z"}.items():
+            assert at[place] == pytest.approx(float(np.interp(at["onset"] / run.dt, np.arange(len(run)), run.get(channel))))
+    assert 120.0 in {dict(h.at)[h.slots[1]] for h in library if h.name == "thruster_fault_onset[VAC]"}
+
+
+@pytest.mark.parametrize(("effect", "seed"), [("tether_snag", 8), ("compass_deviation", 6)])
+def test_what_catches_the_tether_or_turns_the_compass_is_named(effect, seed, tmp_path: Path):
+    """Of the independent plant: a softened spring from the fairlead, and a compass with two harmonics and the thrusters' own field."""
+    document = diagnose([foreign(tmp_path, ((effect, "", 1.4),), seed, 240.0, 0.03)], merlin()).document
+    assert [c["effect"] for c in document["causes"]] == [effect], document["sentence"]
+
+
+def test_a_hypothesis_is_tried_without_what_only_refines_it():
+    _, library = posed()
+    lags = [h for h in library if h.name == "thrust_lag" and not h.at]
+    assert sorted(len(h.slots) for h in lags) == [1, 2] and len({h.label for h in lags}) == 2

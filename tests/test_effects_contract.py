@@ -145,3 +145,12 @@ def test_sized_parameters_grow_with_the_vehicle():
     small, large = (Plant(vehicle.load(n)) for n in ("bluerov2_heavy", "merlin"))
     typical = [p.slots[p.index["buoyancy_error.force"]].parameter.typical for p in (small, large)]
     assert typical[0] == pytest.approx(3.0, rel=1e-3) and typical[1] == pytest.approx(3.0 * 2936 * 9.81 / 132.57, rel=1e-3)
+
+
+def test_the_true_heading_is_found_at_the_corners_of_every_deviation_card():
+    rng, compass, n = np.random.default_rng(0), effects.module("compass_deviation"), 4000
+    p = {part.name: rng.choice([part.low, part.high], n) for part in compass.EFFECT.parameters}
+    psi = rng.uniform(-np.pi, np.pi, (n, 1))
+    shown = psi + compass._deviation(psi, p)
+    _, eta = compass.unobserve(np.zeros((n, 6)), np.concatenate([np.zeros((n, 5)), shown], axis=1), p)
+    np.testing.assert_allclose(eta[:, 5:], psi, atol=1e-12)

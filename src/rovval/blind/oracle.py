@@ -15,9 +15,14 @@ import numpy as np
 from rovval.blind.spec import Array
 from rovval.data import Run
 from rovval.diagnose.confirm import confirm
-from rovval.diagnose.library import Hypothesis, hypotheses
-from rovval.diagnose.problem import Problem, gap_at, pose
+from rovval.diagnose.finalists import begun
+from rovval.diagnose.library import Hypothesis, hypotheses, placed
+from rovval.diagnose.point import Point
+from rovval.diagnose.problem import Problem, at, gap_at, pose
+from rovval.diagnose.products import Products
+from rovval.diagnose.settle import healthy_point
 from rovval.diagnose.stretches import cut
+from rovval.diagnose.swings import retuned
 from rovval.vehicle.model import Vehicle
 
 Wanted = Sequence[Sequence[Hypothesis]]  # of each true effect its starting points
@@ -42,7 +47,8 @@ def oracle(
         problem, wanted, beta = found
         left = _left(problem, wanted, beta)
         shares = 1.0 - left / np.array([problem.gap.c.sum(), problem.gap_data.c.sum()])
-        alone = [_left(problem, others, _fitted(problem, others, onsets)) for others in _others(wanted)]
+        healthy = healthy_point(problem)
+        alone = [_left(problem, others, _fitted(problem, healthy, others, onsets)) for others in _others(wanted)]
     except (RovvalError, ArithmeticError, ValueError):
         return {}
     each = {"each": min(float((1.0 - left / without).max()) for without in alone)} if alone else {}
@@ -70,16 +76,21 @@ def _fit(
     """The problem, the hypotheses that were free, and the fitted point."""
     part = cut(run, vehicle, model, window_s)
     library, _ = hypotheses((part,))
-    wanted = [[h for h in library if h.name == name] for name in true]
-    if not wanted or not all(wanted):
+    if not true or not set(true) <= {h.name for h in library}:
         return None
     problem = pose((part,), library, calibration_slop)
-    return problem, wanted, _fitted(problem, wanted, onsets)
+    healthy = healthy_point(problem)
+    wanted = [[h for h in retuned(problem, library, healthy) if h.name == name] for name in true]
+    return problem, wanted, _fitted(problem, healthy, wanted, onsets)
 
 
-def _fitted(problem: Problem, wanted: Wanted, onsets: Mapping[str, float]) -> Array:
+def _fitted(problem: Problem, healthy: Point, wanted: Wanted, onsets: Mapping[str, float]) -> Array:
     """The best of the fits from several starting points, kinematic checks counted."""
-    tried = [_from(problem, wanted, rank, onsets) for rank in range(min(STARTS, max(map(len, wanted))))]
+    free = [h for starts in wanted for h in starts]
+    columns = tuple(dict.fromkeys(c for h in free if not h.directions for c in h.columns))
+    data = at(problem, healthy.beta, columns, [d for h in free for d in h.directions])
+    ranks = range(min(STARTS, max(map(len, wanted))))
+    tried = [confirm(problem, _from(problem, healthy, data, wanted, rank, onsets), _slots(wanted)).beta for rank in ranks]
     return min(tried, key=lambda beta: _left(problem, wanted, beta)[1])
 
 
@@ -94,34 +105,28 @@ def _others(wanted: Wanted) -> list[Wanted]:
 
 
 def _slots(wanted: Wanted) -> tuple[int, ...]:
-    return tuple(dict.fromkeys(s for starts in wanted for s in starts[0].slots))
+    return tuple(dict.fromkeys(s for starts in wanted for h in starts for s in h.slots))
 
 
-def _from(problem: Problem, wanted: Wanted, rank: int, onsets: Mapping[str, float]) -> Array:
-    """Fitted point from each hypothesis's start of that rank by linear gain (its last, where it has fewer)."""
-    beta = problem.origin.copy()
+def _from(problem: Problem, healthy: Point, data: Products, wanted: Wanted, rank: int, onsets: Mapping[str, float]) -> Array:
+    """Each hypothesis's start of that rank by linear gain (its last, where it has fewer), where slop settles by itself; the true onset where
+    there is one."""
+    beta = healthy.beta.copy()
+    beta[list(_slots(wanted))] = problem.origin[list(_slots(wanted))]
     for starts in wanted:
-        ordered = sorted(starts, key=lambda h: -_step(problem, h)[1])
-        _begin(problem, ordered[min(rank, len(ordered) - 1)], beta, onsets.get(starts[0].name))
-    return confirm(problem, beta, _slots(wanted)).beta
+        ordered = sorted(starts, key=lambda h: -_step(problem, data, h)[1])
+        best = ordered[min(rank, len(ordered) - 1)]
+        moves = np.zeros(len(data.columns))
+        moves[data.place(best.columns)] = _step(problem, data, best)[0]
+        beta = begun(problem, data, best, moves, beta, best.slots)
+        if best.name in onsets:
+            at = placed(problem.parts, problem.plant, best.slots, onsets[best.name])
+            beta[list(at)] = list(at.values())
+    return beta
 
 
-def _begin(problem: Problem, best: Hypothesis, beta: Array, onset: float | None) -> None:
-    """Move ``beta`` to a starting point of a hypothesis and one linear step from there; the true onset where there is one."""
-    for slot, value in best.at:
-        beta[slot] = value
-    free = [d.slot for d in best.directions] or list(best.columns)
-    for slot, move in zip(free, _step(problem, best)[0], strict=True):
-        if slot >= 0:
-            p = problem.plant.slots[slot].parameter
-            beta[slot] = float(np.clip(beta[slot] + move, p.low, p.high))
-    for slot in best.slots:
-        if onset is not None and problem.plant.slots[slot].parameter.name == "onset":
-            beta[slot] = onset
-
-
-def _step(problem: Problem, h: Hypothesis) -> tuple[Array, float]:
-    i = problem.data.place(h.columns)
-    A, b = problem.data.A.sum(axis=0)[np.ix_(i, i)], problem.data.b.sum(axis=0)[i]
+def _step(problem: Problem, data: Products, h: Hypothesis) -> tuple[Array, float]:
+    i = data.place(h.columns)
+    A, b = data.A.sum(axis=0)[np.ix_(i, i)], data.b.sum(axis=0)[i]
     step = np.linalg.solve(A + np.diag(problem.inflation / np.array(h.sd) ** 2), b)
     return step, float(b @ step)

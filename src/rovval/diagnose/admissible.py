@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rovval import effects
-from rovval.diagnose.confirm import PLACING, significance
+from rovval.diagnose.confirm import places, significance
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.separate import PER_PARAMETER, Rival, alike, form_share
 
@@ -69,9 +69,9 @@ def _beyond_tolerance(problem: Problem, rival: Rival) -> bool:
 def _beyond_the_library(problem: Problem, rival: Rival) -> bool:
     """Whether a size rests at a bound of its search: the fit would go on, to where no vehicle is. A coefficient may well vanish, thrust too, and what a
     log does not show rests where nothing is at work."""
-    slots = {s: problem.plant.slots[s].parameter for s in rival.hypothesis.slots}
+    slots = {s: problem.plant.slots[s].parameter for s in rival.hypothesis.slots if not places(problem, s)}
     levers = effects.load(problem.plant.slots[rival.hypothesis.slots[0]].effect).levers
-    sized = [(slots[s], float(rival.fitted.beta[s])) for s in rival.fitted.at_bound if s in slots and slots[s].name not in (*PLACING, *levers)]
+    sized = [(slots[s], float(rival.fitted.beta[s])) for s in rival.fitted.at_bound if s in slots and slots[s].name not in levers]
     ended = (x != p.null and not (p.name == "scale" and x <= p.low <= GONE) and not (p.name == "loss" and x >= p.high >= DEAD) for p, x in sized)
     return any(ended)
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import stats
 
+from rovval import effects
 from rovval.data import Array
 from rovval.diagnose.contest import Fold, losses
 from rovval.diagnose.point import Point, whole_evidence
@@ -107,8 +108,14 @@ def significance(problem: Problem, fitted: Confirmed, slots: tuple[int, ...]) ->
     """Largest departure of ``slots`` from where the vehicle stands, in standard errors that include calibration slop. Parameters that only
     place an effect (an onset, a period) have no null of their own and do not count."""
     error = errors(problem, fitted)
-    sized = [s for s in slots if problem.plant.slots[s].parameter.name not in PLACING]
+    sized = [s for s in slots if not places(problem, s)]
     return max(float(abs(fitted.beta[s] - problem.origin[s]) / max(error[fitted.slots.index(s)], 1e-12)) for s in sized)
+
+
+def places(problem: Problem, slot: int) -> bool:
+    """Whether a parameter only places an effect, in time or in space."""
+    one = problem.plant.slots[slot]
+    return one.parameter.name in (*PLACING, *effects.load(one.effect).where)
 
 
 def interval(value: float, error: float, blocks: int) -> tuple[float, float]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 import numpy as np
 
 from rovval.data import Array
@@ -19,6 +21,7 @@ from rovval.diagnose.settle import stays
 FINALISTS = 10  # hypotheses that are re-simulated in a round
 SCREENED = 0.15  # of the best linear evidence: less is not re-simulated,
 FEWEST, ANYWAY = 4, 20.0  # unless it is one of the first few and is strong evidence by itself
+TRIES = 3  # starting points well away from nothing that a hypothesis is settled from
 TWIN, MOST_TWINS = 0.85, 4  # coherence from which a hypothesis is re-simulated beside the best finalist whatever the screen said
 PROMISED, RETRIED = 0.5, 2  # share of the tangent's evidence that a quick fit must keep, else it is settled with care; how many may be
 SHARPENED = 4  # finalists that are settled with slopes made at their own point
@@ -38,15 +41,19 @@ def finalists(
 
     def refit(h: Hypothesis) -> None:
         slots = tuple(dict.fromkeys((*chosen, *h.slots)))
-        start = _start(problem, data, h, step(data, ground.widened(prior_of(h)), problem.inflation), base.beta, slots)
+        start = begun(problem, data, h, step(data, ground.widened(prior_of(h)), problem.inflation), base.beta, slots)
         if h.name.startswith(REVERSED):
             start = _turned(problem, h, start)
-        fitted[h.name] = h, roughly(problem, start, slots, base.scaled).light()
+        quick = roughly(problem, start, slots, base.scaled).light()
+        if h.name not in fitted or quick.evidence > fitted[h.name][1].evidence:
+            fitted[h.name] = h, quick
 
+    tries = Counter[str]()
     for h in ordered:
         promising = detection.evidence[h.label] > (least if len(fitted) >= FEWEST else min(least, ANYWAY))
-        if h.name not in fitted and len(fitted) < FINALISTS and promising:
+        if promising and (tries[h.name] < TRIES if h.name in fitted and h.whole else h.name not in fitted and len(fitted) < FINALISTS):
             refit(h)
+            tries[h.name] += 1
     if fitted:
         best = max(fitted.values(), key=lambda item: item[1].evidence)[0]
         twins = [h for h in ordered if h.name not in fitted and coherence(data, best.columns, h.columns) > TWIN]
@@ -93,7 +100,7 @@ def _turned(problem: Problem, h: Hypothesis, start: Array) -> Array:
     return start
 
 
-def _start(problem: Problem, data: Products, h: Hypothesis, moves: Array, beta: Array, own: tuple[int, ...]) -> Array:
+def begun(problem: Problem, data: Products, h: Hypothesis, moves: Array, beta: Array, own: tuple[int, ...]) -> Array:
     """The linear answer as the starting point of the re-simulation, inside the parameters' bounds; tolerances of sensors stay in the tangent."""
     start = beta.copy()
     still = {s for s in stays(problem.plant) if s not in own}

@@ -24,7 +24,9 @@ FAR = {  # typical sizes of starting points away from the null value (chosen)
 LEVER = 0.7  # of the furthest thruster's distance: where a force may act (chosen)
 DEPTHS = (0.25, 0.5, 0.75)  # quantiles of a log's depth where what changes with depth may have its datum (chosen)
 LINES = 3  # periods that an effect begins from
-MOST_STARTS = 12  # of a hypothesis with several such parameters
+MOST_STARTS = 12  # of a hypothesis with several such parameters; thrice as many of one whose starts cost a single simulation each
+CAUGHT = (1.0, 5.0)  # typical sizes from which what holds the vehicle begins: no slope leads from nothing to a standstill (chosen)
+BREAKS, SOONER_S = 2, (0.0, 5.0, 10.0, 15.0)  # breaks that an onset begins from, and how long before one what must first be moved away from began
 PRIOR_WIDTH = 4.0  # wide prior, in typical sizes: keeps a parameter that the log does not see from running away
 
 
@@ -41,12 +43,19 @@ class Hypothesis:
     at: tuple[tuple[int, float], ...] = ()
     directions: tuple[Direction, ...] = ()
 
+    @property
+    def whole(self) -> bool:
+        """Whether it begins with its full size, well away from nothing, and not with a slope."""
+        return any(d.slot < 0 for d in self.directions)
 
-def hypotheses(parts: Sequence[Stretches], without: Sequence[str] = (), periods: Sequence[float] = ()) -> tuple[list[Hypothesis], dict[str, str]]:
+
+def hypotheses(
+    parts: Sequence[Stretches], without: Sequence[str] = (), periods: Sequence[float] = (), breaks: Sequence[float] = ()
+) -> tuple[list[Hypothesis], dict[str, str]]:
     """The competing hypotheses, and those that this log cannot test with the reason.
 
-    ``without`` names effects (``inflow_loss``) or hypotheses (``thruster_degraded[HFP]``) to leave out; ``periods`` (s), the most promising
-    first, are where those that swing begin.
+    ``without`` names effects (``inflow_loss``) or hypotheses (``thruster_degraded[HFP]``) to leave out; ``periods`` (s) and
+    ``breaks`` (s since the first run's start), the most promising first, are where those that swing and those that begin during the log begin.
     """
     plant, found, untestable = parts[0].plant, list[Hypothesis](), dict[str, str]()
     for name, slots in plant.hypotheses.items():
@@ -58,23 +67,41 @@ def hypotheses(parts: Sequence[Stretches], without: Sequence[str] = (), periods:
             untestable[name] = f"needs {', '.join(missing)}, which this log does not hold"
             continue
         next_id = len(plant.slots) + sum(len(h.directions) for h in found)
-        found.extend(_starts(plant, name, effect, slots, parts, next_id, periods))
+        found.extend(_starts(plant, name, effect, slots, parts, next_id, periods, breaks))
     return found, untestable
 
 
 def _starts(
-    plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], parts: Sequence[Stretches], next_id: int, periods: Sequence[float]
-) -> list[Hypothesis]:
+    plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], parts: Sequence[Stretches], next_id: int,
+    periods: Sequence[float], breaks: Sequence[float],
+) -> list[Hypothesis]:  # fmt: skip
     """One hypothesis, or one for each starting point of the parameters that linearisation at the null value cannot see."""
-    grids = _grids(plant, effect, slots, parts, periods)
+    grids = _grids(plant, effect, slots, parts, periods, breaks)
     if not grids:
-        near = Hypothesis(name, name, slots, slots, tuple(PRIOR_WIDTH * plant.slots[s].parameter.typical for s in slots))
         far = _far(plant, name, effect, slots, next_id)
-        return [near, *_alone(plant, name, effect, slots), *far, *_levers(plant, name, effect, slots, next_id + len(far))]
+        return [*_near(plant, name, effect, slots), *_alone(plant, name, effect, slots), *far, *_levers(plant, name, effect, slots, next_id + len(far))]
+    named = {plant.slots[s].parameter.name: s for s in slots}
     own = tuple(s for s in slots if s not in grids) or (-1,)
-    points = list(product(*grids.values()))
-    chosen = points if len(points) <= MOST_STARTS else [points[i] for i in np.linspace(0, len(points) - 1, MOST_STARTS).astype(int)]
-    return [_begun(plant, f"{name}@{i}", slots, own, tuple(zip(grids, point, strict=True)), next_id + i * len(own)) for i, point in enumerate(chosen)]
+    if effect.where:
+        own, grids = (-1,), grids | {slots[0]: tuple(size * plant.slots[slots[0]].parameter.typical for size in CAUGHT)}
+    points, most = [dict(zip(grids, point, strict=True)) for point in product(*grids.values())], MOST_STARTS * (3 if own == (-1,) else 1)
+    chosen = points if len(points) <= most else [points[i] for i in np.linspace(0, len(points) - 1, most).astype(int)]
+    begun = [point | (placed(parts, plant, slots, point[named["onset"]]) if effect.where else {}) for point in chosen]
+    return [_begun(plant, f"{name}@{i}", slots, own, tuple(at.items()), next_id + i * len(own)) for i, at in enumerate(begun)]
+
+
+def placed(parts: Sequence[Stretches], plant: Plant, slots: tuple[int, ...], t: float) -> dict[int, float]:
+    """Values of the slots that an onset at ``t`` s since the first run's start places: itself, and where the vehicle was then."""
+    run, found = parts[0].run, dict[int, float]()
+    for slot in slots:
+        name = plant.slots[slot].parameter.name
+        channel = effects.load(plant.slots[slot].effect).where.get(name)
+        if name == "onset":
+            found[slot] = t
+        elif channel:
+            known = np.flatnonzero(run.ok(channel))
+            found[slot] = float(np.interp(t / run.dt, known, run.get(channel)[known]))
+    return found
 
 
 def _begun(plant: Plant, label: str, slots: tuple[int, ...], own: tuple[int, ...], at: tuple[tuple[int, float], ...], next_id: int) -> Hypothesis:
@@ -82,6 +109,13 @@ def _begun(plant: Plant, label: str, slots: tuple[int, ...], own: tuple[int, ...
     directions = tuple(Direction(next_id + i, at, slot) for i, slot in enumerate(own))
     sd = tuple(PRIOR_WIDTH * (plant.slots[s].parameter.typical if s >= 0 else 0.5) for s in own)
     return Hypothesis(label.partition("@")[0], label, slots, tuple(d.id for d in directions), sd, at, directions)
+
+
+def _near(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...]) -> list[Hypothesis]:
+    """All parameters from the null value; where some only refine the others, these without them first."""
+    plain = tuple(s for s in slots if plant.slots[s].parameter.name not in effect.refines)
+    sets = {name: plain, f"{name}@fine": slots} if len(plain) < len(slots) else {name: slots}
+    return [Hypothesis(name, label, free, free, tuple(PRIOR_WIDTH * plant.slots[s].parameter.typical for s in free)) for label, free in sets.items()]
 
 
 def _alone(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...]) -> list[Hypothesis]:
@@ -120,18 +154,25 @@ def _depths(parts: Sequence[Stretches]) -> tuple[float, ...]:
     return tuple(dict.fromkeys(float(d) for d in np.quantile(z, DEPTHS)))
 
 
+def _onsets(parts: Sequence[Stretches], breaks: Sequence[float], sooner: Sequence[float]) -> tuple[float, ...]:
+    """Onsets (s) at the first breaks of the first log, or so much sooner, and others spread over it, `MOST_STARTS` in all."""
+    first, last = float(parts[0].start[0]), float(parts[0].start[-1])
+    near = [t - s for t in breaks[:BREAKS] for s in sooner if t - s > first * parts[0].run.dt]
+    spread = min(ONSETS, (MOST_STARTS if len(sooner) == 1 else BREAKS * len(sooner)) - len(near))
+    share = np.arange(1, spread + 1) / (spread + 1)
+    return (*near, *(float((first + (last - first) * s) * parts[0].run.dt) for s in share))
+
+
 def _grids(
-    plant: Plant, effect: effects.Effect, slots: tuple[int, ...], parts: Sequence[Stretches], periods: Sequence[float]
+    plant: Plant, effect: effects.Effect, slots: tuple[int, ...], parts: Sequence[Stretches], periods: Sequence[float], breaks: Sequence[float]
 ) -> dict[int, tuple[float, ...]]:
-    """Starting values by slot: onsets spread over the log, the best of ``periods`` as far as `MOST_STARTS` lets them, other grids as the
+    """Starting values by slot: onsets spread over the log and at its breaks, the best of ``periods`` as far as `MOST_STARTS` lets them, other grids as the
     effect states them, held within the bounds."""
     found = {}
     for slot in slots:
         parameter = plant.slots[slot].parameter
         if parameter.name == "onset":
-            first, last = float(parts[0].start[0]), float(parts[0].start[-1])
-            share = np.arange(1, ONSETS + 1) / (ONSETS + 1)
-            found[slot] = tuple(float((first + (last - first) * s) * parts[0].run.dt) for s in share)
+            found[slot] = _onsets(parts, breaks, SOONER_S if effect.where else SOONER_S[:1])
         elif parameter.name == "depth":
             found[slot] = _depths(parts)
         elif parameter.name in effect.grid:

@@ -56,7 +56,7 @@ def group(problem: Problem, rivals: list[Rival], seed: int, block: int = 2) -> t
     draws = _blocks(problem.blocks, block, np.random.default_rng(seed))[:GROUP_RESAMPLES]
     counts = np.stack([np.bincount(draw, minlength=problem.blocks) for draw in draws]).astype(float)
     form = form_share(problem.blocks)
-    near = [r for r in rivals if r.evidence > (1 - 2 * form) * best.evidence or _near(r, best, form) or alike(problem, r, best)]
+    near = [r for r in rivals if r is best or r.evidence > (1 - 2 * form) * best.evidence or _near(r, best, form) or alike(problem, r, best)]
     total = {r.hypothesis.name: evidence(problem, r.fitted.point, counts) for r in near}
     lead = total[best.hypothesis.name]
     kept = [r for r in near if r is best or _near(r, best, form) or alike(problem, r, best) or float((total[r.hypothesis.name] >= lead).mean()) > LEVEL]

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from rovval.data import Array, Flags
+from rovval.diagnose.breaks import breaks
 from rovval.diagnose.library import Hypothesis, hypotheses
 from rovval.diagnose.linearise import Linear
 from rovval.diagnose.point import Point
@@ -23,11 +24,11 @@ SHORTEST_S = 2.0  # the shortest period of an effect; ten samples of it are enou
 
 
 def retuned(problem: Problem, library: list[Hypothesis], point: Point) -> list[Hypothesis]:
-    """The library with the periods of its effects begun from where the residual about ``point`` swings most; as it is where no velocity
-    was measured."""
-    found, kept = lines(problem, point), {h.name for h in library}
-    fresh, _ = hypotheses(problem.parts, periods=[period for period, _ in found])
-    return [h for h in fresh if h.name in kept] if found else library
+    """The library with what swings begun at the periods at which the residual about ``point`` swings most, and what begins during the log
+    where the log begins to err."""
+    kept = {h.name for h in library}
+    fresh, _ = hypotheses(problem.parts, periods=[period for period, _ in lines(problem, point)], breaks=breaks(problem))
+    return [h for h in fresh if h.name in kept]
 
 
 def lines(problem: Problem, point: Point) -> tuple[tuple[float, float], ...]:

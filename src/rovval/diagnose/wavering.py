@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from rovval.data import Array
-from rovval.diagnose.confirm import PLACING, Confirmed
+from rovval.diagnose.confirm import Confirmed, places
 from rovval.diagnose.disturbance import pieces
 from rovval.diagnose.forced import answered
 from rovval.diagnose.linearise import spread
@@ -65,8 +65,8 @@ def _windowed(problem: Problem, point: Point, step: Array, slot: int) -> tuple[f
 
 def _sized(problem: Problem, point: Point, named: Named) -> list[int]:
     """Slots of a cause that have a size: not those that only place it (an onset), nor one that rests at nothing, nor what wanders by nature."""
-    slots, wanders = problem.plant.slots, named.hypothesis.name.partition("[")[0] in WANDERS
-    return [s for s in named.hypothesis.slots if not wanders and point.beta[s] != problem.origin[s] and slots[s].parameter.name not in PLACING]
+    wanders = named.hypothesis.name.partition("[")[0] in WANDERS
+    return [s for s in named.hypothesis.slots if not wanders and point.beta[s] != problem.origin[s] and not places(problem, s)]
 
 
 def _windows(problem: Problem, point: Point, step: Array, named: Named) -> float:

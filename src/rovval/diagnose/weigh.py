@@ -30,6 +30,7 @@ BETTER = 1.0  # of a cause's evidence: a generic force that has more is nearer t
 FORMLESS = 20.0  # twice the log Bayes factor of what is beside a cause, from which it is more than the form of an equation (chosen)
 ACTING = 0.15  # of what a cause closes: the axes on which it acts
 HARMS = 0.25  # of what causes close in all: a cause that opens more on one axis is the least bad (chosen)
+UNMOVED = 0.001  # of the gap: less is rounding, as of a compass, which moves nothing (chosen)
 SKILL = 0.5  # of the squared motion: an axis on which more is left is not simulated at all (chosen)
 HARDLY = 0.15  # of what an axis erred before (chosen)
 REAL = 100.0  # twice the log Bayes factor of a generic force from which it is not a healthy vehicle's form (tuning set)
@@ -65,7 +66,7 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
     after, many = corrected_residuals(problem, final.beta), problem.blocks >= FEW
     was, now = axis_weight(problem, before), axis_weight(problem, after)
     closed = {axis: max(was[axis] - now[axis], 0.0) for axis in was}  # of the weighted gap
-    harmful = max(now[axis] - was[axis] for axis in was) > HARMS * (sum(was.values()) - sum(now.values()))
+    harmful = max(now[axis] - was[axis] for axis in was) > max(HARMS * (sum(was.values()) - sum(now.values())), UNMOVED * sum(was.values()))
     axes = _acting(closed)
     holds = many and rest.share(problem.folds) > HOLDS
     beside, instead = rest.evidence(axes) if holds else 0.0, general.evidence(axes)

@@ -60,9 +60,10 @@ class Parameter:
 class Effect:
     """One effect as an engineer reads it: where it enters, its equation with source, its parameters, what one sees, what it is
     confused with and what separates it. ``needs``: channels without which it cannot be tested. ``grid``: start points for
-    parameters that linearisation at the null value cannot see (``onset`` as a fraction of the run); ``levers``: coordinates of the point
-    where a force acts, which it cannot see either, the one ahead first. ``apart``: each parameter may well be at work without the others,
-    as an offset along one of three axes, and is tried by itself, too. ``competes`` False: a tolerance
+    parameters that linearisation at the null value cannot see (``onset`` as a fraction of the run); ``where``: parameters that begin
+    where a channel stood at the onset; ``levers``: coordinates of the point where a force acts, which it cannot see either, the one ahead
+    first. ``apart``: each parameter may well be at work without the others, as an offset along one of three axes, and is tried by itself,
+    too. ``refines``: parameters that only refine the others, which are tried without them as well. ``competes`` False: a tolerance
     that healthy vehicles have, which a diagnosis takes into account and never names."""
 
     name: str
@@ -77,12 +78,15 @@ class Effect:
     axes: tuple[str, ...] = ()
     needs: tuple[str, ...] = ()
     grid: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    where: Mapping[str, str] = field(default_factory=dict)
     levers: tuple[str, ...] = ()
     apart: bool = False
+    refines: tuple[str, ...] = ()
     competes: bool = True
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "grid", MappingProxyType(dict(self.grid)))
+        object.__setattr__(self, "where", MappingProxyType(dict(self.where)))
 
 
 @cache

@@ -21,6 +21,7 @@ EFFECT = Effect(
     signature="follows every change of thrust, on all axes at once, gyro included",
     confused_with=("time_offset", "velocity_filter_lag", "added_mass"),
     separates="a sensor's delay shows in that sensor only; added mass leaves the steady oscillation's phase otherwise",
+    refines=("dead",),
 )
 
 
