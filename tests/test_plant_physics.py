@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import plant_cases as cases
 from rovval import vehicle as vehicles
-from rovval.effects import tether_drag
+from rovval.effects import tether_drag, tether_tension
 from rovval.effects._lanes import reference_speed
 from rovval.frames import euler_from_quaternion, quaternion_from_euler, rotation_from_euler, rotation_from_quaternion, wrap
 from rovval.plant import Inputs, Plant, geometry, parse_settings
@@ -275,3 +275,19 @@ def test_a_tether_damps_a_turn_by_its_arm_and_never_gives_power():
         turns.append(cases.run(plant, seconds=5.0, nu=[0, 0, 0, 0, 0, 0.5], beta=beta).nu[0, -1, 5])
     free = cases.run(plant, seconds=5.0, nu=[0, 0, 0, 0, 0, 0.5]).nu[0, -1, 5]
     assert turns[0] == pytest.approx(free, rel=1e-3) and turns[1] < 0.97 * free
+
+
+def test_a_pull_keeps_its_size_and_points_to_where_it_is_held():
+    """Tension T at the log's origin towards A = T / (|T| nearness); far away it is the same everywhere; none is none."""
+    rng, pull, nearness = np.random.default_rng(43), np.array([6.0, -3.0, 2.0]), 0.05
+    x, y, z = rng.uniform(-8.0, 8.0, (3, 50))
+
+    def given(size: float, near: float) -> np.ndarray:
+        n, e, d = size * pull
+        return np.stack(tether_tension.wrench(n, e, d, near, 0.0, 0.0, x, y, z, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)[:3], axis=-1)
+
+    size = float(np.linalg.norm(pull))
+    towards = pull / (size * nearness) - np.stack([x, y, z], axis=-1)
+    assert np.allclose(given(1.0, nearness), size * towards / np.linalg.norm(towards, axis=1)[:, None], rtol=1e-9)
+    assert np.allclose(given(1.0, 0.0), pull, rtol=1e-9)
+    assert not given(0.0, nearness).any()

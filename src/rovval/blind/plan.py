@@ -30,6 +30,7 @@ SAME_LAW = {  # taken out together: one is the other at some value, or closes ni
     "current_constant": ("current_constant", "current_varying", "current_shear"),
     "time_offset": ("time_offset", "velocity_filter_lag"),  # 0.92 on a rich log
     "velocity_filter_lag": ("velocity_filter_lag", "time_offset"),  # 0.94 on a rich log
+    "tether_tension": ("tether_tension", "tether_snag"),  # a soft spring far from its slack pulls alike: 0.74 and 0.72 on rich logs
     "thrust_lag": ("thrust_lag", "time_offset"),  # three lags in a row are nearer to a delay than to one lag: 1.16
 }
 SMALL: tuple[tuple[str, tuple[tuple[str, str | None, float], ...], bool], ...] = (  # mission; name, target, severity; left out

@@ -20,7 +20,7 @@ from rovval.diagnose.products import Scaled
 from rovval.diagnose.settle import FEW, moved, settle
 
 INTERVAL = 0.90
-PLACING = ("onset", "period", "phase", "direction", "height", "reach", "radius", "depth", "dead")
+PLACING = ("onset", "period", "phase", "direction", "height", "reach", "radius", "depth", "dead", "nearness")
 ONSET_SEARCH_S = (-12.0, -6.0, -3.0, -1.5, 1.5, 3.0, 6.0, 12.0)
 
 
