@@ -60,12 +60,14 @@ def test_slopes_that_stand_still_give_the_same_products():
     in either counts nothing."""
     near, ok, variance, spread = random_linear(3)
     own = replace(random_linear(4, k=2)[0], columns=(11, 3), valid=np.arange(6) != 4)
+    own.S[4], own.r[4] = np.nan, np.inf
     got = beside(own, scaled(replace(near, valid=np.arange(6) != 2), ok, variance, spread), (13, 10))
     S = np.concatenate([own.S, near.S[..., [3, 0]]], axis=-1)
     whole = Linear(own.r, S, near.J, (11, 3, 13, 10), (np.arange(6) != 2) & (np.arange(6) != 4))
     want, there = products(whole, ok, variance, spread), got.products(own.r)
     assert there.columns == want.columns
     np.testing.assert_array_equal(got.linear.S, S)
+    assert not there.A[[2, 4]].any() and not there.b[[2, 4]].any() and not there.c[[2, 4]].any()
     for one, other in ((there.A, want.A), (there.b, want.b), (there.c, want.c)):
         np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-9)
     other_r = RNG(5).normal(size=own.r.shape)

@@ -13,14 +13,16 @@ import pytest
 
 from diagnose_case import LIBRARY, foreign, merlin, own
 from rovval.data import Run
-from rovval.diagnose import diagnose
+from rovval.diagnose import diagnose, lanes
 from rovval.diagnose.admissible import _beyond_the_library
 from rovval.diagnose.breaks import FEWEST, _split
 from rovval.diagnose.confirm import confirm, errors
 from rovval.diagnose.excited import LARGE, LEAST_SIGMA, excited
 from rovval.diagnose.finalists import _half_a_turn_later
+from rovval.diagnose.lanes import lanes_of
 from rovval.diagnose.library import LEVER, MOST_STARTS, Hypothesis, hypotheses
-from rovval.diagnose.problem import Problem, pose
+from rovval.diagnose.linearise import linearise
+from rovval.diagnose.problem import Problem, columns_of, pose
 from rovval.diagnose.separate import Rival
 from rovval.diagnose.settle import healthy_point, resettled, settle
 from rovval.diagnose.stretches import cut_all
@@ -252,3 +254,16 @@ def test_a_hypothesis_is_tried_without_what_only_refines_it():
     _, library = posed()
     lags = [h for h in library if h.name == "thrust_lag" and not h.at]
     assert sorted(len(h.slots) for h in lags) == [1, 2] and len({h.label for h in lags}) == 2
+
+
+def test_where_nothing_is_there_yet_the_nominal_simulation_serves(monkeypatch: pytest.MonkeyPatch):
+    """To the last digit: onsets, periods, depths, levers of effects of no size; once there is a size, the place counts."""
+    p, library = posed()
+    part, (columns, directions) = p.parts[0], columns_of(library, p.slop)
+    beta = p.origin.copy()
+    beta[slot(p, "payload_change.weight")] = 50.0
+    lean, few = linearise(part, beta, columns, directions), len(lanes_of(part, beta, [], columns, directions))
+    monkeypatch.setattr(lanes, "_idle", lambda *known: set())
+    whole, all_of_them = linearise(part, beta, columns, directions), len(lanes_of(part, beta, [], columns, directions))
+    np.testing.assert_array_equal(lean.S, whole.S)
+    assert few < 0.9 * all_of_them

@@ -56,7 +56,7 @@ def lanes_of(
         up, down = _both_ways(stretches, beta, column)
         lanes.append(Lane(_moved(beta, [(column, beta[column] + down)]), still, still) if down else lanes[0])
         lanes.append(Lane(_moved(beta, [(column, beta[column] + up)]), still, still, column=column, step=up - down, against=len(lanes) - 1))
-    bases: dict[tuple[tuple[int, float], ...], int] = {}
+    bases = dict.fromkeys(_idle(stretches, beta, directions), 0)
     for d in directions:
         there = _moved(beta, list(d.at))
         if d.slot < 0:
@@ -68,6 +68,15 @@ def lanes_of(
         up, _ = _both_ways(stretches, there, d.slot)
         lanes.append(Lane(_moved(there, [(d.slot, there[d.slot] + up)]), still, still, column=d.id, step=up, against=bases[d.at]))
     return lanes
+
+
+def _idle(stretches: Stretches, beta: Array, directions: Sequence[Direction]) -> set[tuple[tuple[int, float], ...]]:
+    """Points at which nothing is there yet: what stands elsewhere only places an effect of no size, and the simulation is the nominal one."""
+    sized: dict[tuple[tuple[int, float], ...], list[int]] = {}
+    for d in directions:
+        sized.setdefault(d.at, []).append(d.slot)
+    slots = stretches.plant.slots
+    return {at for at, own in sized.items() if all(s >= 0 and beta[s] == slots[s].parameter.null for s in own)}
 
 
 def one_sided(stretches: Stretches, beta: Array, columns: tuple[int, ...]) -> list[Lane]:

@@ -60,7 +60,7 @@ class Scaled:
 
     def products(self, r: Array) -> Products:
         """Products of a residual ``r`` (m, n, c) with these slopes."""
-        scaled = r.reshape(self.root.shape) * self.root
+        scaled = _over(r.reshape(self.root.shape), self.root)
         z = _onto(self.q, scaled)
         return Products(self.A, _onto(self.x, scaled) - _onto(self.y, z), (scaled**2).sum(axis=1) - (z**2).sum(axis=1), self.linear.columns)
 
@@ -90,14 +90,14 @@ def beside(own: Linear, other: Scaled, columns: tuple[int, ...]) -> Scaled:
     """A linearisation with further ``columns``, whose slopes are taken from another one nearby, and its nuisances with them."""
     place, k, m = [other.linear.columns.index(c) for c in columns], len(own.columns), len(own.r)
     root = np.where((own.valid & other.linear.valid)[:, None], other.root, 0.0)
-    mine = own.S.reshape(*root.shape, k) * root[..., None]
+    mine = _over(own.S.reshape(*root.shape, k), root[..., None])
     S, x = _joined(own.S, other.linear.S, place), _joined(mine, other.x, place)
     y = _joined(_gram(other.q, mine), other.y, place)
     A = np.empty((m, k + len(place), k + len(place)))
     A[:, k:, k:] = other.A[:, place][..., place]
     A[:, :k] = _gram(mine, x) - _gram(y[..., :k], y)
     A[:, k:, :k] = np.swapaxes(A[:, :k, k:], 1, 2)
-    A[root.max(axis=1) == 0.0] = 0.0
+    A[root.max(axis=1) == 0.0] = 0.0  # the other's own
     linear = Linear(own.r, S, other.linear.J, (*own.columns, *columns), own.valid & other.linear.valid)
     return Scaled(linear, root, other.q, x, y, A)
 
@@ -109,6 +109,11 @@ def _window(linear: Linear, w: int, ok: np.ndarray, variance: Array, spread: Arr
     j = linear.J[w].reshape(len(root), -1)[:, : len(spread)] * root[:, None] * spread
     q = solve_triangular(np.linalg.cholesky(np.eye(j.shape[1]) + j.T @ j), j.T, lower=True).T
     return root, q, x, q.T @ x
+
+
+def _over(a: Array, root: Array) -> Array:
+    """Values over their standard errors; what a window that stopped has left does not count, whatever it is."""
+    return np.where(root > 0.0, a, 0.0) * root
 
 
 def _onto(a: Array, b: Array) -> Array:
