@@ -21,6 +21,7 @@ TRIM = 0.02  # of the weight per unit of slop: 5 % slop goes with a vehicle trim
 TRIM_FORCE = 0.075  # or of the drag at 1 m/s ahead, whichever is more: a light vehicle is trimmed to what its drives hardly notice (chosen)
 LEVEL = 0.25  # of the metacentric height per unit of slop: 5 % slop goes with a vehicle that floats as level as its AHRS shows, 0.7 degrees,
 CENTRE, CENTRE_LEVEL = 0.1, 0.025  # or of the longest thruster arm, for height and level: centres are known to 0.5 % of it (chosen)
+LEAST_LEVEL = 0.01  # m per unit of slop, for level: 0.2 kg of ballast moved by 3 cm moves the centre of an 11.5 kg vehicle by half a millimetre
 CURVE = 4.0  # of the typical dead band per unit of slop: 5 % slop goes with a curve that is off by as much at small commands (chosen)
 SPLIT = 0.1  # m/s, rad/s: drag is known as a whole at this speed; how much of it is linear is off by as much as that (chosen)
 UNKNOWN = 0.5  # m/s, rad/s: the same for an axis without linear drag in the file, where nobody has measured it (chosen)
@@ -63,7 +64,7 @@ def slop_prior(plant: Plant, slop: float) -> Prior:
         elif slot.effect == "buoyancy_error":
             sd[i] = slop * max(TRIM * plant.vehicle.weight, TRIM_FORCE * reference_drag_force(plant.vehicle))
         elif slot.effect == "cg_offset":
-            sd[i] = slop * (max(height, CENTRE * arm) if name == "z" else max(LEVEL * height, CENTRE_LEVEL * arm))
+            sd[i] = slop * (max(height, CENTRE * arm) if name == "z" else max(LEVEL * height, CENTRE_LEVEL * arm, LEAST_LEVEL))
         elif slot.effect in SENSORS:
             sd[i] = SENSORS[slot.effect]
     return Prior(sd)
