@@ -9,13 +9,14 @@ import pytest
 
 from diagnose_case import NOISE, bare, commands, merlin, own
 from rovval.data import Array, Run
+from rovval.diagnose.breaks import change_points
 from rovval.diagnose.confirm import confirm
 from rovval.diagnose.contest import Fold, Prior, Ring, contest, fit, folds_of, heldout
 from rovval.diagnose.detect import detect
 from rovval.diagnose.faults import faults
 from rovval.diagnose.library import hypotheses
 from rovval.diagnose.linearise import Linear
-from rovval.diagnose.localise import axis_channels, change_points, slices, worst
+from rovval.diagnose.localise import axis_channels, slices, worst
 from rovval.diagnose.parity import parity
 from rovval.diagnose.problem import pose
 from rovval.diagnose.products import Products, beside, products, scaled, start_corrected

@@ -19,12 +19,14 @@ from rovval.diagnose.breaks import FEWEST, _split
 from rovval.diagnose.confirm import confirm, errors
 from rovval.diagnose.excited import LARGE, LEAST_SIGMA, excited
 from rovval.diagnose.finalists import _half_a_turn_later
+from rovval.diagnose.hypothesis import Hypothesis
 from rovval.diagnose.lanes import lanes_of
-from rovval.diagnose.library import LEVER, MOST_STARTS, Hypothesis, hypotheses
+from rovval.diagnose.library import hypotheses
 from rovval.diagnose.linearise import linearise
 from rovval.diagnose.problem import Problem, columns_of, pose
 from rovval.diagnose.separate import Rival
 from rovval.diagnose.settle import healthy_point, resettled, settle
+from rovval.diagnose.starts import LEVER, MOST_STARTS
 from rovval.diagnose.stretches import cut_all
 from rovval.diagnose.swings import lines
 from rovval.store import open_run
@@ -232,7 +234,7 @@ def test_a_break_is_where_the_level_steps(at):
 
 def test_what_is_caught_on_the_way_begins_where_the_vehicle_was():
     parts, _ = cut_all([own((), 5, 200.0)], merlin(), "fossen", 10.0)
-    library, _ = hypotheses(parts, breaks=[120.0])
+    library, _ = hypotheses(parts, breaks_s=[120.0])
     names = {i: s.parameter.name for i, s in enumerate(parts[0].plant.slots)}
     starts = [{names[s]: value for s, value in h.at} for h in library if h.name == "tether_snag"]
     assert {120.0, 115.0, 110.0, 105.0} <= {round(at["onset"], 6) for at in starts} and len(starts) <= 3 * MOST_STARTS

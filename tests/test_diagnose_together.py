@@ -11,7 +11,8 @@ import pytest
 from diagnose_case import foreign, merlin, own
 from rovval.diagnose import diagnose
 from rovval.diagnose.contest import PAIR, folds_of
-from rovval.diagnose.library import Hypothesis, hypotheses
+from rovval.diagnose.hypothesis import Hypothesis
+from rovval.diagnose.library import hypotheses
 from rovval.diagnose.problem import Problem, pose
 from rovval.diagnose.products import Products
 from rovval.diagnose.select import select

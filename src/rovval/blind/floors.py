@@ -15,7 +15,8 @@ import numpy as np
 from rovval.blind import stlsq
 from rovval.blind.spec import AXES, Array
 from rovval.data import Run
-from rovval.diagnose.library import PRIOR_WIDTH, Hypothesis, hypotheses
+from rovval.diagnose.hypothesis import PRIOR_WIDTH, Hypothesis
+from rovval.diagnose.library import hypotheses
 from rovval.diagnose.linearise import linearise
 from rovval.diagnose.problem import columns_of, pose
 from rovval.diagnose.stretches import VELOCITY_CHANNELS, Stretches, cut

@@ -16,13 +16,14 @@ from rovval.blind.spec import Array
 from rovval.data import Run
 from rovval.diagnose.confirm import confirm
 from rovval.diagnose.finalists import begun
-from rovval.diagnose.library import Hypothesis, hypotheses, placed
+from rovval.diagnose.hypothesis import Hypothesis
+from rovval.diagnose.library import hypotheses, retuned
 from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem, at, gap_at, pose
 from rovval.diagnose.products import Products
 from rovval.diagnose.settle import healthy_point
+from rovval.diagnose.starts import placed
 from rovval.diagnose.stretches import cut
-from rovval.diagnose.swings import retuned
 from rovval.vehicle.model import Vehicle
 
 Wanted = Sequence[Sequence[Hypothesis]]  # of each true effect its starting points
@@ -44,10 +45,9 @@ def oracle(
         found = _fit(store.open_run(log, PROFILE), vehicles.load(vehicle), true, onsets, **asked)
         if found is None:
             return {}
-        problem, wanted, beta = found
+        problem, healthy, wanted, beta = found
         left = _left(problem, wanted, beta)
         shares = 1.0 - left / np.array([problem.gap.c.sum(), problem.gap_data.c.sum()])
-        healthy = healthy_point(problem)
         alone = [_left(problem, others, _fitted(problem, healthy, others, onsets)) for others in _others(wanted)]
     except (RovvalError, ArithmeticError, ValueError):
         return {}
@@ -60,7 +60,7 @@ def fitted(run: Run, vehicle: Vehicle, true: Sequence[str], onsets: Mapping[str,
     found = _fit(run, vehicle, true, onsets)
     if found is None:
         return {}
-    problem, wanted, beta = found
+    problem, _, wanted, beta = found
     return {problem.plant.slots[s].key: float(beta[s]) for s in _slots(wanted)}
 
 
@@ -72,8 +72,8 @@ def _fit(
     model: str = "fossen",
     window_s: float = 10.0,
     calibration_slop: float = 0.05,
-) -> tuple[Problem, Wanted, Array] | None:
-    """The problem, the hypotheses that were free, and the fitted point."""
+) -> tuple[Problem, Point, Wanted, Array] | None:
+    """The problem, the healthy vehicle, the hypotheses that were free, and the fitted point."""
     part = cut(run, vehicle, model, window_s)
     library, _ = hypotheses((part,))
     if not true or not set(true) <= {h.name for h in library}:
@@ -81,7 +81,7 @@ def _fit(
     problem = pose((part,), library, calibration_slop)
     healthy = healthy_point(problem)
     wanted = [[h for h in retuned(problem, library, healthy) if h.name == name] for name in true]
-    return problem, wanted, _fitted(problem, healthy, wanted, onsets)
+    return problem, healthy, wanted, _fitted(problem, healthy, wanted, onsets)
 
 
 def _fitted(problem: Problem, healthy: Point, wanted: Wanted, onsets: Mapping[str, float]) -> Array:
@@ -120,8 +120,8 @@ def _from(problem: Problem, healthy: Point, data: Products, wanted: Wanted, rank
         moves[data.place(best.columns)] = _step(problem, data, best)[0]
         beta = begun(problem, data, best, moves, beta, best.slots)
         if best.name in onsets:
-            at = placed(problem.parts, problem.plant, best.slots, onsets[best.name])
-            beta[list(at)] = list(at.values())
+            place = placed(problem.parts, problem.plant, best.slots, onsets[best.name])
+            beta[list(place)] = list(place.values())
     return beta
 
 

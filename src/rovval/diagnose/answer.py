@@ -10,10 +10,11 @@ from rovval import __version__
 from rovval.channels import AXES
 from rovval.data import Array
 from rovval.diagnose import Diagnosis, next_flight
+from rovval.diagnose.breaks import change_points
 from rovval.diagnose.causes import causes, settings
 from rovval.diagnose.faults import faults
 from rovval.diagnose.gap import axis_rows, noise_loss
-from rovval.diagnose.localise import change_points, slices, worst
+from rovval.diagnose.localise import slices, worst
 from rovval.diagnose.miscalibrated import calibration
 from rovval.diagnose.nothing import open_gap, opened
 from rovval.diagnose.pictures import coherence_matrix, heat_map, traces

@@ -7,7 +7,7 @@ import numpy as np
 from rovval import effects
 from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed, errors, interval, roughly
-from rovval.diagnose.library import Hypothesis
+from rovval.diagnose.hypothesis import Hypothesis
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.shrinkage import shrinkage
 from rovval.diagnose.together import Named

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rovval.diagnose.library import PRIOR_WIDTH, Hypothesis
+from rovval.diagnose.hypothesis import PRIOR_WIDTH, Hypothesis
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.separate import FEW
 

@@ -14,7 +14,7 @@ import numpy as np
 from rovval.channels import AXES, VELOCITIES
 from rovval.data import Array, ClockReport, Reason, Run
 from rovval.diagnose.contest import Prior, Ring, fit, folds_of
-from rovval.diagnose.library import PRIOR_WIDTH
+from rovval.diagnose.hypothesis import PRIOR_WIDTH
 from rovval.diagnose.linearise import linearise, state_spread
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import products

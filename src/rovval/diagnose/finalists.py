@@ -11,7 +11,7 @@ from rovval.diagnose.admissible import DEGRADED, REVERSED, SERIOUS
 from rovval.diagnose.confirm import Confirmed, confirm, roughly
 from rovval.diagnose.contest import Prior, step
 from rovval.diagnose.detect import Detection
-from rovval.diagnose.library import PRIOR_WIDTH, Hypothesis
+from rovval.diagnose.hypothesis import PRIOR_WIDTH, Hypothesis
 from rovval.diagnose.point import Point, whole_evidence
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import Products

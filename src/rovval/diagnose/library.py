@@ -1,61 +1,26 @@
-"""The hypotheses that compete for a log: every effect of the library on every axis and thruster, those that it cannot show left out.
-
-Effects that begin at some time, or whose parameters linearisation at the null value cannot see (a period, an onset), enter once for
-each of a few starting points; which one is best is part of the contest and is counted in its calibration.
-"""
+"""The hypotheses that compete for a log: every effect of the library on every axis and thruster, those that it cannot show left out."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from itertools import product
-
-import numpy as np
 
 from rovval import effects
-from rovval.diagnose.lanes import Direction
+from rovval.diagnose.breaks import breaks
+from rovval.diagnose.hypothesis import Hypothesis
+from rovval.diagnose.point import Point
+from rovval.diagnose.problem import Problem
+from rovval.diagnose.starts import starts
 from rovval.diagnose.stretches import Stretches
-from rovval.plant import Plant
-
-ONSETS = 9  # starting points for an onset, evenly inside the log
-FAR = {  # typical sizes of starting points away from the null value (chosen)
-    "cg_offset": (-5.0, -2.0, 2.0, 5.0), "time_offset": (-8.0, -4.0, 4.0, 8.0), "thrust_lag": (3.0,), "velocity_filter_lag": (3.0,),
-}  # fmt: skip
-LEVER = 0.7  # of the furthest thruster's distance: where a force may act (chosen)
-DEPTHS = (0.25, 0.5, 0.75)  # quantiles of a log's depth where what changes with depth may have its datum (chosen)
-LINES = 3  # periods that an effect begins from
-MOST_STARTS = 12  # of a hypothesis with several such parameters; thrice as many of one whose starts cost a single simulation each
-CAUGHT = (1.0, 5.0)  # typical sizes from which what holds the vehicle begins: no slope leads from nothing to a standstill (chosen)
-BREAKS, SOONER_S = 2, (0.0, 5.0, 10.0, 15.0)  # breaks that an onset begins from, and how long before one what must first be moved away from began
-PRIOR_WIDTH = 4.0  # wide prior, in typical sizes: keeps a parameter that the log does not see from running away
-
-
-@dataclass(frozen=True, slots=True)
-class Hypothesis:
-    """``name`` as in the contract (``thruster_degraded[HFP]``); ``slots`` all of its parameters; ``columns`` of the linearisation that it
-    sets free, with their prior ``sd``; ``at`` where a starting point moves slots to; ``label`` tells starting points apart."""
-
-    name: str
-    label: str
-    slots: tuple[int, ...]
-    columns: tuple[int, ...]
-    sd: tuple[float, ...]
-    at: tuple[tuple[int, float], ...] = ()
-    directions: tuple[Direction, ...] = ()
-
-    @property
-    def whole(self) -> bool:
-        """Whether it begins with its full size, well away from nothing, and not with a slope."""
-        return any(d.slot < 0 for d in self.directions)
+from rovval.diagnose.swings import lines
 
 
 def hypotheses(
-    parts: Sequence[Stretches], without: Sequence[str] = (), periods: Sequence[float] = (), breaks: Sequence[float] = ()
+    parts: Sequence[Stretches], without: Sequence[str] = (), periods: Sequence[float] = (), breaks_s: Sequence[float] = ()
 ) -> tuple[list[Hypothesis], dict[str, str]]:
     """The competing hypotheses, and those that this log cannot test with the reason.
 
     ``without`` names effects (``inflow_loss``) or hypotheses (``thruster_degraded[HFP]``) to leave out; ``periods`` (s) and
-    ``breaks`` (s since the first run's start), the most promising first, are where those that swing and those that begin during the log begin.
+    ``breaks_s`` (s since the first run's start), the most promising first, are where those that swing and those that begin during the log begin.
     """
     plant, found, untestable = parts[0].plant, list[Hypothesis](), dict[str, str]()
     for name, slots in plant.hypotheses.items():
@@ -67,117 +32,13 @@ def hypotheses(
             untestable[name] = f"needs {', '.join(missing)}, which this log does not hold"
             continue
         next_id = len(plant.slots) + sum(len(h.directions) for h in found)
-        found.extend(_starts(plant, name, effect, slots, parts, next_id, periods, breaks))
+        found.extend(starts(plant, name, effect, slots, parts, next_id, periods, breaks_s))
     return found, untestable
 
 
-def _starts(
-    plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], parts: Sequence[Stretches], next_id: int,
-    periods: Sequence[float], breaks: Sequence[float],
-) -> list[Hypothesis]:  # fmt: skip
-    """One hypothesis, or one for each starting point of the parameters that linearisation at the null value cannot see."""
-    grids = _grids(plant, effect, slots, parts, periods, breaks)
-    if not grids:
-        far = _far(plant, name, effect, slots, next_id)
-        return [*_near(plant, name, effect, slots), *_alone(plant, name, effect, slots), *far, *_levers(plant, name, effect, slots, next_id + len(far))]
-    named = {plant.slots[s].parameter.name: s for s in slots}
-    own = tuple(s for s in slots if s not in grids) or (-1,)
-    if effect.where:
-        own, grids = (-1,), grids | {slots[0]: tuple(size * plant.slots[slots[0]].parameter.typical for size in CAUGHT)}
-    points, most = [dict(zip(grids, point, strict=True)) for point in product(*grids.values())], MOST_STARTS * (3 if own == (-1,) else 1)
-    chosen = points if len(points) <= most else [points[i] for i in np.linspace(0, len(points) - 1, most).astype(int)]
-    begun = [point | (placed(parts, plant, slots, point[named["onset"]]) if effect.where else {}) for point in chosen]
-    return [_begun(plant, f"{name}@{i}", slots, own, tuple(at.items()), next_id + i * len(own)) for i, at in enumerate(begun)]
-
-
-def placed(parts: Sequence[Stretches], plant: Plant, slots: tuple[int, ...], t: float) -> dict[int, float]:
-    """Values of the slots that an onset at ``t`` s since the first run's start places: itself, and where the vehicle was then."""
-    run, found = parts[0].run, dict[int, float]()
-    for slot in slots:
-        name = plant.slots[slot].parameter.name
-        channel = effects.load(plant.slots[slot].effect).where.get(name)
-        if name == "onset":
-            found[slot] = t
-        elif channel:
-            known = np.flatnonzero(run.ok(channel))
-            found[slot] = float(np.interp(t / run.dt, known, run.get(channel)[known]))
-    return found
-
-
-def _begun(plant: Plant, label: str, slots: tuple[int, ...], own: tuple[int, ...], at: tuple[tuple[int, float], ...], next_id: int) -> Hypothesis:
-    """A hypothesis whose slots ``own`` are free (-1: the whole change) where the others are moved to ``at``."""
-    directions = tuple(Direction(next_id + i, at, slot) for i, slot in enumerate(own))
-    sd = tuple(PRIOR_WIDTH * (plant.slots[s].parameter.typical if s >= 0 else 0.5) for s in own)
-    return Hypothesis(label.partition("@")[0], label, slots, tuple(d.id for d in directions), sd, at, directions)
-
-
-def _near(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...]) -> list[Hypothesis]:
-    """All parameters from the null value; where some only refine the others, these without them first."""
-    plain = tuple(s for s in slots if plant.slots[s].parameter.name not in effect.refines)
-    sets = {name: plain, f"{name}@fine": slots} if len(plain) < len(slots) else {name: slots}
-    return [Hypothesis(name, label, free, free, tuple(PRIOR_WIDTH * plant.slots[s].parameter.typical for s in free)) for label, free in sets.items()]
-
-
-def _alone(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...]) -> list[Hypothesis]:
-    """Each parameter without the others, where they may be apart: three that are free for one that is off are evidence lost."""
-    chosen = [(s, plant.slots[s].parameter) for s in slots if effect.apart]
-    return [Hypothesis(name, f"{name}@{p.name}", (s,), (s,), (PRIOR_WIDTH * p.typical,)) for s, p in chosen]
-
-
-def _far(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], next_id: int) -> list[Hypothesis]:
-    """Starting points well away from the null value: a vehicle that tumbles in simulation shows no useful slope of its trim there, nor do
-    commands that came a second late and step from one level to the next; a lag of half a second is no multiple of a short one."""
-    found = list[Hypothesis]()
-    for slot in slots:
-        p = plant.slots[slot].parameter
-        for value in (p.null + size * p.typical for size in FAR.get(effect.name, ())):
-            if p.low <= value <= p.high:
-                found.append(_begun(plant, f"{name}@far{len(found)}", slots, (-1,), ((slot, value),), next_id + len(found)))
-    return found
-
-
-def _levers(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], next_id: int) -> list[Hypothesis]:
-    """Starting points with the force well away from the origin, `LEVER` of the thrusters' reach ahead or astern: a force that is not there
-    yet turns nothing, wherever it would act, and once it is there the other levers show."""
-    levers = [s for s in slots if plant.slots[s].parameter.name in effect.levers]
-    if not levers:
-        return []
-    own, p = tuple(s for s in slots if s not in levers), plant.slots[levers[0]].parameter
-    reach = LEVER * max(float(np.linalg.norm(t.position)) for t in plant.vehicle.thruster)
-    ends = [((levers[0], float(np.clip(x, p.low, p.high))),) for x in (-reach, reach)]
-    return [_begun(plant, f"{name}@lever{i}", slots, own, at, next_id + i * len(own)) for i, at in enumerate(ends)]
-
-
-def _depths(parts: Sequence[Stretches]) -> tuple[float, ...]:
-    """Depths (m, down) high, in the middle and low in what the logs went through: a datum far outside makes a change with depth look like a constant."""
-    z = np.concatenate([part.eta0[:, 2] for part in parts])
-    return tuple(dict.fromkeys(float(d) for d in np.quantile(z, DEPTHS)))
-
-
-def _onsets(parts: Sequence[Stretches], breaks: Sequence[float], sooner: Sequence[float]) -> tuple[float, ...]:
-    """Onsets (s) at the first breaks of the first log, or so much sooner, and others spread over it, `MOST_STARTS` in all."""
-    first, last = float(parts[0].start[0]), float(parts[0].start[-1])
-    near = [t - s for t in breaks[:BREAKS] for s in sooner if t - s > first * parts[0].run.dt]
-    spread = min(ONSETS, (MOST_STARTS if len(sooner) == 1 else BREAKS * len(sooner)) - len(near))
-    share = np.arange(1, spread + 1) / (spread + 1)
-    return (*near, *(float((first + (last - first) * s) * parts[0].run.dt) for s in share))
-
-
-def _grids(
-    plant: Plant, effect: effects.Effect, slots: tuple[int, ...], parts: Sequence[Stretches], periods: Sequence[float], breaks: Sequence[float]
-) -> dict[int, tuple[float, ...]]:
-    """Starting values by slot: onsets spread over the log and at its breaks, the best of ``periods`` as far as `MOST_STARTS` lets them, other grids as the
-    effect states them, held within the bounds."""
-    found = {}
-    for slot in slots:
-        parameter = plant.slots[slot].parameter
-        if parameter.name == "onset":
-            found[slot] = _onsets(parts, breaks, SOONER_S if effect.where else SOONER_S[:1])
-        elif parameter.name == "depth":
-            found[slot] = _depths(parts)
-        elif parameter.name in effect.grid:
-            found[slot] = tuple(v for v in effect.grid[parameter.name] if parameter.low <= v <= parameter.high)
-            if parameter.name == "period" and (here := [p for p in periods if parameter.low <= p <= parameter.high]):
-                others = int(np.prod([len(values) for name, values in effect.grid.items() if name != "period"]))
-                found[slot] = tuple(here[: min(LINES, max(MOST_STARTS // others, 1))])
-    return {slot: values for slot, values in found.items() if values}
+def retuned(problem: Problem, library: list[Hypothesis], point: Point) -> list[Hypothesis]:
+    """The library with what swings begun at the periods at which the residual about ``point`` swings most, and what begins during the log
+    where the log begins to err."""
+    kept = {h.name for h in library}
+    fresh, _ = hypotheses(problem.parts, periods=[period for period, _ in lines(problem, point)], breaks_s=breaks(problem))
+    return [h for h in fresh if h.name in kept]

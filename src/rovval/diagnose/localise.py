@@ -6,7 +6,6 @@ window is taken out. A slice's share is its part of that sum, its lift the share
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -117,38 +116,6 @@ def worst(found: list[Slice], axis_share: dict[str, float], most: int = 5) -> li
 
 def _quantity(one: Slice) -> str:
     return one.regime.replace("|", "").split()[0]
-
-
-def change_points(stretches: Stretches, score: Array, seed: int, level: float = 0.01) -> list[float]:
-    """Times (s) at which the residual force changes level. ``score`` (m, d): per-window signed signals; binary segmentation with a
-    CUSUM whose threshold comes from permuted windows."""
-    scale = 1.4826 * np.median(np.abs(np.diff(score, axis=0)), axis=0) / np.sqrt(2.0)  # from differences: a step does not inflate it
-    usable = scale > 0
-    signal = np.clip((score[:, usable] - np.median(score[:, usable], axis=0)) / scale[usable], -6, 6)
-    rng = np.random.default_rng(seed)
-    return [float(stretches.start[k] * stretches.run.dt) for k in sorted(_segment(signal, 0, rng, level))]
-
-
-def _segment(signal: Array, offset: int, rng: np.random.Generator, level: float) -> Iterator[int]:
-    if len(signal) < 10 or signal.shape[1] == 0:
-        return
-    value, k = _cusum(signal)
-    null = np.array([_cusum(signal[rng.permutation(len(signal))])[0] for _ in range(200)])
-    if (null >= value).mean() < level and 3 <= k <= len(signal) - 3:
-        yield offset + k
-        yield from _segment(signal[:k], offset, rng, level / 2)
-        yield from _segment(signal[k:], offset + k, rng, level / 2)
-
-
-def _cusum(signal: Array) -> tuple[float, int]:
-    """Largest standardised difference of means over all splits and signals, and where."""
-    n = len(signal)
-    k = np.arange(1, n)[:, None]
-    head = np.cumsum(signal, axis=0)[:-1]
-    tail = signal.sum(axis=0) - head
-    jump = np.abs(head / k - tail / (n - k)) * np.sqrt(k * (n - k) / n)
-    jump[:2], jump[-2:] = 0.0, 0.0
-    return float(jump.max()), int(jump.max(axis=1).argmax()) + 1
 
 
 def _levels(name: str, value: Array, unit: str, floor: float) -> dict[str, Flags]:

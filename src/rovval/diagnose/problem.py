@@ -10,8 +10,8 @@ import numpy as np
 from rovval.data import Array
 from rovval.diagnose.contest import Fold, Prior, folds_of
 from rovval.diagnose.disturbance import Disturbance
+from rovval.diagnose.hypothesis import Hypothesis
 from rovval.diagnose.lanes import Direction
-from rovval.diagnose.library import Hypothesis
 from rovval.diagnose.linearise import Linear, linearise, residual, spread, state_spread
 from rovval.diagnose.metric import joined_of, metric
 from rovval.diagnose.parity import Parity, parity

@@ -97,7 +97,7 @@ def beside(own: Linear, other: Scaled, columns: tuple[int, ...]) -> Scaled:
     A[:, k:, k:] = other.A[:, place][..., place]
     A[:, :k] = _gram(mine, x) - _gram(y[..., :k], y)
     A[:, k:, :k] = np.swapaxes(A[:, :k, k:], 1, 2)
-    A[root.max(axis=1) == 0.0] = 0.0  # the other's own
+    A[root.max(axis=1) == 0.0] = 0.0  # windows that stopped: the other's block there is of one that ran
     linear = Linear(own.r, S, other.linear.J, (*own.columns, *columns), own.valid & other.linear.valid)
     return Scaled(linear, root, other.q, x, y, A)
 

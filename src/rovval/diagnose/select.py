@@ -18,13 +18,13 @@ from rovval.diagnose.confirm import Confirmed, confirm, roughly
 from rovval.diagnose.contest import Prior, Ring, contest, fit
 from rovval.diagnose.detect import Detection, detect
 from rovval.diagnose.finalists import finalists, freed, prior_of, sharpened
-from rovval.diagnose.library import Hypothesis
+from rovval.diagnose.hypothesis import Hypothesis
+from rovval.diagnose.library import retuned
 from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem, at, columns_of
 from rovval.diagnose.products import Products
 from rovval.diagnose.separate import Losses, Rival, group
 from rovval.diagnose.settle import healthy_point, resettled
-from rovval.diagnose.swings import retuned
 from rovval.diagnose.together import LEAST_EVIDENCE, Named, together, worthy
 
 MOST = 3  # effects at once

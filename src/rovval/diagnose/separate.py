@@ -8,7 +8,7 @@ import numpy as np
 
 from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed
-from rovval.diagnose.library import Hypothesis
+from rovval.diagnose.hypothesis import Hypothesis
 from rovval.diagnose.point import evidence
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import Products

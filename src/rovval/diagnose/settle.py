@@ -13,7 +13,7 @@ import numpy as np
 
 from rovval import effects
 from rovval.data import Array
-from rovval.diagnose.library import PRIOR_WIDTH
+from rovval.diagnose.hypothesis import PRIOR_WIDTH
 from rovval.diagnose.linearise import linearise
 from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem, carried, in_metric, products_about

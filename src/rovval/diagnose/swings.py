@@ -10,8 +10,6 @@ from __future__ import annotations
 import numpy as np
 
 from rovval.data import Array, Flags
-from rovval.diagnose.breaks import breaks
-from rovval.diagnose.library import Hypothesis, hypotheses
 from rovval.diagnose.linearise import Linear
 from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem
@@ -21,14 +19,6 @@ VELOCITY = ("u", "v", "w")
 SETTLES_S = 3.0  # time constant of the body: a third of a window of 10 s (`stretches`)
 FINE = 3.0  # rates tried in one turn over the log: neighbours are a third of a turn apart at its end
 SHORTEST_S = 2.0  # the shortest period of an effect; ten samples of it are enough
-
-
-def retuned(problem: Problem, library: list[Hypothesis], point: Point) -> list[Hypothesis]:
-    """The library with what swings begun at the periods at which the residual about ``point`` swings most, and what begins during the log
-    where the log begins to err."""
-    kept = {h.name for h in library}
-    fresh, _ = hypotheses(problem.parts, periods=[period for period, _ in lines(problem, point)], breaks=breaks(problem))
-    return [h for h in fresh if h.name in kept]
 
 
 def lines(problem: Problem, point: Point) -> tuple[tuple[float, float], ...]:

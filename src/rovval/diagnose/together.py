@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rovval.diagnose.confirm import Confirmed, confirm, roughly
-from rovval.diagnose.library import Hypothesis
+from rovval.diagnose.hypothesis import Hypothesis
 from rovval.diagnose.point import Point, whole_evidence
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.separate import Losses, Rival, closed, group

@@ -9,7 +9,7 @@ import numpy as np
 
 from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed, confirm, errors, interval, roughly
-from rovval.diagnose.library import PRIOR_WIDTH
+from rovval.diagnose.hypothesis import PRIOR_WIDTH
 from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.separate import coherence

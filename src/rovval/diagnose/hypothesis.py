@@ -1,0 +1,28 @@
+"""What competes for a gap: the parameters of an effect that are set free, and where they begin."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rovval.diagnose.lanes import Direction
+
+PRIOR_WIDTH = 4.0  # wide prior, in typical sizes: keeps a parameter that the log does not see from running away
+
+
+@dataclass(frozen=True, slots=True)
+class Hypothesis:
+    """``name`` as in the contract (``thruster_degraded[HFP]``); ``slots`` all of its parameters; ``columns`` of the linearisation that it
+    sets free, with their prior ``sd``; ``at`` where a starting point moves slots to; ``label`` tells starting points apart."""
+
+    name: str
+    label: str
+    slots: tuple[int, ...]
+    columns: tuple[int, ...]
+    sd: tuple[float, ...]
+    at: tuple[tuple[int, float], ...] = ()
+    directions: tuple[Direction, ...] = ()
+
+    @property
+    def whole(self) -> bool:
+        """Whether it begins with its full size, well away from nothing, and not with a slope."""
+        return any(d.slot < 0 for d in self.directions)
