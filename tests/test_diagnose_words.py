@@ -29,6 +29,17 @@ def test_a_gap_that_nothing_accounts_for_is_not_called_none(noise, slop, still_o
     assert ("is neither noise nor slop" in page) is still_open and "</i>with the effects found" not in page
 
 
+@pytest.mark.parametrize(("strain", "still_open"), [(4.9, False), (6.6, True)])
+def test_slop_accounts_for_a_gap_only_at_its_stated_size(strain, still_open):
+    d = null(0.04, 0.64)
+    d["detection"]["strain"] = strain
+    assert open_gap(d) is still_open
+    text = "account for only 4 % of the squared gap (for 64 % if a coefficient were 6.6 times its tolerance off): no effect"
+    assert (text in sentence(d)) is still_open
+    d |= weighed(0.6, 1600.0)
+    assert ("slop of the stated size explains 64 %" in sentence(d)) is not still_open
+
+
 def test_an_open_gap_may_be_what_pushed_unlogged():
     """The largest force and the largest moment; a document that knows of none says only that it may be."""
     d = null(0.04, 0.26)

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from rovval.channels import AXES
 from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem
+from rovval.diagnose.tolerance import STRAINED
 from rovval.diagnose.unknown import Forces
-from rovval.diagnose.weigh import STRAINED
 
 
 def left(problem: Problem, forces: Forces, point: Point, unsteady: Sequence[str] = ()) -> dict[str, object]:

@@ -7,7 +7,7 @@ from typing import Any
 
 from rovval.diagnose.phrases import family, size, value, whole
 from rovval.diagnose.together import LEAST_EVIDENCE
-from rovval.diagnose.tolerance import SENSORS
+from rovval.diagnose.tolerance import SENSORS, STRAINED
 
 NOISE = "noise"
 OPEN = 2.0 / 3.0  # share of a gap that neither noise nor slop accounts for, from which "no gap" would say too much (healthy logs: 0.51 at most)
@@ -17,15 +17,14 @@ LESS_GAIN, MORE_EVIDENCE = 0.15, 20.0  # and what closes less with more evidence
 
 def open_gap(document: Mapping[str, Any]) -> bool:
     """Whether nothing is named and yet most of the gap is neither noise nor slop: not explained is not the same as not there."""
-    found = document.get("detection") or {}
-    known = "slop" in found and "noise" in found
-    return document.get("verdict") == "no_gap" and known and float(1.0 - found["slop"] - found["noise"]) > OPEN
+    known = {"slop", "noise"} <= (document.get("detection") or {}).keys()
+    return document.get("verdict") == "no_gap" and known and 1.0 - _accounted(document) > OPEN
 
 
 def undecided(document: Mapping[str, Any]) -> bool:
     """Whether nothing is named and yet something was seen: an open gap, an effect that closes more than slop does, a sensor beyond its tolerance."""
-    near, row, slop = _nearest(document), _sensor(document), (document.get("detection") or {}).get("slop") or 0.0
-    seen = (near is not None and near["gain"] > slop) or (row is not None and _tolerances(row) > 1.0)
+    near, row = _nearest(document), _sensor(document)
+    seen = (near is not None and near["gain"] > _slop(document)) or (row is not None and _tolerances(row) > 1.0)
     return open_gap(document) or (document.get("verdict") == "no_gap" and seen)
 
 
@@ -59,11 +58,22 @@ def _known(document: Mapping[str, Any]) -> str:
     return f"{NOISE} and a calibration slop of {100 * slop:g} %" if slop else NOISE
 
 
+def _slop(document: Mapping[str, Any]) -> float:
+    """The share of the gap that slop of the stated size closes: nothing, where a coefficient goes far beyond it."""
+    found = document.get("detection") or {}
+    return 0.0 if (found.get("strain") or 0.0) > STRAINED else float(found.get("slop") or 0.0)
+
+
+def _accounted(document: Mapping[str, Any]) -> float:
+    return float(document["detection"]["noise"]) + _slop(document)
+
+
 def _unaccounted(document: Mapping[str, Any], known: str) -> str:
-    accounted = whole(document["detection"]["slop"] + document["detection"]["noise"])
+    found = document["detection"]
+    beyond = f" (for {whole(found['slop'])} % if a coefficient were {found['strain']:.1f} times its tolerance off)" if _slop(document) < found["slop"] else ""
     return (
-        f"{known} account for only {accounted} % of the squared gap: no effect of the library and no smooth force is shown to close the rest. "
-        f"It may be a disturbance{_largest(document)}, an effect in events, or motion that this log shows too little of"
+        f"{known} account for only {whole(_accounted(document))} % of the squared gap{beyond}: no effect of the library and no smooth force is "
+        f"shown to close the rest. It may be a disturbance{_largest(document)}, an effect in events, or motion that this log shows too little of"
     )
 
 
@@ -86,10 +96,10 @@ def _nearest(document: Mapping[str, Any]) -> Mapping[str, Any] | None:
 
 
 def _near(document: Mapping[str, Any]) -> str:
-    best, found = _nearest(document), document.get("detection") or {}
+    best, slop = _nearest(document), _slop(document)
     if best is None:
         return ""
-    gain, evidence, slop = best["gain"], best["evidence"], found.get("slop") or 0.0
+    gain, evidence = best["gain"], best["evidence"]
     short = [f"its evidence of {evidence:.1f} is short of the {LEAST_EVIDENCE:g} asked for"] if evidence < LEAST_EVIDENCE else []
     short += [f"calibration slop of the stated size explains {whole(slop)} %"] if slop >= gain else []
     why = ", and ".join(short) or "it does not pass all the checks that a cause must pass"

@@ -23,6 +23,7 @@ from rovval.diagnose.select import Selection
 from rovval.diagnose.separate import FEW, form_share
 from rovval.diagnose.shrinkage import shrinkage
 from rovval.diagnose.together import LEAST_EVIDENCE, Named
+from rovval.diagnose.tolerance import STRAINED
 from rovval.diagnose.unknown import Forces, forces
 from rovval.diagnose.wavering import drifting, wavering
 
@@ -37,7 +38,6 @@ REAL = 100.0  # twice the log Bayes factor of a generic force from which it is n
 HOLDS = 0.02  # of what is left: a generic force that closes less on held-out windows is a fit to these windows (chosen)
 REMAINS = 0.10  # of a cause's evidence: less left over is form, not another cause
 WITHIN = 3.5  # standard deviations of tolerance that healthy coefficients reach (tuning set: 3.3 of some hundred)
-STRAINED = 5.0  # standard deviations from which something is left beside a cause
 BROKEN = 7.0  # standard deviations that say by themselves that something is at work: one of some hundred healthy logs of the tuning set reached 6
 WAVERS = 0.5  # of a cause's evidence: one whose value varies more surely than that is not it (opened sets: true ones 0.40 at most)
 
