@@ -61,6 +61,7 @@ def answer(
         "log": _log(problem),
         "runs_left_out": list(left_out),
         "left_out_s": sum(part.contact_s for part in problem.parts),
+        "windows_stopped": sum(part.stopped for part in problem.parts),
         "outliers": sum(part.outliers for part in problem.parts),
     }
     if open_gap(document):

@@ -27,8 +27,9 @@ ATTITUDE_DRIFT = 0.004  # rad: slow error of an AHRS within a window, 0.2 degree
 @dataclass(frozen=True, slots=True)
 class Linear:
     """At one parameter point: residual measured - simulated ``r`` (m, n, c), sensitivities of the prediction to parameters ``S`` (m, n, c, k)
-    of ``columns`` and to nuisances ``J`` (m, n, c, s): initial states, then disturbances once these are known. Windows whose simulation
-    stopped have ``valid`` False."""
+    of ``columns`` and to nuisances ``J`` (m, n, c, s): initial states, then disturbances once these are known. A simulation that stops
+    (`plant`) holds its last state: a window where that happens at the point itself has ``valid`` (m,) False and no slopes, so that it costs what it
+    errs; where it happens a step away, that slope is nothing in that window."""
 
     r: Array
     S: Array
@@ -67,25 +68,30 @@ def linearise(
     place = {column: i for i, column in enumerate(ids)}
     for begin in range(0, m, AT_ONCE):
         which = np.arange(begin, min(begin + AT_ONCE, m))
-        out, valid[which] = _simulated(stretches, lanes, which)
+        out, ran = _simulated(stretches, lanes, which)
+        valid[which] = ran[0]
         for i, lane in enumerate(lanes):
-            if lane.state >= 0:
-                J[which, ..., lane.state] = difference(stretches, out[i], out[0]) / lane.step
-            elif lane.column >= 0 and lane.step:
-                S[which, ..., place[lane.column]] = difference(stretches, out[i], out[lane.against]) / lane.step
+            if lane.step and (lane.state >= 0 or lane.column >= 0):
+                slope = difference(stretches, out[i], out[lane.against]) / lane.step
+                slope[~(ran[0] & ran[i] & ran[lane.against])] = 0.0
+                if lane.state >= 0:
+                    J[which, ..., lane.state] = slope
+                else:
+                    S[which, ..., place[lane.column]] = slope
         r[which] = np.where(stretches.ok[which], difference(stretches, stretches.y[which], out[0]), 0.0)
     if stretches.pushed is not None:
         J = np.concatenate([J, stretches.pushed], axis=-1)
+    J[~valid] = 0.0
     return Linear(r, S, J, ids, valid)
 
 
 def _simulated(stretches: Stretches, lanes: Sequence[Lane], which: np.ndarray) -> tuple[Array, np.ndarray]:
-    """Every lane of the windows ``which``: predicted channels (lanes, windows, n, c), and which windows did not stop in any lane."""
+    """Every lane of the windows ``which``: predicted channels (lanes, windows, n, c), and which did not stop (lanes, windows)."""
     b = np.repeat(np.stack([lane.beta for lane in lanes]), len(which), axis=0)
     nu = np.concatenate([stretches.nu0[which] + lane.nu for lane in lanes])
     eta = np.concatenate([stretches.eta0[which] + lane.eta for lane in lanes])
     out, fine = simulate_windows(stretches, b, nu, eta, np.tile(which, len(lanes)))
-    return out.reshape(len(lanes), len(which), *out.shape[1:]), np.asarray(fine.reshape(len(lanes), len(which)).all(axis=0))
+    return out.reshape(len(lanes), len(which), *out.shape[1:]), fine.reshape(len(lanes), len(which))
 
 
 def residual(stretches: Stretches, beta: Array) -> tuple[Array, np.ndarray]:

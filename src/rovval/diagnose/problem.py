@@ -17,8 +17,9 @@ from rovval.diagnose.metric import joined_of, metric
 from rovval.diagnose.parity import Parity, parity
 from rovval.diagnose.products import Products, Scaled, joined, scaled, start_corrected
 from rovval.diagnose.steadied import discount, gains, loosened
-from rovval.diagnose.stretches import Stretches
+from rovval.diagnose.stretches import FEWEST_WINDOWS, Stretches
 from rovval.diagnose.tolerance import slop_prior
+from rovval.errors import BadInput
 from rovval.plant import Plant, parse_settings
 from rovval.simulate import carried_effects
 
@@ -65,6 +66,7 @@ def pose(parts: tuple[Stretches, ...], library: Sequence[Hypothesis], slop: floa
     prior = loosened(slop_prior(plant, slop), plant, gain)
     columns, directions = columns_of(library, prior)
     linear = tuple(linearise(part, origin, columns, directions) for part in parts)
+    parts = tuple(_running(part, one.valid) for part, one in zip(parts, linear, strict=True))
     run_of_window = np.concatenate([np.full(part.count, i) for i, part in enumerate(parts)])
     folds = folds_of(run_of_window)
     seen = metric(parts, linear, columns, prior, folds, discount(parts, gain), origin)
@@ -77,6 +79,20 @@ def pose(parts: tuple[Stretches, ...], library: Sequence[Hypothesis], slop: floa
         seen.parts, origin, seen.variance, seen.white, prior, at_null, dynamic, dynamic + kinematic, gap, gap + kinematic, checks, folds,
         seen.inflation, run_of_window, seen.disturbance,
     )  # fmt: skip
+
+
+def _running(part: Stretches, valid: np.ndarray) -> Stretches:
+    """The windows with nothing to compare where the simulation of the vehicle as it is stops.
+
+    Raises:
+        BadInput: it stops in so many that too few are left.
+    """
+    if (stops := int((~valid).sum())) and part.count - stops < FEWEST_WINDOWS:
+        raise BadInput(
+            f"run {part.run.id}: the simulation stops in {stops} of {part.count} windows, at least {FEWEST_WINDOWS} have to run",
+            "`rovval simulate` says when and why; look at the vehicle's file",
+        )
+    return replace(part, ok=part.ok & valid[:, None, None], stopped=stops)
 
 
 def columns_of(library: Sequence[Hypothesis], slop: Prior) -> tuple[tuple[int, ...], tuple[Direction, ...]]:

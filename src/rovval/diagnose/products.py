@@ -60,7 +60,7 @@ class Scaled:
 
     def products(self, r: Array) -> Products:
         """Products of a residual ``r`` (m, n, c) with these slopes."""
-        scaled = _over(r.reshape(self.root.shape), self.root)
+        scaled = r.reshape(self.root.shape) * self.root
         z = _onto(self.q, scaled)
         return Products(self.A, _onto(self.x, scaled) - _onto(self.y, z), (scaled**2).sum(axis=1) - (z**2).sum(axis=1), self.linear.columns)
 
@@ -69,7 +69,7 @@ def products(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> 
     """Products of every window; ``variance`` (n, c), ``spread`` (s,) standard error of its first nuisances, which are marginalised."""
     m, k = len(linear.r), linear.S.shape[-1]
     A, b, c = np.zeros((m, k, k)), np.zeros((m, k)), np.zeros(m)
-    for w in map(int, np.flatnonzero(linear.valid)):
+    for w in range(m):
         root, q, x, y = _window(linear, w, ok, variance, spread)
         r = linear.r[w].reshape(-1) * root
         z = q.T @ r
@@ -81,7 +81,7 @@ def scaled(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> Sc
     """A linearisation in the metric, kept for products with many residuals; arguments as for `products`."""
     m, n, k = len(linear.r), linear.r[0].size, linear.S.shape[-1]
     root, q, x, y = np.zeros((m, n)), np.zeros((m, n, len(spread))), np.zeros((m, n, k)), np.zeros((m, len(spread), k))
-    for w in map(int, np.flatnonzero(linear.valid)):
+    for w in range(m):
         root[w], q[w], x[w], y[w] = _window(linear, w, ok, variance, spread)
     return Scaled(linear, root, q, x, y, _gram(x, x) - _gram(y, y))
 
@@ -89,17 +89,17 @@ def scaled(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> Sc
 def beside(own: Linear, other: Scaled, columns: tuple[int, ...]) -> Scaled:
     """A linearisation with further ``columns``, whose slopes are taken from another one nearby, and its nuisances with them."""
     place, k, m = [other.linear.columns.index(c) for c in columns], len(own.columns), len(own.r)
-    root = np.where((own.valid & other.linear.valid)[:, None], other.root, 0.0)
-    mine = _over(own.S.reshape(*root.shape, k), root[..., None])
+    mine = own.S.reshape(*other.root.shape, k) * other.root[..., None]
     S, x = _joined(own.S, other.linear.S, place), _joined(mine, other.x, place)
     y = _joined(_gram(other.q, mine), other.y, place)
     A = np.empty((m, k + len(place), k + len(place)))
     A[:, k:, k:] = other.A[:, place][..., place]
     A[:, :k] = _gram(mine, x) - _gram(y[..., :k], y)
     A[:, k:, :k] = np.swapaxes(A[:, :k, k:], 1, 2)
-    A[root.max(axis=1) == 0.0] = 0.0  # windows that stopped: the other's block there is of one that ran
-    linear = Linear(own.r, S, other.linear.J, (*own.columns, *columns), own.valid & other.linear.valid)
-    return Scaled(linear, root, other.q, x, y, A)
+    J, q = other.linear.J, other.q
+    if not own.valid.all():  # the other's slopes there are of a window that ran
+        S, J, q, x, y, A = (np.where(own.valid.reshape(-1, *[1] * (a.ndim - 1)), a, 0.0) for a in (S, J, q, x, y, A))
+    return Scaled(Linear(own.r, S, J, (*own.columns, *columns), own.valid), other.root, q, x, y, A)
 
 
 def _window(linear: Linear, w: int, ok: np.ndarray, variance: Array, spread: Array) -> tuple[Array, Array, Array, Array]:
@@ -109,11 +109,6 @@ def _window(linear: Linear, w: int, ok: np.ndarray, variance: Array, spread: Arr
     j = linear.J[w].reshape(len(root), -1)[:, : len(spread)] * root[:, None] * spread
     q = solve_triangular(np.linalg.cholesky(np.eye(j.shape[1]) + j.T @ j), j.T, lower=True).T
     return root, q, x, q.T @ x
-
-
-def _over(a: Array, root: Array) -> Array:
-    """Values over their standard errors; what a window that stopped has left does not count, whatever it is."""
-    return np.where(root > 0.0, a, 0.0) * root
 
 
 def _onto(a: Array, b: Array) -> Array:

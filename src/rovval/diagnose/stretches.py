@@ -37,7 +37,7 @@ class Stretches:
     """Windows of one run: ``start`` (m,) grid index, ``steps`` per window, measured start states (m, 6), and the measured channels
     ``y`` (m, steps + 1, c) with ``ok`` where they hold a value. ``noise`` (c,) is the white part of each channel's error; ``contact_s``
     seconds left out because the vehicle was held or aground. ``pushed`` (m, steps + 1, c, d) is what disturbances of one standard deviation
-    do to the windows (`disturbance`), once their size is known."""
+    do to the windows (`disturbance`), once their size is known; ``stopped`` windows in which the simulation of the vehicle as it is stops."""
 
     run: Run
     plant: Plant
@@ -53,6 +53,7 @@ class Stretches:
     outliers: int
     contact_s: float
     pushed: Array | None = None
+    stopped: int = 0
 
     @property
     def count(self) -> int:
