@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from diagnose_case import LIBRARY, foreign, merlin, own
+from diagnose_case import LIBRARY, foreign, merlin, own, without
 from rovval.data import Run
 from rovval.diagnose import diagnose, lanes
 from rovval.diagnose.admissible import _beyond_the_library
@@ -28,7 +28,7 @@ from rovval.diagnose.separate import Rival
 from rovval.diagnose.settle import healthy_point, resettled, settle
 from rovval.diagnose.starts import LEVER, MOST_STARTS
 from rovval.diagnose.stretches import cut_all
-from rovval.diagnose.swings import lines
+from rovval.diagnose.swings import lines, waves
 from rovval.store import open_run
 from rovval.vehicle import load
 
@@ -50,6 +50,18 @@ def test_the_period_of_waves_is_the_strongest_line(period):
     (best, share), *others = lines(p, settle(p, p.origin, ()))
     assert best == pytest.approx(period, rel=0.02)
     assert share > 0.3 and all(share > 2 * other for _, other in others)
+
+
+@pytest.mark.parametrize(("period", "direction", "amplitude"), [(5.0, 0.8, 2.0), (4.0, -2.4, 3.0), (6.0, 2.6, 1.5)])
+def test_a_vehicle_under_way_meets_waves_at_another_period_than_theirs(period, direction, amplitude):
+    """Whose direction is right finds their own; without a position none is looked for."""
+    p, _ = posed(f"waves:amplitude={amplitude},period={period},direction={direction},phase=1")
+    point = settle(p, p.origin, ())
+    met = [one for one, _ in lines(p, point)]
+    [found] = waves(p, point, met, (2.0, 20.0), (direction,))[direction]
+    assert abs(found - period) < 0.4 * abs(met[0] - period)
+    lost = replace(p, parts=tuple(replace(part, run=without(part.run, "x")) for part in p.parts))
+    assert waves(lost, point, met, (2.0, 20.0), (direction,)) == waves(p, point, [70.0], (2.0, 20.0), (direction,)) == {}
 
 
 def test_a_healthy_log_has_no_line():

@@ -6,6 +6,7 @@ from collections import Counter
 
 import numpy as np
 
+from rovval import effects
 from rovval.data import Array
 from rovval.diagnose.admissible import DEGRADED, REVERSED, SERIOUS
 from rovval.diagnose.confirm import Confirmed, confirm, roughly
@@ -21,7 +22,7 @@ from rovval.diagnose.settle import stays
 FINALISTS = 10  # hypotheses that are re-simulated in a round
 SCREENED = 0.15  # of the best linear evidence: less is not re-simulated,
 FEWEST, ANYWAY = 4, 20.0  # unless it is one of the first few and is strong evidence by itself
-TRIES = 3  # starting points well away from nothing that a hypothesis is settled from
+TRIES = 3  # starting points that a hypothesis whose fits end in many valleys is settled from
 TWIN, MOST_TWINS = 0.85, 4  # coherence from which a hypothesis is re-simulated beside the best finalist whatever the screen said
 PROMISED, RETRIED = 0.5, 2  # share of the tangent's evidence that a quick fit must keep, else it is settled with care; how many may be
 SHARPENED = 4  # finalists that are settled with slopes made at their own point
@@ -51,7 +52,7 @@ def finalists(
     tries = Counter[str]()
     for h in ordered:
         promising = detection.evidence[h.label] > (least if len(fitted) >= FEWEST else min(least, ANYWAY))
-        if promising and (tries[h.name] < TRIES if h.name in fitted and h.whole else h.name not in fitted and len(fitted) < FINALISTS):
+        if promising and (tries[h.name] < TRIES if h.name in fitted and _valleys(h) else h.name not in fitted and len(fitted) < FINALISTS):
             refit(h)
             tries[h.name] += 1
     if fitted:
@@ -62,6 +63,11 @@ def finalists(
             if h.name not in fitted:
                 refit(h)
     return _weighed(problem, list(_retried(problem, detection, fitted, whole_evidence(problem, base)).values()), base, loss)
+
+
+def _valleys(h: Hypothesis) -> bool:
+    """Whether fits of it end in one of many valleys: it begins well away from nothing, or it swings."""
+    return h.whole or "period" in effects.load(h.name.partition("[")[0]).grid
 
 
 def _retried(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 from rovval import effects
 from rovval.diagnose.breaks import breaks
@@ -11,16 +12,19 @@ from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.starts import starts
 from rovval.diagnose.stretches import Stretches
-from rovval.diagnose.swings import lines
+from rovval.diagnose.swings import lines, waves
+
+STILL: Mapping[float | None, Sequence[float]] = MappingProxyType({})
 
 
 def hypotheses(
-    parts: Sequence[Stretches], without: Sequence[str] = (), periods: Sequence[float] = (), breaks_s: Sequence[float] = ()
+    parts: Sequence[Stretches], without: Sequence[str] = (), periods: Mapping[float | None, Sequence[float]] = STILL, breaks_s: Sequence[float] = ()
 ) -> tuple[list[Hypothesis], dict[str, str]]:
     """The competing hypotheses, and those that this log cannot test with the reason.
 
-    ``without`` names effects (``inflow_loss``) or hypotheses (``thruster_degraded[HFP]``) to leave out; ``periods`` (s) and
-    ``breaks_s`` (s since the first run's start), the most promising first, are where those that swing and those that begin during the log begin.
+    ``without`` names effects (``inflow_loss``) or hypotheses (``thruster_degraded[HFP]``) to leave out; ``periods`` (s; of waves by the direction
+    towards which they run, None for what does not travel) and ``breaks_s`` (s since the first run's start), the most promising first, are where
+    those that swing and those that begin during the log begin.
     """
     plant, found, untestable = parts[0].plant, list[Hypothesis](), dict[str, str]()
     for name, slots in plant.hypotheses.items():
@@ -40,5 +44,11 @@ def retuned(problem: Problem, library: list[Hypothesis], point: Point) -> list[H
     """The library with what swings begun at the periods at which the residual about ``point`` swings most, and what begins during the log
     where the log begins to err."""
     kept = {h.name for h in library}
-    fresh, _ = hypotheses(problem.parts, periods=[period for period, _ in lines(problem, point)], breaks_s=breaks(problem))
+    met = [period for period, _ in lines(problem, point)]
+    periods: dict[float | None, Sequence[float]] = {None: met}
+    for slot in problem.plant.slots:
+        p, towards = slot.parameter, effects.load(slot.effect).grid.get("direction", ())
+        if p.name == "period" and towards and slot.hypothesis in kept:
+            periods |= waves(problem, point, met, (p.low, p.high), towards)
+    fresh, _ = hypotheses(problem.parts, periods=periods, breaks_s=breaks(problem))
     return [h for h in fresh if h.name in kept]

@@ -6,7 +6,7 @@ effect with such parameters enters once for each of a few starting points; which
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import product
 
 import numpy as np
@@ -31,10 +31,10 @@ BREAKS, SOONER_S = 2, (0.0, 5.0, 10.0, 15.0)  # breaks that an onset begins from
 
 def starts(
     plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], parts: Sequence[Stretches], next_id: int,
-    periods: Sequence[float], breaks_s: Sequence[float],
+    periods: Mapping[float | None, Sequence[float]], breaks_s: Sequence[float],
 ) -> list[Hypothesis]:  # fmt: skip
     """One hypothesis, or one for each starting point of the parameters that linearisation at the null value cannot see."""
-    grids = _grids(plant, effect, slots, parts, periods, breaks_s)
+    grids = _grids(plant, effect, slots, parts, periods.get(None, ()), breaks_s)
     if not grids:
         far = _far(plant, name, effect, slots, next_id)
         return [*_near(plant, name, effect, slots), *_alone(plant, name, effect, slots), *far, *_levers(plant, name, effect, slots, next_id + len(far))]
@@ -44,8 +44,15 @@ def starts(
         own, grids = (-1,), grids | {slots[0]: tuple(size * plant.slots[slots[0]].parameter.typical for size in CAUGHT)}
     points, most = [dict(zip(grids, point, strict=True)) for point in product(*grids.values())], MOST_STARTS * (3 if own == (-1,) else 1)
     chosen = points if len(points) <= most else [points[i] for i in np.linspace(0, len(points) - 1, most).astype(int)]
+    chosen = [point | _met(named, point, periods) for point in chosen]
     begun = [point | (placed(parts, plant, slots, point[named["onset"]]) if effect.where else {}) for point in chosen]
     return [_begun(plant, f"{name}@{i}", slots, own, tuple(at.items()), next_id + i * len(own)) for i, at in enumerate(begun)]
+
+
+def _met(named: Mapping[str, int], point: Mapping[int, float], periods: Mapping[float | None, Sequence[float]]) -> dict[int, float]:
+    """The period that waves have which run where those of a starting point do: a vehicle under way meets them at another one."""
+    of_waves = periods.get(point.get(named.get("direction", -1)), ()) if "period" in named and "direction" in named else ()
+    return {named["period"]: of_waves[0]} if of_waves else {}
 
 
 def placed(parts: Sequence[Stretches], plant: Plant, slots: tuple[int, ...], t: float) -> dict[int, float]:

@@ -72,7 +72,7 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
     beside, instead = rest.evidence(axes) if holds else 0.0, general.evidence(axes)
     excess, strained = _excess(problem, final.point, axes), strain(final.point)
     sensors = all(of_sensor(n) for n in selection.named)  # a force imitates a bias of the sensor that shows what it does
-    skill = not many or sensors or _skill(problem, closed, was, now)
+    skill = not many or sensors or _skill(problem, closed, was, now) or (strained <= STRAINED and _skill(problem, closed, was, _settled(problem, final)))
     outdone = many and not sensors and instead > BETTER * total
     varies = wavering(problem, final, selection.named) if many else {}
     unsteady = _unsteady(problem, selection, final, varies) if many else ()
@@ -114,13 +114,19 @@ def _acting(closed: Mapping[str, float]) -> tuple[str, ...]:
 
 
 def _skill(problem: Problem, closed: Mapping[str, float], before: Mapping[str, float], left: Mapping[str, float]) -> bool:
-    """Whether on the axis where they close most the simulator, causes added, errs well less than the vehicle moves, or hardly errs any more.
+    """Whether on the axis where they close most the simulator, causes added, errs well less than the vehicle moves, or hardly errs any more; with
+    coefficients as the file has them, or as slop of the stated size lets them be: an ROV that rolls freely answers to each of them.
     Where it does neither, it replays an autopilot's answers to disturbances that nobody logged, which shows nothing about the vehicle."""
     axis = max(closed, key=lambda a: closed[a])
     if left[axis] <= HARDLY * before[axis]:
         return True
     moved = [np.where(part.ok, part.y - (part.y * part.ok).sum((0, 1)) / np.maximum(part.ok.sum((0, 1)), 1), 0.0) for part in problem.parts]
     return left[axis] <= SKILL * axis_weight(problem, moved)[axis]
+
+
+def _settled(problem: Problem, final: Confirmed) -> dict[str, float]:
+    """What is left on each axis where healthy coefficients stand beside the causes."""
+    return axis_weight(problem, corrected_residuals(problem, final.point.beta))
 
 
 def _excess(problem: Problem, point: Point, axes: tuple[str, ...]) -> float:

@@ -25,7 +25,7 @@ EFFECT = Effect(
         Parameter("north", "m/s", -1.0, 1.0, 0.0, 0.1, SWING),
         Parameter("east", "m/s", -1.0, 1.0, 0.0, 0.1, SWING),
         Parameter("period", "s", 20.0, 50000.0, 300.0, 300.0, "eddies to the tide of 12.42 h"),
-        Parameter("phase", "rad", -np.pi, np.pi, 0.0, 1.5, "any"),
+        Parameter("phase", "rad", -2.0 * np.pi, 2.0 * np.pi, 0.0, 1.5, "any; a turn to spare, so that no fit stops half-way"),
     ),
     signature="a force fixed to north and east that drifts in time",
     confused_with=("current_constant", "voltage_sag", "clock_drift", "tether_tension"),

@@ -19,14 +19,14 @@ EFFECT = Effect(
     parameters=(
         Parameter("amplitude", "m", 0.0, 3.0, 0.0, 0.2, "0 to 0.5 m for observation work (diagnosis.md E4)"),
         Parameter("period", "s", 2.0, 20.0, 6.0, 2.0, "3 to 12 s (diagnosis.md E4)"),
-        Parameter("direction", "rad", -np.pi, np.pi, 0.0, 1.5, "towards which it runs, from north"),
-        Parameter("phase", "rad", -np.pi, np.pi, 0.0, 1.5, "any"),
+        Parameter("direction", "rad", -2.0 * np.pi, 2.0 * np.pi, 0.0, 1.5, "towards which it runs, from north; a turn to spare, so that no fit stops half-way"),
+        Parameter("phase", "rad", -2.0 * np.pi, 2.0 * np.pi, 0.0, 1.5, "any; the same"),
     ),
     signature="a narrow band of frequencies in surge, sway and heave, 90 degrees apart, dying out with depth as exp(-k z)",
     confused_with=("current_varying", "tether_tension"),
     separates="the same station at two depths; the spectrum",
     needs=("z",),
-    grid={"period": (6.0,), "direction": (-np.pi / 2, 0.0, np.pi / 2, np.pi), "phase": (0.0, np.pi / 2)},
+    grid={"period": (6.0,), "direction": (-0.75 * np.pi, -0.25 * np.pi, 0.25 * np.pi, 0.75 * np.pi), "phase": (0.0, np.pi / 2)},
 )
 ROWS = ("velocity", "omega", "k", "north", "east", "phase")
 
