@@ -14,9 +14,9 @@ import pytest
 from diagnose_case import LIBRARY, foreign, merlin, own, without
 from rovval.data import Run
 from rovval.diagnose import diagnose, lanes
-from rovval.diagnose.admissible import _beyond_the_library
+from rovval.diagnose.admissible import _beyond_the_library, simplest
 from rovval.diagnose.breaks import FEWEST, _split
-from rovval.diagnose.confirm import confirm, errors
+from rovval.diagnose.confirm import Confirmed, confirm, errors
 from rovval.diagnose.excited import LARGE, LEAST_SIGMA, excited
 from rovval.diagnose.finalists import _half_a_turn_later
 from rovval.diagnose.hypothesis import Hypothesis
@@ -124,6 +124,22 @@ def bluerov2(folder: Path, name: str, seed: int, seconds: float, slop: float, *e
 def rolling(folder: Path) -> Problem:
     parts, _ = cut_all([bluerov2(folder, "rolling.csv", 12, 150.0, 0.05)], load("bluerov2_heavy"), "fossen", 10.0)
     return pose(parts, hypotheses(parts)[0], 0.05)
+
+
+def test_a_list_that_an_autopilot_holds_is_found(tmp_path: Path):
+    """It makes roll and pitch count little, and other coefficients within slop show more than the list itself."""
+    document = diagnose([bluerov2(tmp_path, "list.csv", 12, 200.0, 0.03, ("cg_offset", "", -1.6))], load("bluerov2_heavy")).document
+    assert [c["effect"] for c in document["causes"]] == ["cg_offset"], document["sentence"]
+
+
+def test_what_only_refines_an_effect_does_not_make_it_less_simple():
+    p, library = posed()
+    fitted = Confirmed((), p.origin, SimpleNamespace(), 0.0, np.zeros(1), np.zeros(1), ())  # type: ignore[arg-type]
+    by_name = {h.name: Rival(h, fitted, evidence, 0.8, 0.0) for h in library for evidence in [400.0 if h.name == "thrust_lag" else 390.0]}
+    lag, offset, hull = (by_name[name] for name in ("thrust_lag", "time_offset", "hull_interaction"))
+    assert len(lag.hypothesis.slots) == 2 and len(offset.hypothesis.slots) == 1
+    assert simplest(p, [lag, offset]) is lag
+    assert simplest(p, [replace(hull, evidence=400.0), offset]) is offset
 
 
 def test_the_beginning_first_ends_no_higher(tmp_path: Path):

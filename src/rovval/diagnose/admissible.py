@@ -37,14 +37,20 @@ def possible(problem: Problem, weighed: list[Rival]) -> list[Rival]:
 def simplest(problem: Problem, rivals: list[Rival]) -> Rival:
     """Of the rivals that the form of an equation may set apart, the one with the fewest parameters, if it closes nearly as much as the best;
     one that rests on a bound of its search comes last."""
-    most, least = len(rivals[0].hypothesis.slots), (1.0 - form_share(problem.blocks)) * rivals[0].evidence
+    most, least = _parameters(problem, rivals[0]), (1.0 - form_share(problem.blocks)) * rivals[0].evidence
     tied = [
         r for r in rivals
         if r is rivals[0]
         or alike(problem, r, rivals[0])
-        or (r.evidence >= least and r.gain >= (NEARLY - PER_PARAMETER * max(most - len(r.hypothesis.slots), 0)) * rivals[0].gain)
+        or (r.evidence >= least and r.gain >= (NEARLY - PER_PARAMETER * max(most - _parameters(problem, r), 0)) * rivals[0].gain)
     ]  # fmt: skip
-    return min(tied, key=lambda r: (_beyond_the_library(problem, r), len(r.hypothesis.slots), -r.evidence))
+    return min(tied, key=lambda r: (_beyond_the_library(problem, r), _parameters(problem, r), -r.evidence))
+
+
+def _parameters(problem: Problem, rival: Rival) -> int:
+    """Parameters of a rival but for those that only refine it."""
+    named = [problem.plant.slots[s] for s in rival.hypothesis.slots]
+    return sum(slot.parameter.name not in effects.load(slot.effect).refines for slot in named)
 
 
 def _in_form(problem: Problem, weighed: list[Rival]) -> list[Rival]:

@@ -35,11 +35,12 @@ def discount(parts: Sequence[Stretches], gain: Mapping[str, float]) -> Array:
 
 
 def loosened(prior: Prior, plant: Plant, gain: Mapping[str, float]) -> Prior:
-    """The tolerances of what turns the vehicle about a steadied axis, times 1 + loop gain."""
+    """The tolerances of what turns the vehicle about a steadied axis, and of how stiffly it rights itself, times 1 + loop gain. A list is none of
+    these: it is as steady as the moment that an autopilot gives against it."""
     sd = dict(prior.sd)
     for s in sd:
         slot = plant.slots[s]
-        if slot.effect == "cg_offset":
+        if slot.effect == "cg_offset" and slot.parameter.name == "z":
             sd[s] *= 1.0 + max(gain.values())
         elif slot.effect in TURNING:
             sd[s] *= 1.0 + gain.get(slot.hypothesis.partition("[")[2].rstrip("]"), 0.0)

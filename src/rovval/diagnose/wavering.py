@@ -25,7 +25,9 @@ from rovval.vehicle.model import allocation
 
 DRIFT, SURE = 0.5, 5.0  # of the value, and standard errors (opened sets: 30 true causes drift by 0.24 at most, or by 3.3 standard errors)
 SHARES = (0.1, 0.2, 0.4, 0.8)  # of the value, or of the thruster's thrust: rms by which it may vary
-WANDERS = ("gyro_bias", "attitude_bias", "clock_drift")  # wander by nature (in-run instability of a gyro's, an AHRS's and a clock's data sheet)
+WANDERS = (  # by nature: in-run instability in a gyro's, an AHRS's and a clock's data sheet; a sea comes in groups (Longuet-Higgins 1984)
+    "gyro_bias", "attitude_bias", "clock_drift", "waves",
+)  # fmt: skip
 
 
 def wavering(problem: Problem, final: Confirmed, named: Sequence[Named]) -> dict[str, float]:

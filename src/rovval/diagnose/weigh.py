@@ -66,13 +66,14 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
     after, many = corrected_residuals(problem, final.beta), problem.blocks >= FEW
     was, now = axis_weight(problem, before), axis_weight(problem, after)
     closed = {axis: max(was[axis] - now[axis], 0.0) for axis in was}  # of the weighted gap
-    harmful = max(now[axis] - was[axis] for axis in was) > max(HARMS * (sum(was.values()) - sum(now.values())), UNMOVED * sum(was.values()))
     axes = _acting(closed)
     holds = many and rest.share(problem.folds) > HOLDS
     beside, instead = rest.evidence(axes) if holds else 0.0, general.evidence(axes)
     excess, strained = _excess(problem, final.point, axes), strain(final.point)
     sensors = all(of_sensor(n) for n in selection.named)  # a force imitates a bias of the sensor that shows what it does
-    skill = not many or sensors or _skill(problem, closed, was, now) or (strained <= STRAINED and _skill(problem, closed, was, _settled(problem, final)))
+    able = [now, *([_settled(problem, final)] if strained <= STRAINED else [])]  # coefficients as the file has them, or as slop of the stated size lets them be
+    skill = not many or sensors or any(_skill(problem, closed, was, left) for left in able)
+    harmful = all(_harms(was, left) for left in able)
     outdone = many and not sensors and instead > BETTER * total
     varies = wavering(problem, final, selection.named) if many else {}
     unsteady = _unsteady(problem, selection, final, varies) if many else ()
@@ -114,8 +115,7 @@ def _acting(closed: Mapping[str, float]) -> tuple[str, ...]:
 
 
 def _skill(problem: Problem, closed: Mapping[str, float], before: Mapping[str, float], left: Mapping[str, float]) -> bool:
-    """Whether on the axis where they close most the simulator, causes added, errs well less than the vehicle moves, or hardly errs any more; with
-    coefficients as the file has them, or as slop of the stated size lets them be: an ROV that rolls freely answers to each of them.
+    """Whether on the axis where they close most the simulator, causes added, errs well less than the vehicle moves, or hardly errs any more.
     Where it does neither, it replays an autopilot's answers to disturbances that nobody logged, which shows nothing about the vehicle."""
     axis = max(closed, key=lambda a: closed[a])
     if left[axis] <= HARDLY * before[axis]:
@@ -124,8 +124,14 @@ def _skill(problem: Problem, closed: Mapping[str, float], before: Mapping[str, f
     return left[axis] <= SKILL * axis_weight(problem, moved)[axis]
 
 
+def _harms(before: Mapping[str, float], left: Mapping[str, float]) -> bool:
+    """Whether an axis gets worse by a good part of what is closed in all."""
+    closed, whole = sum(before.values()) - sum(left.values()), sum(before.values())
+    return max(left[axis] - before[axis] for axis in before) > max(HARMS * closed, UNMOVED * whole)
+
+
 def _settled(problem: Problem, final: Confirmed) -> dict[str, float]:
-    """What is left on each axis where healthy coefficients stand beside the causes."""
+    """What is left on each axis where healthy coefficients stand beside the causes: an ROV that rolls freely answers to each of them."""
     return axis_weight(problem, corrected_residuals(problem, final.point.beta))
 
 
