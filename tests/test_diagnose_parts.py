@@ -174,6 +174,7 @@ def spoilt(fault: dict[str, float]) -> Run:
     if "dvl_scale.scale" in fault:
         for c in "uvw":
             log[c] = log[c] * (1 + fault["dvl_scale.scale"])
+    log["u"] = log["u"] * (1 + fault.get("dvl_scale.surge", 0.0))
     if "dvl_misalignment.yaw" in fault:
         a = fault["dvl_misalignment.yaw"]
         log["u"], log["v"] = np.cos(a) * log["u"] + np.sin(a) * log["v"], np.cos(a) * log["v"] - np.sin(a) * log["u"]
@@ -204,7 +205,7 @@ def parity_of(run: Run) -> dict[str, dict[str, object]]:
 @pytest.mark.parametrize(
     ("fault", "size"),
     [
-        ("gyro_bias.r", 0.01), ("gyro_bias.p", -0.008), ("dvl_scale.scale", 0.05), ("dvl_scale.scale", -0.04),
+        ("gyro_bias.r", 0.01), ("gyro_bias.p", -0.008), ("dvl_scale.scale", 0.05), ("dvl_scale.scale", -0.04), ("dvl_scale.surge", 0.05),
         ("dvl_misalignment.yaw", 0.08), ("dvl_lever_arm.x", 0.8), ("attitude_bias.phi", 0.06), ("attitude_bias.theta", -0.05),
         ("compass_deviation.offset", 0.1), ("time_offset[velocity].delay", 0.4), ("time_offset[attitude].delay", 0.4),
     ],

@@ -109,3 +109,6 @@ def test_damage_of_the_log_is_named(run_a: Run, fitted: Vehicle, damage: str, ri
     if damage.startswith("frame"):
         [cause] = [c for c in document["causes"] if c["effect"] == "dvl_misalignment"]
         assert cause["parameters"]["yaw"]["value"] == pytest.approx(math.radians(15.0), abs=math.radians(5.0))
+    if damage.startswith("surge"):
+        [cause] = [c for c in document["causes"] if c["effect"] == "dvl_scale"]
+        assert cause["parameters"]["surge"]["value"] == pytest.approx(0.3, abs=0.05)

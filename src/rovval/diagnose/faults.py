@@ -8,16 +8,18 @@ from scipy import stats
 from rovval.data import Array
 from rovval.diagnose.parity import Parity
 from rovval.diagnose.stretches import Stretches
+from rovval.effects import load
+from rovval.plant.slots import Slot
 
 
 def faults(parity_rows: Parity, stretches: Stretches, origin: Array) -> list[dict[str, object]]:
-    """Each sensor effect fitted to the parity rows alone: value with 90 % interval, and whether it differs from ``origin`` (k,), what the
-    vehicle's file says of the sensors (``was``), significantly on its own."""
+    """Each sensor effect, and the factor of each axis, fitted to the parity rows alone: value with 90 % interval, and whether it differs from
+    ``origin`` (k,), what the vehicle's file says of the sensors (``was``), significantly on its own."""
     found: list[dict[str, object]] = []
-    by_effect: dict[str, list[int]] = {}
+    by_effect: dict[tuple[str, str], list[int]] = {}
     for i, column in enumerate(parity_rows.columns):
         if np.abs(parity_rows.traces[..., i]).max(initial=0.0) > 0:
-            by_effect.setdefault(stretches.plant.slots[column].hypothesis, []).append(i)
+            by_effect.setdefault(_together(stretches.plant.slots[column]), []).append(i)
     rows = parity_rows.rows - parity_rows.traces @ origin[list(parity_rows.columns)]  # of these only sensors leave a trace
     total = float((rows**2).sum())
     for places in by_effect.values():
@@ -49,3 +51,9 @@ def faults(parity_rows: Parity, stretches: Stretches, origin: Array) -> list[dic
                 }
             )
     return found
+
+
+def _together(slot: Slot) -> tuple[str, str]:
+    """What is fitted together: an effect's parameters, but for those that say the same of one axis only."""
+    effect = load(slot.effect)
+    return slot.hypothesis, slot.parameter.name if effect.apart and slot.parameter.name in effect.refines else ""
