@@ -14,11 +14,11 @@ from rovval.diagnose.starts import starts
 from rovval.diagnose.stretches import Stretches
 from rovval.diagnose.swings import lines, waves
 
-STILL: Mapping[float | None, Sequence[float]] = MappingProxyType({})
+NO_PERIODS: Mapping[float | None, Sequence[float]] = MappingProxyType({})
 
 
 def hypotheses(
-    parts: Sequence[Stretches], without: Sequence[str] = (), periods: Mapping[float | None, Sequence[float]] = STILL, breaks_s: Sequence[float] = ()
+    parts: Sequence[Stretches], without: Sequence[str] = (), periods: Mapping[float | None, Sequence[float]] = NO_PERIODS, breaks_s: Sequence[float] = ()
 ) -> tuple[list[Hypothesis], dict[str, str]]:
     """The competing hypotheses, and those that this log cannot test with the reason.
 
