@@ -12,15 +12,18 @@ from diagnose_case import bare, merlin, own
 from rovval import vehicle
 from rovval.data import Run
 from rovval.diagnose import diagnose
+from rovval.diagnose.confirm import confirm
+from rovval.diagnose.gap import axis_weight
 from rovval.diagnose.library import hypotheses
 from rovval.diagnose.point import evidence
-from rovval.diagnose.problem import Problem, pose
+from rovval.diagnose.problem import Problem, corrected_residuals, pose
 from rovval.diagnose.separate import FORM, MOST_FORM, form_share
 from rovval.diagnose.settle import settle
 from rovval.diagnose.steadied import discount, gains, loop_gain, loosened
 from rovval.diagnose.stretches import cut, cut_all
 from rovval.diagnose.tolerance import slop_prior
 from rovval.diagnose.unknown import forces
+from rovval.diagnose.weigh import UNMOVED, _harms, _settled
 from rovval.plant import Plant
 from rovval.vehicle.model import allocation
 
@@ -136,3 +139,18 @@ def test_only_what_turns_about_a_steadied_axis_is_loosened():
     wider = {plant.slots[s].key for s in tight.sd if loose.sd[s] > tight.sd[s]}
     assert wider == {f"{e}[roll].scale" for e in ("linear_drag", "quadratic_drag", "added_mass", "inertia_error")} | {"cg_offset.z"}
     assert replace(tight).sd == slop_prior(plant, 0.05).sd, "nothing was changed in place"
+
+
+def test_harm_is_told_from_what_is_closed_in_all():
+    before = {"surge": 10.0, "yaw": 1.0}
+    assert _harms(before, {"surge": 2.0, "yaw": 4.0})
+    assert not _harms(before, {"surge": 2.0, "yaw": 2.0})
+    assert not _harms(before, before | {"yaw": 1.0 + 0.5 * UNMOVED * 11.0})  # rounding, as of a compass
+
+
+def test_beside_a_cause_coefficients_may_be_as_slop_lets_them_be():
+    p = problem("buoyancy_error:force=60", "quadratic_drag[surge]:scale=0.2")
+    final = confirm(p, p.origin, (slot(p, "buoyancy_error.force"),))
+    as_filed, settled = axis_weight(p, corrected_residuals(p, final.beta)), _settled(p, final)
+    assert settled["surge"] < 0.8 * as_filed["surge"]
+    assert settled["heave"] == pytest.approx(as_filed["heave"], rel=0.2)
