@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 
 import numpy as np
 
@@ -40,9 +41,16 @@ def finalists(
     ground = problem.slop.widened(freed(problem, chosen))
     fitted: dict[str, tuple[Hypothesis, Confirmed]] = {}
 
+    def moves(h: Hypothesis) -> Array:
+        return step(data, ground.widened(prior_of(h)), problem.inflation)
+
+    def still(h: Hypothesis, slots: tuple[int, ...]) -> Array:
+        """The start where all else stays as it stands: a step of everything may lead away what was found before."""
+        return begun(problem, data, h, np.where(np.isin(data.columns, h.columns), moves(h), 0.0), base.beta, slots)
+
     def refit(h: Hypothesis) -> None:
         slots = tuple(dict.fromkeys((*chosen, *h.slots)))
-        start = begun(problem, data, h, step(data, ground.widened(prior_of(h)), problem.inflation), base.beta, slots)
+        start = begun(problem, data, h, moves(h), base.beta, slots)
         if h.name.startswith(REVERSED):
             start = _turned(problem, h, start)
         quick = roughly(problem, start, slots, base.scaled).light()
@@ -62,7 +70,7 @@ def finalists(
         for h in (*twins[:MOST_TWINS], *turned):
             if h.name not in fitted:
                 refit(h)
-    return _weighed(problem, list(_retried(problem, detection, fitted, whole_evidence(problem, base)).values()), base, loss)
+    return _weighed(problem, list(_retried(problem, detection, fitted, still if chosen else None, whole_evidence(problem, base)).values()), base, loss)
 
 
 def _valleys(h: Hypothesis) -> bool:
@@ -71,13 +79,20 @@ def _valleys(h: Hypothesis) -> bool:
 
 
 def _retried(
-    problem: Problem, detection: Detection, fitted: dict[str, tuple[Hypothesis, Confirmed]], ground: float
+    problem: Problem, detection: Detection, fitted: dict[str, tuple[Hypothesis, Confirmed]],
+    still: Callable[[Hypothesis, tuple[int, ...]], Array] | None, ground: float,
 ) -> dict[str, tuple[Hypothesis, Confirmed]]:
-    """The fits, those settled with care that promise most and of which a quick fit, whose slopes stand still, kept little."""
+    """The fits, those settled with care that promise most and of which a quick fit, whose slopes stand still, kept little; from where it ended, and
+    from ``still``, where there is one."""
     short = [name for name, (h, quick) in fitted.items() if quick.evidence - ground < PROMISED * detection.evidence[h.label]]
     short.sort(key=lambda name: -detection.evidence[fitted[name][0].label])
-    careful = {name: confirm(problem, fitted[name][1].point.beta, fitted[name][1].slots).light() for name in short[:RETRIED]}
-    return {name: (h, max((quick, careful.get(name, quick)), key=lambda one: one.evidence)) for name, (h, quick) in fitted.items()}
+    found = dict(fitted)
+    for name in short[:RETRIED]:
+        h, quick = fitted[name]
+        starts = [quick.point.beta, *([still(h, quick.slots)] if still else [])]
+        careful = [confirm(problem, start, quick.slots).light() for start in starts]
+        found[name] = h, max((quick, *careful), key=lambda one: one.evidence)
+    return found
 
 
 def sharpened(problem: Problem, rivals: list[Rival], base: Point, loss: Losses) -> list[Rival]:
