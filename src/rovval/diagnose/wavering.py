@@ -23,7 +23,7 @@ from rovval.diagnose.separate import FEW
 from rovval.diagnose.together import Named
 from rovval.vehicle.model import allocation
 
-DRIFT, SURE = 0.5, 5.0  # of the value, and standard errors (opened sets: 30 true causes drift by 0.24 at most, or by 3.3 standard errors)
+DRIFT, SURE = 0.4, 5.0  # of the value, and standard errors (opened sets: 30 true causes drift by 0.24 at most, or by 3.3 standard errors)
 SHARES = (0.1, 0.2, 0.4, 0.8)  # of the value, or of the thruster's thrust: rms by which it may vary
 WANDERS = (  # by nature: in-run instability in a gyro's, an AHRS's and a clock's data sheet; a sea comes in groups (Longuet-Higgins 1984)
     "gyro_bias", "attitude_bias", "clock_drift", "waves",
