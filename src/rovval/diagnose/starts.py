@@ -77,9 +77,10 @@ def _begun(plant: Plant, label: str, slots: tuple[int, ...], own: tuple[int, ...
 
 
 def _near(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...]) -> list[Hypothesis]:
-    """All parameters from the null value; where some only refine the others, these without them first."""
+    """All parameters from the null value; where some only refine the others, these without them first, and not with them where each of them is tried
+    alone: an axis on which nothing moves would take up whatever is left."""
     plain = tuple(s for s in slots if plant.slots[s].parameter.name not in effect.refines)
-    sets = {name: plain, f"{name}@fine": slots} if len(plain) < len(slots) else {name: slots}
+    sets = {name: plain} | ({f"{name}@fine": slots} if len(plain) < len(slots) and not effect.apart else {})
     return [Hypothesis(name, label, free, free, tuple(PRIOR_WIDTH * plant.slots[s].parameter.typical for s in free)) for label, free in sets.items()]
 
 
