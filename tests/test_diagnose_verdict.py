@@ -137,7 +137,11 @@ def test_only_what_turns_about_a_steadied_axis_is_loosened():
     tight = slop_prior(plant, 0.05)
     loose = loosened(tight, plant, {"roll": 3.0, "pitch": 0.0})
     wider = {plant.slots[s].key for s in tight.sd if loose.sd[s] > tight.sd[s]}
-    assert wider == {f"{e}[roll].scale" for e in ("linear_drag", "quadratic_drag", "added_mass", "inertia_error")} | {"cg_offset.z"}
+    assert wider == {f"{e}[roll].scale" for e in ("linear_drag", "quadratic_drag", "added_mass", "inertia_error")} | {
+        f"cg_offset.{x}" for x in "xyz"
+    }
+    by_key = {plant.slots[s].key: loose.sd[s] / tight.sd[s] for s in tight.sd}
+    assert by_key["cg_offset.z"] == pytest.approx(4.0) and by_key["cg_offset.x"] == by_key["cg_offset.y"] == pytest.approx(2.0)
     assert replace(tight).sd == slop_prior(plant, 0.05).sd, "nothing was changed in place"
 
 

@@ -19,6 +19,7 @@ from rovval.vehicle.model import allocation
 
 TILTS = {"roll": ("phi", "p", 3), "pitch": ("theta", "q", 4)}  # angle, its rate and the axis of the moment
 TURNING = ("linear_drag", "quadratic_drag", "added_mass", "inertia_error")  # coefficients about one axis
+LIST = 0.5  # power of the same for a list (tuning set: with 0 real logs lose what a dead thruster does, with 1 no list under an autopilot is found)
 SHOWN = 0.05  # chosen: share of the moment's variance that angle and rate must account for
 
 
@@ -35,13 +36,13 @@ def discount(parts: Sequence[Stretches], gain: Mapping[str, float]) -> Array:
 
 
 def loosened(prior: Prior, plant: Plant, gain: Mapping[str, float]) -> Prior:
-    """The tolerances of what turns the vehicle about a steadied axis, and of how stiffly it rights itself, times 1 + loop gain. A list is none of
-    these: it is as steady as the moment that an autopilot gives against it."""
+    """The tolerances of what turns the vehicle about a steadied axis, and of how stiffly it rights itself, times 1 + loop gain; of a
+    list, which is as steady as the moment that an autopilot gives against it, times less (`LIST`)."""
     sd = dict(prior.sd)
     for s in sd:
         slot = plant.slots[s]
-        if slot.effect == "cg_offset" and slot.parameter.name == "z":
-            sd[s] *= 1.0 + max(gain.values())
+        if slot.effect == "cg_offset":
+            sd[s] *= (1.0 + max(gain.values())) ** (1.0 if slot.parameter.name == "z" else LIST)
         elif slot.effect in TURNING:
             sd[s] *= 1.0 + gain.get(slot.hypothesis.partition("[")[2].rstrip("]"), 0.0)
     return Prior(sd)
