@@ -110,7 +110,8 @@ def _weighted(stretches: Stretches, nominal: Array, traces: Array, columns: tupl
     m, k = len(nominal), len(columns)
     if not keep:
         return _none(m, columns, ("no pose beside velocity in this log",))
-    free = np.flatnonzero(np.abs(traces).max(axis=(0, 1, 2)) > 0)
+    seen = np.flatnonzero(np.abs(traces).max(axis=(0, 1, 2)) > 0)
+    free = np.array([i for i in seen if not _of_one_axis(stretches, columns[i])], dtype=int)
     sigma = np.array([max(1.4826 * float(np.median(np.abs(nominal[..., i]))), LEAST_SIGMA[i]) for i in keep])
     notes: list[str] = []
     left = nominal[..., keep]
@@ -128,9 +129,16 @@ def _weighted(stretches: Stretches, nominal: Array, traces: Array, columns: tupl
     rows = (nominal[..., keep] / sigma).reshape(m, -1)
     scaled = (traces[..., keep, :] / sigma[:, None]).reshape(m, rows.shape[1], k)
     inflation = _inflation(rows, scaled, free)
-    gram = _gram(rows, scaled[..., free], tuple(columns[i] for i in free))
+    gram = _gram(rows, scaled[..., seen], tuple(columns[i] for i in seen))
     factor = np.array([stretches.plant.slots[c].effect in FACTORS for c in gram.columns], dtype=bool)
     return Parity(rows, scaled, gram, factor, columns, tuple(RELATIONS[i] for i in keep), tuple(sigma.tolist()), inflation, tuple(notes))
+
+
+def _of_one_axis(stretches: Stretches, column: int) -> bool:
+    """Whether a parameter says of one axis what another says of all: it is not needed to find the noise."""
+    slot = stretches.plant.slots[column]
+    effect = load(slot.effect)
+    return effect.apart and slot.parameter.name in effect.refines
 
 
 def _none(m: int, columns: tuple[int, ...], notes: tuple[str, ...]) -> Parity:

@@ -19,7 +19,7 @@ from rovval.vehicle.model import allocation
 
 TILTS = {"roll": ("phi", "p", 3), "pitch": ("theta", "q", 4)}  # angle, its rate and the axis of the moment
 TURNING = ("linear_drag", "quadratic_drag", "added_mass", "inertia_error")  # coefficients about one axis
-LIST = 0.5  # power of the same for a list (tuning set: with 0 real logs lose what a dead thruster does, with 1 no list under an autopilot is found)
+LIST = 0.5  # power of the same for a list (opened sets: with 1 no list under an autopilot is found, with 0.5 four of four)
 SHOWN = 0.05  # chosen: share of the moment's variance that angle and rate must account for
 
 
