@@ -25,7 +25,8 @@ SCREENED = 0.15  # of the best linear evidence: less is not re-simulated,
 FEWEST, ANYWAY = 4, 20.0  # unless it is one of the first few and is strong evidence by itself
 TRIES = 3  # starting points that a hypothesis whose fits end in many valleys is settled from
 TWIN, MOST_TWINS = 0.85, 4  # coherence from which a hypothesis is re-simulated beside the best finalist whatever the screen said
-PROMISED, RETRIED = 0.5, 2  # share of the tangent's evidence that a quick fit must keep, else it is settled with care; how many may be
+PROMISED, RETRIED = 0.5, 2  # share of the tangent's evidence that a quick fit must keep, else it is settled with care; how many may be,
+HOPEFUL = 0.25  # and how much of the best's evidence the tangent must promise (chosen: what closes little is found again once the best stands)
 SHARPENED = 4  # finalists that are settled with slopes made at their own point
 
 
@@ -84,8 +85,10 @@ def _retried(
 ) -> dict[str, tuple[Hypothesis, Confirmed]]:
     """The fits, those settled with care that promise most and of which a quick fit, whose slopes stand still, kept little; from where it ended, and
     from ``still``, where there is one."""
-    short = [name for name, (h, quick) in fitted.items() if quick.evidence - ground < PROMISED * detection.evidence[h.label]]
-    short.sort(key=lambda name: -detection.evidence[fitted[name][0].label])
+    promise = {name: detection.evidence[h.label] for name, (h, _) in fitted.items()}
+    kept = {name: quick.evidence - ground for name, (_, quick) in fitted.items()}
+    least = HOPEFUL * max(kept.values(), default=0.0)
+    short = sorted((name for name in fitted if kept[name] < PROMISED * promise[name] and promise[name] >= least), key=lambda name: -promise[name])
     found = dict(fitted)
     for name in short[:RETRIED]:
         h, quick = fitted[name]

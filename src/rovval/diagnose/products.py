@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import solve_triangular
 
 from rovval.data import Array
 from rovval.diagnose.linearise import Linear
@@ -107,7 +106,7 @@ def _window(linear: Linear, w: int, ok: np.ndarray, variance: Array, spread: Arr
     root = np.where(ok[w], 1.0 / np.sqrt(variance), 0.0).reshape(-1)
     x = linear.S[w].reshape(len(root), -1) * root[:, None]
     j = linear.J[w].reshape(len(root), -1)[:, : len(spread)] * root[:, None] * spread
-    q = solve_triangular(np.linalg.cholesky(np.eye(j.shape[1]) + j.T @ j), j.T, lower=True).T
+    q = j @ np.linalg.inv(np.linalg.cholesky(np.eye(j.shape[1]) + j.T @ j)).T
     return root, q, x, q.T @ x
 
 
