@@ -23,7 +23,7 @@ from rovval.diagnose.hypothesis import Hypothesis
 from rovval.diagnose.lanes import lanes_of
 from rovval.diagnose.library import hypotheses
 from rovval.diagnose.linearise import linearise
-from rovval.diagnose.problem import Problem, at, columns_of, pose
+from rovval.diagnose.problem import Problem, columns_of, pose
 from rovval.diagnose.separate import Rival
 from rovval.diagnose.settle import healthy_point, resettled, settle
 from rovval.diagnose.starts import LEVER, MOST_STARTS
@@ -237,7 +237,7 @@ def test_thrust_across_a_stream_is_lost_and_never_turned_round():
 
 def test_what_only_shows_when_it_is_large_competes_and_is_not_called_absent():
     p, library = posed()
-    kept, silent = excited(p, at(p, p.origin, *columns_of(library, p.slop)), library)
+    kept, silent = excited(p, library)
     names = {h.name for h in kept}
     assert silent.keys() & names and silent.keys() - names and not (names | silent.keys()) ^ {h.name for h in library}
     assert all(float(why.split("with ")[1].split()[0]) >= LEAST_SIGMA / LARGE for name, why in silent.items() if name in names)
@@ -267,9 +267,9 @@ def test_what_is_caught_on_the_way_begins_where_the_vehicle_was():
     starts = [{names[s]: value for s, value in h.at} for h in library if h.name == "tether_snag"]
     assert {120.0, 115.0, 110.0, 105.0} <= {round(at["onset"], 6) for at in starts} and len(starts) <= 3 * MOST_STARTS
     run = parts[0].run
-    for start in starts:
+    for at in starts:
         for place, channel in {"north": "x", "east": "y", "down": "z"}.items():
-            assert start[place] == pytest.approx(float(np.interp(start["onset"] / run.dt, np.arange(len(run)), run.get(channel))))
+            assert at[place] == pytest.approx(float(np.interp(at["onset"] / run.dt, np.arange(len(run)), run.get(channel))))
     assert 120.0 in {dict(h.at)[h.slots[1]] for h in library if h.name == "thruster_fault_onset[VAC]"}
 
 

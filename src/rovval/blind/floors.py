@@ -18,7 +18,7 @@ from rovval.data import Run
 from rovval.diagnose.hypothesis import PRIOR_WIDTH, Hypothesis
 from rovval.diagnose.library import hypotheses
 from rovval.diagnose.linearise import linearise
-from rovval.diagnose.problem import at, columns_of, pose
+from rovval.diagnose.problem import columns_of, pose
 from rovval.diagnose.stretches import VELOCITY_CHANNELS, Stretches, cut
 from rovval.diagnose.tolerance import slop_prior
 from rovval.vehicle.model import Vehicle
@@ -78,13 +78,12 @@ def _ridge(run: Run, vehicle: Vehicle, without: Sequence[str], model: str, windo
     problem = pose(parts, library, 0.05)
     sd = {c: s.parameter.typical for c, s in enumerate(problem.plant.slots)}
     sd |= {c: s / PRIOR_WIDTH for h in library if h.directions for c, s in zip(h.columns, h.sd, strict=True)}
-    data = at(problem, problem.origin, *columns_of(library, problem.slop))
-    A, b = data.A.sum(axis=0), data.b.sum(axis=0)
-    prior = np.array([problem.inflation / sd[c] ** 2 for c in data.columns])
+    A, b = problem.data.A.sum(axis=0), problem.data.b.sum(axis=0)
+    prior = np.array([problem.inflation / sd[c] ** 2 for c in problem.data.columns])
     step = np.linalg.solve(A + np.diag(prior), b)
     part: dict[str, float] = {}
     for h in library:
-        i = data.place(h.columns)
+        i = problem.data.place(h.columns)
         part[h.name] = part.get(h.name, 0.0) + float(step[i] @ A[np.ix_(i, i)] @ step[i])
     return max(part, key=lambda k: part[k])
 

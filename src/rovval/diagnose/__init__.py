@@ -47,6 +47,7 @@ def diagnose(
         BadInput: too little of a log can be simulated, or thruster inputs are missing.
     """
     from rovval.diagnose.answer import answer
+    from rovval.diagnose.excited import excited
     from rovval.diagnose.library import hypotheses
     from rovval.diagnose.problem import pose
     from rovval.diagnose.select import select
@@ -57,6 +58,7 @@ def diagnose(
     library, untestable = hypotheses(parts, without=without)
     say(f"simulating every effect of the library on {sum(p.count for p in parts)} windows", 0.05)
     problem = pose(parts, library, calibration_slop)
+    library, silent = excited(problem, library)
     selection = select(problem, library, seed, say)
     say("asking how much any systematic cause could explain", 0.85)
-    return answer(problem, untestable | dict(selection.silent), left_out, selection, calibration_slop, seed, say)
+    return answer(problem, untestable | silent, left_out, selection, calibration_slop, seed, say)

@@ -6,18 +6,16 @@ import numpy as np
 
 from rovval.diagnose.hypothesis import PRIOR_WIDTH, Hypothesis
 from rovval.diagnose.problem import Problem
-from rovval.diagnose.products import Products
 from rovval.diagnose.separate import FEW
 
 LEAST_SIGMA = 3.0  # standard errors by which an effect of typical size must show (research E.6: detectability below 3 says nothing)
 LARGE = 3.0  # typical sizes: an effect so large must show as much, or it does not compete (chosen); of few windows, a typical one must
 
 
-def excited(problem: Problem, data: Products, library: list[Hypothesis]) -> tuple[list[Hypothesis], dict[str, str]]:
-    """Hypotheses of which a `LARGE` size would show in this log, and those of which a typical size would not, with the reason; ``data`` is the
-    library linearised."""
-    information = np.einsum("wii->i", data.A) / problem.inflation
-    place = {column: i for i, column in enumerate(data.columns)}
+def excited(problem: Problem, library: list[Hypothesis]) -> tuple[list[Hypothesis], dict[str, str]]:
+    """Hypotheses of which a `LARGE` size would show in this log, and those of which a typical size would not, with the reason."""
+    information = np.einsum("wii->i", problem.data.A) / problem.inflation
+    place = {column: i for i, column in enumerate(problem.data.columns)}
     seen: dict[str, float] = {}
     for h in library:
         typical = [sd / PRIOR_WIDTH for sd in h.sd]

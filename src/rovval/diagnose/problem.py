@@ -27,8 +27,8 @@ from rovval.simulate import carried_effects
 @dataclass(frozen=True, slots=True)
 class Problem:
     """``parts`` one per run; ``origin`` (k,) the parameters it starts from; ``at_null`` residuals and nuisances at the nominal vehicle, ``dynamic`` and
-    ``data`` the products there (without and with parity) in the metric of ``white`` (n, c) and disturbances, ``gap`` and ``gap_data`` the same without
-    columns in that of ``variance`` (n, c), in which the gap is told and no disturbance taken out; ``inflation`` the design effect of autocorrelated
+    ``data`` the products there (without and with parity) in the metric of ``white`` (n, c) and disturbances, ``gap`` and ``gap_data`` the same in
+    that of ``variance`` (n, c), in which the gap is told and no disturbance taken out; ``inflation`` the design effect of autocorrelated
     residuals; ``disturbance`` what pushed the vehicle that nobody logged."""
 
     parts: tuple[Stretches, ...]
@@ -64,20 +64,19 @@ def pose(parts: tuple[Stretches, ...], library: Sequence[Hypothesis], slop: floa
     origin = parse_settings(plant, carried_effects(plant.vehicle))
     gain = gains(parts)
     prior = loosened(slop_prior(plant, slop), plant, gain)
-    columns, _ = columns_of(library, prior)
-    linear = tuple(linearise(part, origin, columns) for part in parts)
+    columns, directions = columns_of(library, prior)
+    linear = tuple(linearise(part, origin, columns, directions) for part in parts)
     parts = tuple(_running(part, one.valid) for part, one in zip(parts, linear, strict=True))
     run_of_window = np.concatenate([np.full(part.count, i) for i, part in enumerate(parts)])
     folds = folds_of(run_of_window)
     seen = metric(parts, linear, columns, prior, folds, discount(parts, gain), origin)
     dynamic = joined_of(seen.parts, seen.linear, seen.white, spread)
-    at_null = tuple(replace(one, S=one.S[..., :0].copy(), columns=()) for one in seen.linear)  # the slopes are the bulk of a problem
-    gap = joined_of(seen.parts, at_null, seen.variance, state_spread)
+    gap = joined_of(seen.parts, seen.linear, seen.variance, state_spread)
     checks = tuple(parity(part, columns) for part in parts)
     kinematic = joined([check.moved(origin, dynamic.columns).products(seen.inflation) for check in checks])
-    shown = joined([check.moved(origin, ()).products(seen.inflation) for check in checks])
+    at_null = tuple(replace(one, S=one.S[..., :0].copy(), columns=()) for one in seen.linear)  # the slopes are the bulk of a problem
     return Problem(
-        seen.parts, origin, seen.variance, seen.white, prior, at_null, dynamic, dynamic + kinematic, gap, gap + shown, checks, folds,
+        seen.parts, origin, seen.variance, seen.white, prior, at_null, dynamic, dynamic + kinematic, gap, gap + kinematic, checks, folds,
         seen.inflation, run_of_window, seen.disturbance,
     )  # fmt: skip
 

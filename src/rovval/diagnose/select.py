@@ -8,7 +8,7 @@ other (`together`), and where one falls the search goes on without it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,7 +17,6 @@ from rovval.diagnose.admissible import admissible, possible, simplest
 from rovval.diagnose.confirm import Confirmed, confirm, roughly
 from rovval.diagnose.contest import Prior, Ring, contest, fit
 from rovval.diagnose.detect import Detection, detect
-from rovval.diagnose.excited import excited
 from rovval.diagnose.finalists import finalists, freed, prior_of, sharpened
 from rovval.diagnose.hypothesis import Hypothesis
 from rovval.diagnose.library import retuned
@@ -41,8 +40,7 @@ CANDIDATES = 3  # that are settled to find the one that waits
 @dataclass(frozen=True, slots=True)
 class Selection:
     """Effects in the order found; the final joint fit (None: nothing found); where slop settles without any; every hypothesis's held-out share of the gap;
-    of each round the finalists with their evidence and held-out gain; the p-value of the round that ended the search; which hypotheses a typical
-    size of which would not show, with the reason."""
+    of each round the finalists with their evidence and held-out gain; the p-value of the round that ended the search."""
 
     named: tuple[Named, ...]
     final: Confirmed | None
@@ -52,22 +50,18 @@ class Selection:
     last_p: float
     last_evidence: float
     null_evidence: float
-    silent: Mapping[str, str]
 
 
 def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Callable[[str, float], None]) -> Selection:
     """Search for the effects that explain the gap; see the module."""
     healthy = healthy_point(problem)
-    library = retuned(problem, library, healthy)
-    begun = _bank(problem, library, healthy)
-    tuned, silent = excited(problem, begun, library)
+    tuned = retuned(problem, library, healthy)
     named, spent = list[Named](), set[str]()
     rounds = list[_Round]()
     for number in range(ROUNDS):
         progress(f"screening {len(tuned)} hypotheses, round {number + 1}", 0.3 + 0.1 * number)
         open_now = [h for h in tuned if h.name not in {n.hypothesis.name for n in named} | spent]
-        data = begun if number == 0 else _bank(problem, tuned, named[-1].fitted.point if named else healthy)
-        rounds.append(_round(problem, data, open_now, named, healthy, seed + number))
+        rounds.append(_round(problem, tuned, open_now, named, healthy, seed + number))
         if rounds[-1].able:
             named = _pruned(problem, [*named, _found(problem, rounds[-1], seed)])
             if len(named) < MOST:
@@ -85,7 +79,7 @@ def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Cal
     final, tried = named[-1].fitted if named else None, tuple(r.told for r in rounds if r.told)
     last = rounds[-1].detection
     p, most, null = last.p_value(last.best), last.evidence[last.best], float(np.quantile(last.null, 0.95))
-    return Selection(tuple(named), final, healthy, _ranking(problem, begun, tuned, named, tried), tried, p, most, null, silent)
+    return Selection(tuple(named), final, healthy, _ranking(problem, library, named, tried), tried, p, most, null)
 
 
 def _fairer(problem: Problem, healthy: Point, named: list[Named]) -> Point:
@@ -104,12 +98,13 @@ class _Round:
     told: tuple[tuple[str, float, float], ...]
 
 
-def _round(problem: Problem, data: Products, open_now: list[Hypothesis], named: list[Named], healthy: Point, seed: int) -> _Round:
-    """Is there anything beyond what stands, where ``data`` has the library linearised, and which of the open hypotheses may be added to it?"""
+def _round(problem: Problem, library: list[Hypothesis], open_now: list[Hypothesis], named: list[Named], healthy: Point, seed: int) -> _Round:
+    """Is there anything beyond what stands, and which of the open hypotheses may be added to it?"""
     chosen, base, loss = tuple[int, ...](), healthy, (problem.gap_data.c, problem.gap.c)
     if named:
         whole = named[-1].fitted
         chosen, base, loss = whole.slots, whole.point, (whole.loss, whole.dynamic_loss)
+    data = _bank(problem, library, base)
     detection = _detect(problem, data, open_now, chosen, seed)
     most = detection.evidence[detection.best]
     if most < PROMISING * LEAST_EVIDENCE or (detection.p_value(detection.best) > FALSE_ALARM and most < PLAIN):
@@ -178,12 +173,12 @@ def _detect(problem: Problem, data: Products, library: list[Hypothesis], chosen:
 
 
 def _ranking(
-    problem: Problem, begun: Products, library: list[Hypothesis], named: list[Named], rounds: Sequence[tuple[tuple[str, float, float], ...]]
+    problem: Problem, library: list[Hypothesis], named: list[Named], rounds: Sequence[tuple[tuple[str, float, float], ...]]
 ) -> tuple[tuple[str, float], ...]:
     """Every hypothesis with the held-out share of the gap that it closes by itself, slop standing still: the named ones, the finalists by
-    evidence, then the others by their share in the model linearised where slop settles, of what is left there."""
-    _, fits = contest(Ring.of(begun, problem.folds), Prior({}), {h.label: prior_of(h) for h in library}, problem.inflation)
-    gap, share = float(begun.c.sum()), dict[str, float]()
+    evidence, then the others by their share in the linearised model."""
+    _, fits = contest(Ring.of(problem.gap_data, problem.folds), Prior({}), {h.label: prior_of(h) for h in library}, problem.inflation)
+    gap, share = float(problem.gap_data.c.sum()), dict[str, float]()
     for h in library:
         share[h.name] = max(1.0 - fits[h.label].loss / gap, share.get(h.name, -np.inf))
     share |= {name: gain for name, _, gain in (rounds[0] if rounds else ())}

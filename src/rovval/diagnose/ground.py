@@ -1,0 +1,54 @@
+"""What stands before a cause is added, and what the cause closes of it: with every other coefficient as the file has it, and beside slop.
+
+A vehicle that rolls freely answers to each of its coefficients. With those as filed, a true cause may even open the gap; once healthy
+coefficients have settled, it closes what they leave, which the nearest relative of something else does not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rovval.diagnose.confirm import Confirmed, held_losses
+from rovval.diagnose.hypothesis import Hypothesis
+from rovval.diagnose.point import Point, whole_evidence
+from rovval.diagnose.problem import Problem, gap_at
+from rovval.diagnose.separate import STRONG, Losses, Rival, closed, interval
+
+
+@dataclass(frozen=True, slots=True)
+class Ground:
+    """Where slop settles beside what stands, the evidence of that, and its held-out losses with and without the kinematic checks."""
+
+    point: Point
+    evidence: float
+    loss: Losses
+
+
+def bare(problem: Problem, healthy: Point) -> Ground:
+    """Nothing but healthy coefficients, which settle at ``healthy``."""
+    return Ground(healthy, whole_evidence(problem, healthy), (problem.gap_data.c, problem.gap.c))
+
+
+def with_causes(fitted: Confirmed) -> Ground:
+    """What stands with the causes that were fitted."""
+    return Ground(fitted.point, fitted.evidence, (fitted.loss, fitted.dynamic_loss))
+
+
+def rival(problem: Problem, h: Hypothesis, fitted: Confirmed, ground: Ground) -> Rival:
+    """What a hypothesis adds to what stands; beside slop where its evidence is strong."""
+    evidence = fitted.evidence - ground.evidence
+    gain, kinematic = closed(ground.loss, (fitted.loss, fitted.dynamic_loss))
+    beside = closed(_settled(problem, ground.point), held_losses(problem, fitted, fitted.point.beta))[0] if evidence >= STRONG else 0.0
+    return Rival(h, fitted, evidence, gain, kinematic, beside)
+
+
+def relief(problem: Problem, fitted: Confirmed, healthy: Point, seed: int) -> tuple[float, float, float]:
+    """Share of the gap of the simulated motion, left where healthy coefficients settle alone, that the causes close beside healthy coefficients:
+    (value, low, high) of the 90 % block bootstrap on held-out windows."""
+    return interval(_settled(problem, healthy)[1], held_losses(problem, fitted, fitted.point.beta)[1], seed)
+
+
+def _settled(problem: Problem, point: Point) -> Losses:
+    """Losses of every window where healthy coefficients stand as at ``point``."""
+    dynamic, data = gap_at(problem, point.beta, ())
+    return data.c, dynamic.c
