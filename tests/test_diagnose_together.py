@@ -16,7 +16,9 @@ from rovval.diagnose.library import hypotheses
 from rovval.diagnose.problem import Problem, pose
 from rovval.diagnose.products import Products
 from rovval.diagnose.select import select
+from rovval.diagnose.separate import RELIEF
 from rovval.diagnose.stretches import cut_all
+from rovval.diagnose.together import LEAST_GAIN
 from rovval.diagnose.wavering import SHARES, _varies, wavering
 
 
@@ -30,6 +32,19 @@ def test_a_second_cause_does_not_lead_the_first_away():
     """A step of all parameters at once takes the waves out of step, and a list beside them would seem to be worth nothing."""
     document = diagnose([own(("waves:amplitude=1.2,period=6.2,direction=-2,phase=0.4", "cg_offset:x=-0.012"), 5, 240.0)], merlin()).document
     assert {c["effect"] for c in document["causes"]} == {"waves", "cg_offset"}, document["sentence"]
+
+
+def test_a_cause_that_healthy_coefficients_hide_is_found_beside_them():
+    """Thrust within its tolerance makes most of the gap, a weak current the rest: by itself it closes too little to be named."""
+    document = diagnose([own(("current_constant:north=0.03,east=0.015", "reverse_asymmetry:scale=0.1", "rpm_scale:scale=0.06"), 5, 240.0)], merlin()).document
+    (cause,) = document["causes"]
+    assert "current_constant" in cause["group"] and document["shrinkage"]["total"] < LEAST_GAIN, document["sentence"]
+    assert document["beside_slop"]["low"] > RELIEF
+
+
+def test_what_slop_alone_makes_is_not_called_a_cause_beside_it():
+    document = diagnose([own(("reverse_asymmetry:scale=0.1", "rpm_scale:scale=0.06"), 5, 240.0)], merlin()).document
+    assert document["causes"] == [] and document["beside_slop"] is None
 
 
 def test_two_causes_that_offset_each_other_are_both_found():

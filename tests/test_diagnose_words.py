@@ -164,3 +164,12 @@ def test_an_open_gap_is_an_unknown_effect_in_the_document():
     assert left["text"].startswith("noise and a calibration slop of 5 % account for only 30 % of the squared gap")
     d = null(0.04, 0.26) | {"verdict": "unknown", "left": left}
     assert "Unknown effect: noise and a calibration slop" in sentence(d) and not open_gap(d)
+
+
+@pytest.mark.parametrize(("low", "said"), [(0.1, False), (-0.3, True)])
+def test_what_is_closed_beside_slop_is_said_where_the_gap_stays_open_without_it(low, said):
+    document = make_diagnosis()
+    filed = document["shrinkage"] | {"total": (low + 0.1) / 2, "low": low, "high": 0.1 + low}
+    document |= {"shrinkage": filed, "beside_slop": {"total": 0.93, "low": 0.9, "high": 0.95}}
+    assert ("93 % [90, 95] of what those leave" in sentence(document)) is said
+    assert ("93 % [90, 95] of what those leave" in diagnosis_markdown.text(document)) is said

@@ -20,12 +20,12 @@ REVERSED, DEGRADED = "thruster_reversed", "thruster_degraded"  # one imitates th
 
 def admissible(problem: Problem, weighed: list[Rival]) -> list[Rival]:
     """Of the `possible` those that could be the cause by themselves: they close on held-out windows at least half of what the best of the
-    serious rivals closes. What a hypothesis achieves only with slop's help leaves the gap itself open."""
+    serious rivals closes."""
     rivals = _in_form(problem, weighed)
     if not rivals:
         return []
-    serious = max(r.gain for r in rivals if r.evidence >= SERIOUS * rivals[0].evidence)
-    return [r for r in possible(problem, weighed) if r.gain >= LEAST_OF_BEST * serious and r.gain > 0]
+    serious = max(r.closes for r in rivals if r.evidence >= SERIOUS * rivals[0].evidence)
+    return [r for r in possible(problem, weighed) if r.closes >= LEAST_OF_BEST * serious and r.closes > 0]
 
 
 def possible(problem: Problem, weighed: list[Rival]) -> list[Rival]:
@@ -42,7 +42,7 @@ def simplest(problem: Problem, rivals: list[Rival]) -> Rival:
         r for r in rivals
         if r is rivals[0]
         or alike(problem, r, rivals[0])
-        or (r.evidence >= least and r.gain >= (NEARLY - PER_PARAMETER * max(most - _parameters(problem, r), 0)) * rivals[0].gain)
+        or (r.evidence >= least and r.closes >= (NEARLY - PER_PARAMETER * max(most - _parameters(problem, r), 0)) * rivals[0].closes)
     ]  # fmt: skip
     return min(tied, key=lambda r: (_beyond_the_library(problem, r), _parameters(problem, r), -r.evidence))
 

@@ -14,6 +14,7 @@ from rovval.diagnose.breaks import change_points
 from rovval.diagnose.causes import causes, settings
 from rovval.diagnose.faults import faults
 from rovval.diagnose.gap import axis_rows, noise_loss
+from rovval.diagnose.ground import relief
 from rovval.diagnose.localise import slices, worst
 from rovval.diagnose.miscalibrated import calibration
 from rovval.diagnose.nothing import open_gap, opened
@@ -44,6 +45,7 @@ def answer(
         "gap": {"axes": axes, "where": _where(problem, before, axes, seed), "change_points_s": _changes(problem, before, seed)},
         "causes": causes(problem, judgement, before, seed),
         "shrinkage": shrunk,
+        "beside_slop": _beside_slop(problem, selection, judgement, seed),
         "ranking": [{"effect": name, "score": score} for name, score in selection.ranking],
         "not_testable": [{"effect": name, "why": why} for name, why in sorted(untestable.items()) if name not in judgement.groups],
         **next_flight.rows(problem, next_flight.advise(problem, judgement)),
@@ -98,6 +100,13 @@ def _disturbance(problem: Problem) -> dict[str, dict[str, float | str]]:
     found, units = problem.disturbance, ("N", "N", "N", "N m", "N m", "N m")
     rows = zip(AXES, units, found.rms, found.memory_s, strict=True)
     return {axis: {"rms": float(rms), "unit": unit, "memory_s": float(memory)} for axis, unit, rms, memory in rows}
+
+
+def _beside_slop(problem: Problem, selection: Selection, judgement: Judgement, seed: int) -> dict[str, float] | None:
+    """What the causes close of the gap that healthy coefficients leave, where these settle beside them."""
+    if judgement.final is None:
+        return None
+    return dict(zip(("total", "low", "high"), relief(problem, judgement.final, selection.healthy, seed), strict=True))
 
 
 def _detection(problem: Problem, selection: Selection, judgement: Judgement) -> dict[str, float]:

@@ -67,17 +67,23 @@ def _onset_tuned(problem: Problem, point: Point, slots: tuple[int, ...]) -> Poin
 def _scored(problem: Problem, point: Point, slots: tuple[int, ...]) -> Confirmed:
     beta = problem.origin.copy()
     beta[list(slots)] = point.beta[list(slots)]
-    dynamic, data = gap_at(problem, beta, slots)
-    own = np.arange(len(slots))
-    loss, dynamic_loss = data.c.copy(), dynamic.c.copy()
     bounds = [(problem.plant.slots[s].parameter.low, problem.plant.slots[s].parameter.high) for s in slots]
     resting = tuple(s for s, (low, high) in zip(slots, bounds, strict=True) if not low < beta[s] < high and (low, high) != (0.0, 1.0))
     found = whole_evidence(problem, point)
-    fitted = Confirmed(slots, beta, point, found, loss, dynamic_loss, resting)
+    fitted = Confirmed(slots, beta, point, found, problem.gap_data.c, problem.gap.c, resting)
+    loss, dynamic_loss = held_losses(problem, fitted, beta)
+    return replace(fitted, loss=loss, dynamic_loss=dynamic_loss)
+
+
+def held_losses(problem: Problem, fitted: Confirmed, beta: Array) -> tuple[Array, Array]:
+    """Losses (m,) with and without the kinematic checks of the parameters ``beta`` (k,), of which the fitted ones are as the windows of other folds
+    have them."""
+    dynamic, data = gap_at(problem, beta, fitted.slots)
+    own, loss, dynamic_loss = np.arange(len(fitted.slots)), data.c.copy(), dynamic.c.copy()
     for fold, step in held_steps(problem, fitted):
         loss[fold.test] = losses(data, own, step, fold.test)
         dynamic_loss[fold.test] = losses(dynamic, own, step, fold.test)
-    return replace(fitted, loss=loss, dynamic_loss=dynamic_loss)
+    return loss, dynamic_loss
 
 
 def held_steps(problem: Problem, fitted: Confirmed) -> list[tuple[Fold, Array]]:

@@ -55,5 +55,4 @@ def faults(parity_rows: Parity, stretches: Stretches, origin: Array) -> list[dic
 
 def _together(slot: Slot) -> tuple[str, str]:
     """What is fitted together: an effect's parameters, but for those that say the same of one axis only."""
-    effect = load(slot.effect)
-    return slot.hypothesis, slot.parameter.name if effect.apart and slot.parameter.name in effect.refines else ""
+    return slot.hypothesis, slot.parameter.name if load(slot.effect).of_one_axis(slot.parameter.name) else ""

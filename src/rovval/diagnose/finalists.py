@@ -13,11 +13,11 @@ from rovval.diagnose.admissible import DEGRADED, REVERSED, SERIOUS
 from rovval.diagnose.confirm import Confirmed, confirm, roughly
 from rovval.diagnose.contest import Prior, step
 from rovval.diagnose.detect import Detection
+from rovval.diagnose.ground import Ground, rival
 from rovval.diagnose.hypothesis import PRIOR_WIDTH, Hypothesis
-from rovval.diagnose.point import Point, whole_evidence
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import Products
-from rovval.diagnose.separate import Losses, Rival, closed, coherence
+from rovval.diagnose.separate import Rival, coherence
 from rovval.diagnose.settle import stays
 
 FINALISTS = 10  # hypotheses that are re-simulated in a round
@@ -31,12 +31,13 @@ SHARPENED = 4  # finalists that are settled with slopes made at their own point
 
 
 def finalists(
-    problem: Problem, data: Products, library: list[Hypothesis], detection: Detection, base: Point, chosen: tuple[int, ...], loss: Losses
+    problem: Problem, data: Products, library: list[Hypothesis], detection: Detection, stands: Ground, chosen: tuple[int, ...]
 ) -> list[Rival]:
     """The best starting point of each of the best hypotheses, settled jointly with what was chosen before; best evidence first.
 
-    ``loss`` are the held-out losses of what stands, with and without the kinematic checks, ``base`` where it settled and ``data`` the library linearised there.
+    ``data`` is the library linearised where what ``stands`` settled.
     """
+    base = stands.point
     ordered = sorted(library, key=lambda h: -detection.evidence[h.label])
     least = SCREENED * max(detection.evidence[detection.best], 0.0)
     ground = problem.slop.widened(freed(problem, chosen))
@@ -71,7 +72,7 @@ def finalists(
         for h in (*twins[:MOST_TWINS], *turned):
             if h.name not in fitted:
                 refit(h)
-    return _weighed(problem, list(_retried(problem, detection, fitted, still if chosen else None, whole_evidence(problem, base)).values()), base, loss)
+    return _weighed(problem, list(_retried(problem, detection, fitted, still if chosen else None, stands.evidence).values()), stands)
 
 
 def _valleys(h: Hypothesis) -> bool:
@@ -98,19 +99,16 @@ def _retried(
     return found
 
 
-def sharpened(problem: Problem, rivals: list[Rival], base: Point, loss: Losses) -> list[Rival]:
+def sharpened(problem: Problem, rivals: list[Rival], stands: Ground) -> list[Rival]:
     """The best of the admissible settled with slopes made at their own point, the others as they are."""
     serious = [r for r in rivals if r.evidence > SERIOUS * rivals[0].evidence][:SHARPENED]
     sharp = [(r.hypothesis, confirm(problem, r.fitted.point.beta, r.fitted.slots)) for r in serious]
-    return _weighed(problem, sharp + [(r.hypothesis, r.fitted) for r in rivals if r not in serious], base, loss)
+    return _weighed(problem, sharp + [(r.hypothesis, r.fitted) for r in rivals if r not in serious], stands)
 
 
-def _weighed(problem: Problem, fitted: list[tuple[Hypothesis, Confirmed]], base: Point, loss: Losses) -> list[Rival]:
-    """Finalists with what they add to what stands: evidence over slop, and the share that they close of what is left of the gap, with or
-    without the kinematic checks, whichever is more."""
-    ground = whole_evidence(problem, base)
-    rivals = [Rival(h, c, c.evidence - ground, *closed(loss, (c.loss, c.dynamic_loss))) for h, c in fitted]
-    return sorted(rivals, key=lambda r: -r.evidence)
+def _weighed(problem: Problem, fitted: list[tuple[Hypothesis, Confirmed]], stands: Ground) -> list[Rival]:
+    """Finalists with what they add to what stands, best evidence first."""
+    return sorted((rival(problem, h, c, stands) for h, c in fitted), key=lambda r: -r.evidence)
 
 
 def _turned(problem: Problem, h: Hypothesis, start: Array) -> Array:

@@ -111,7 +111,8 @@ def _weighted(stretches: Stretches, nominal: Array, traces: Array, columns: tupl
     if not keep:
         return _none(m, columns, ("no pose beside velocity in this log",))
     seen = np.flatnonzero(np.abs(traces).max(axis=(0, 1, 2)) > 0)
-    free = np.array([i for i in seen if not _of_one_axis(stretches, columns[i])], dtype=int)
+    slots = [stretches.plant.slots[c] for c in columns]
+    free = np.array([i for i in seen if not load(slots[i].effect).of_one_axis(slots[i].parameter.name)], dtype=int)  # not needed to find the noise
     sigma = np.array([max(1.4826 * float(np.median(np.abs(nominal[..., i]))), LEAST_SIGMA[i]) for i in keep])
     notes: list[str] = []
     left = nominal[..., keep]
@@ -132,13 +133,6 @@ def _weighted(stretches: Stretches, nominal: Array, traces: Array, columns: tupl
     gram = _gram(rows, scaled[..., seen], tuple(columns[i] for i in seen))
     factor = np.array([stretches.plant.slots[c].effect in FACTORS for c in gram.columns], dtype=bool)
     return Parity(rows, scaled, gram, factor, columns, tuple(RELATIONS[i] for i in keep), tuple(sigma.tolist()), inflation, tuple(notes))
-
-
-def _of_one_axis(stretches: Stretches, column: int) -> bool:
-    """Whether a parameter says of one axis what another says of all: it is not needed to find the noise."""
-    slot = stretches.plant.slots[column]
-    effect = load(slot.effect)
-    return effect.apart and slot.parameter.name in effect.refines
 
 
 def _none(m: int, columns: tuple[int, ...], notes: tuple[str, ...]) -> Parity:

@@ -18,12 +18,13 @@ from rovval.diagnose.confirm import Confirmed, confirm, roughly
 from rovval.diagnose.contest import Prior, Ring, contest, fit
 from rovval.diagnose.detect import Detection, detect
 from rovval.diagnose.finalists import finalists, freed, prior_of, sharpened
+from rovval.diagnose.ground import Ground, bare, with_causes
 from rovval.diagnose.hypothesis import Hypothesis
 from rovval.diagnose.library import retuned
 from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem, at, columns_of
 from rovval.diagnose.products import Products
-from rovval.diagnose.separate import Losses, Rival, group
+from rovval.diagnose.separate import STRONG, Rival, group
 from rovval.diagnose.settle import healthy_point, resettled
 from rovval.diagnose.together import LEAST_EVIDENCE, Named, together, worthy
 
@@ -33,7 +34,7 @@ FALSE_ALARM = 0.05  # family-wise, over the whole library
 PLAIN = 20.0  # twice the log Bayes factor that needs no p-value: where a strong effect is left of the log, null draws hold some of it
 NEEDLESS = 6.0  # twice the log Bayes factor below which an effect is dropped again (Kass & Raftery 1995: positive evidence)
 PROMISING = 0.5  # of `LEAST_EVIDENCE`, in the linearised model: less is not re-simulated
-WAITING, REMAINS = 60.0, 0.1  # evidence, and share of that of what stands, from which what closes little by itself may wait for another (chosen)
+REMAINS = 0.1  # share of the evidence of what stands from which what closes little by itself may wait for another, if it is strong (chosen)
 CANDIDATES = 3  # that are settled to find the one that waits
 
 
@@ -100,32 +101,30 @@ class _Round:
 
 def _round(problem: Problem, library: list[Hypothesis], open_now: list[Hypothesis], named: list[Named], healthy: Point, seed: int) -> _Round:
     """Is there anything beyond what stands, and which of the open hypotheses may be added to it?"""
-    chosen, base, loss = tuple[int, ...](), healthy, (problem.gap_data.c, problem.gap.c)
-    if named:
-        whole = named[-1].fitted
-        chosen, base, loss = whole.slots, whole.point, (whole.loss, whole.dynamic_loss)
-    data = _bank(problem, library, base)
+    chosen = named[-1].fitted.slots if named else ()
+    stands = with_causes(named[-1].fitted) if named else bare(problem, healthy)
+    data = _bank(problem, library, stands.point)
     detection = _detect(problem, data, open_now, chosen, seed)
     most = detection.evidence[detection.best]
     if most < PROMISING * LEAST_EVIDENCE or (detection.p_value(detection.best) > FALSE_ALARM and most < PLAIN):
         return _Round(detection, [], [], ())
-    weighed = finalists(problem, data, open_now, detection, base, chosen, loss)
-    able = admissible(problem, sharpened(problem, admissible(problem, weighed), base, loss))
+    weighed = finalists(problem, data, open_now, detection, stands, chosen)
+    able = admissible(problem, sharpened(problem, admissible(problem, weighed), stands))
     told = tuple((r.hypothesis.name, r.evidence, r.gain) for r in able or weighed)
     best = [r for r in able if worthy(r, alone=not named)]
     if best:
         return _Round(detection, best, able, told)
-    waiting = _waiting(problem, weighed, base, loss, sum(n.evidence for n in named))
+    waiting = _waiting(problem, weighed, stands, sum(n.evidence for n in named))
     return _Round(detection, waiting, waiting, told)
 
 
-def _waiting(problem: Problem, weighed: list[Rival], base: Point, loss: Losses, stands: float) -> list[Rival]:
+def _waiting(problem: Problem, weighed: list[Rival], stands: Ground, evidence: float) -> list[Rival]:
     """The finalist with the most evidence, which closes little by itself, as long as others are still to be found: of two causes that
-    offset each other, each alone opens the gap. Whether it is worth its name is asked again in the end (`together`). Of causes whose evidence is
-    ``stands``, the form of the equations alone leaves a share."""
-    least = max(WAITING, REMAINS * stands)
+    offset each other, each alone opens the gap. Whether it is worth its name is asked again in the end (`together`). Of causes that stand with so
+    much ``evidence``, the form of the equations alone leaves a share."""
+    least = max(STRONG, REMAINS * evidence)
     rivals = [r for r in possible(problem, weighed) if r.evidence >= least][:CANDIDATES]
-    return [r for r in possible(problem, sharpened(problem, rivals, base, loss)) if r.evidence >= least][:1] if rivals else []
+    return [r for r in possible(problem, sharpened(problem, rivals, stands)) if r.evidence >= least][:1] if rivals else []
 
 
 def _found(problem: Problem, one: _Round, seed: int) -> Named:

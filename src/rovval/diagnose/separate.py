@@ -20,19 +20,26 @@ FEW, MOST_FORM = 6, 0.7  # chosen: windows that are too few to average the form 
 ALIKE = 0.6  # of the best gain: with fewer windows than that, whoever closes as much stays beside the best
 PER_PARAMETER = 0.05  # chosen: what each parameter that the best has more may add to it
 TEMPER = 4.0  # twice the log Bayes factor that counts as a nat of belief, beside the form's share (chosen on the tuning set)
+STRONG, RELIEF = 60.0, 0.2  # evidence from which it is asked what is closed beside slop, and the share that counts (opened logs: wrong ones 0.12 at most)
 LEVEL = 0.05  # one-sided: a member of the group must be this plausible to be as good as the winner
 
 
 @dataclass(frozen=True, slots=True)
 class Rival:
     """A finalist: its re-simulated fit, its evidence over what stood before, and the share of the gap it closes by itself, held out; the same
-    of what the kinematic checks alone show (`closed`)."""
+    of what the kinematic checks alone show (`closed`), and of what slop leaves, slop settled beside it (`ground`)."""
 
     hypothesis: Hypothesis
     fitted: Confirmed
     evidence: float
     gain: float
     kinematic: float
+    beside: float = 0.0
+
+    @property
+    def closes(self) -> float:
+        """What it closes with every other coefficient as the file has it, or as slop lets them be, where that is enough to count."""
+        return max(self.gain, self.beside) if self.beside >= RELIEF else self.gain
 
 
 Losses = tuple[Array, Array]

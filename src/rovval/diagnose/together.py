@@ -12,10 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rovval.diagnose.confirm import Confirmed, confirm, roughly
+from rovval.diagnose.ground import Ground, bare, rival, with_causes
 from rovval.diagnose.hypothesis import Hypothesis
-from rovval.diagnose.point import Point, whole_evidence
+from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem
-from rovval.diagnose.separate import Losses, Rival, closed, group
+from rovval.diagnose.separate import Rival, closed, group
 
 LEAST_GAIN = 0.15  # of the gap, on held-out windows: less is not worth a name (opened sets: 0 of 8 below it were right)
 LATER_GAIN = 0.18  # of what is left, the same for a second and third effect: the forms of equations leave structure (0 of 7 were right)
@@ -37,12 +38,12 @@ class Named:
     rivals: tuple[Rival, ...]
 
 
-def worthy(rival: Rival, alone: bool) -> bool:
+def worthy(one: Rival, alone: bool) -> bool:
     """Whether a rival closes enough of the gap, or of what kinematics show, with enough evidence; ``alone``: nothing was found before it."""
-    gain = max(rival.gain, rival.kinematic)
+    gain = max(one.closes, one.kinematic)
     if alone:
-        return gain >= LEAST_GAIN and rival.evidence >= LEAST_EVIDENCE
-    return gain >= LATER_GAIN and rival.evidence * min(gain, 1.0) >= LATER_WORTH
+        return gain >= LEAST_GAIN and one.evidence >= LEAST_EVIDENCE
+    return gain >= LATER_GAIN and one.evidence * min(gain, 1.0) >= LATER_WORTH
 
 
 def together(problem: Problem, named: Sequence[Named], healthy: Point, seed: int) -> list[Named]:
@@ -53,36 +54,27 @@ def together(problem: Problem, named: Sequence[Named], healthy: Point, seed: int
     while found:
         whole, alone = found[-1].fitted, len(found) == 1
         without = [_without(problem, found, n, healthy) for n in found]
-        added = [_beside(n.hypothesis, whole, ground) for n, ground in zip(found, without, strict=True)]
+        added = [rival(problem, n.hypothesis, whole, ground) for n, ground in zip(found, without, strict=True)]
         found = [replace(n, evidence=one.evidence) for n, one in zip(found, added, strict=True)]
         if all(worthy(one, alone) for one in added):
             break
-        nothing = whole_evidence(problem, healthy)
+        nothing = bare(problem, healthy)
         stands = [_worth(problem, ground, nothing) for ground in without]
         found = _dropped(problem, found, found[int(np.argmax(stands))])
     return [_apart(n, {other.hypothesis.name for other in found if other is not n}) for n in found]
 
 
-@dataclass(frozen=True, slots=True)
-class _Ground:
-    """What stands without one of the causes: the evidence and the held-out losses."""
-
-    evidence: float
-    loss: Losses
-
-
-def _without(problem: Problem, found: Sequence[Named], one: Named, healthy: Point) -> _Ground:
+def _without(problem: Problem, found: Sequence[Named], one: Named, healthy: Point) -> Ground:
     rest = [n for n in found if n is not one]
     if not rest:
-        return _Ground(whole_evidence(problem, healthy), (problem.gap_data.c, problem.gap.c))
-    fitted = jointly(problem, found[-1].fitted, [n.hypothesis for n in rest])
-    return _Ground(fitted.evidence, (fitted.loss, fitted.dynamic_loss))
+        return bare(problem, healthy)
+    return with_causes(jointly(problem, found[-1].fitted, [n.hypothesis for n in rest]))
 
 
-def _worth(problem: Problem, ground: _Ground, nothing: float) -> float:
+def _worth(problem: Problem, ground: Ground, nothing: Ground) -> float:
     """Evidence of what stands without a cause, over that of ``nothing`` at all, times what it closes of the gap."""
-    gain, _ = closed((problem.gap_data.c, problem.gap.c), ground.loss)
-    return (ground.evidence - nothing) * max(gain, 0.0)
+    gain, _ = closed(nothing.loss, ground.loss)
+    return (ground.evidence - nothing.evidence) * max(gain, 0.0)
 
 
 def jointly(problem: Problem, whole: Confirmed, kept: Sequence[Hypothesis], other: Rival | None = None) -> Confirmed:
@@ -104,8 +96,8 @@ def _renamed(problem: Problem, found: list[Named], i: int, healthy: Point, seed:
     if not others:
         return found
     ground = _without(problem, found, one, healthy)
-    mine = _beside(one.hypothesis, whole, ground)
-    rivals = [mine, *(_beside(r.hypothesis, jointly(problem, whole, rest, r), ground) for r in others)]
+    mine = rival(problem, one.hypothesis, whole, ground)
+    rivals = [mine, *(rival(problem, r.hypothesis, jointly(problem, whole, rest, r), ground) for r in others)]
     rivals.sort(key=lambda r: -r.evidence)
     best = rivals[0] if rivals[0].evidence > mine.evidence + LEAST_EVIDENCE else mine
     members = tuple(sorted(group(problem, rivals, seed), key=lambda member: member[0] != best.hypothesis.name))
@@ -131,7 +123,3 @@ def _dropped(problem: Problem, found: list[Named], weak: Named) -> list[Named]:
     start = jointly(problem, found[-1].fitted, [n.hypothesis for n in rest])
     return [*rest[:-1], replace(rest[-1], fitted=confirm(problem, start.point.beta, start.slots))]
 
-
-def _beside(h: Hypothesis, fitted: Confirmed, ground: _Ground) -> Rival:
-    gain, kinematic = closed(ground.loss, (fitted.loss, fitted.dynamic_loss))
-    return Rival(h, fitted, fitted.evidence - ground.evidence, gain, kinematic)

@@ -17,6 +17,7 @@ from rovval.channels import AXES
 from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed
 from rovval.diagnose.gap import axis_weight
+from rovval.diagnose.ground import relief
 from rovval.diagnose.point import Point, whole_evidence
 from rovval.diagnose.problem import Problem, corrected_residuals
 from rovval.diagnose.select import Selection
@@ -35,6 +36,7 @@ UNMOVED = 0.001  # of the gap: less is rounding, as of a compass, which moves no
 SKILL = 0.5  # of the squared motion: an axis on which more is left is not simulated at all (chosen)
 HARDLY = 0.15  # of what an axis erred before (chosen)
 REAL = 100.0  # twice the log Bayes factor of a generic force from which it is not a healthy vehicle's form (tuning set)
+SEEN = 0.5  # of what the kinematic checks show: faults of sensors that close less of it are not shown by them alone (chosen)
 HOLDS = 0.02  # of what is left: a generic force that closes less on held-out windows is a fit to these windows (chosen)
 REMAINS = 0.10  # of a cause's evidence: less left over is form, not another cause
 WITHIN = 3.5  # standard deviations of tolerance that healthy coefficients reach (tuning set: 3.3 of some hundred)
@@ -45,7 +47,7 @@ WAVERS = 0.5  # of a cause's evidence: one whose value varies more surely than t
 @dataclass(frozen=True, slots=True)
 class Weighed:
     """What causes were asked: their evidence, that of generic forces instead and beside them, the strain, whether the simulator follows the
-    vehicle; whether kinematics carry most of the gap, whether they are only the least bad, and whether something remains; which of
+    vehicle; whether kinematics alone show faults of sensors, whether they are only the least bad, and whether something remains; which of
     them do not hold still, the least steady first; the generic forces beside them."""
 
     total: float
@@ -77,12 +79,13 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
     outdone = many and not sensors and instead > BETTER * total
     varies = wavering(problem, final, selection.named) if many else {}
     unsteady = _unsteady(problem, selection, final, varies) if many else ()
-    broken = not skill or strained > BROKEN or harmful or max(varies.values(), default=0.0) > max(WAVERS * total, LEAST_EVIDENCE)
+    filed = _shrinks(problem, final, before, axes)
+    eased = strained <= STRAINED and relief(problem, final, selection.healthy, 0)[1] > 0
+    idle = many and not sensors and not filed and not eased
+    broken = not skill or strained > BROKEN or harmful or idle or max(varies.values(), default=0.0) > max(WAVERS * total, LEAST_EVIDENCE)
     least_bad = outdone or broken or max(beside, excess) > max(form_share(problem.blocks) * total, FORMLESS)
-    kinematic = float((problem.gap_data.c - problem.gap.c).sum()) > float(problem.gap.c.sum())
-    parity_led = kinematic and any(of_sensor(n) for n in selection.named)
-    sure = _shrinks(problem, final, before, axes) and strained <= STRAINED
-    remains = not sure or (holds and rest.evidence() > max(REAL, REMAINS * total))
+    parity_led = any(of_sensor(n) for n in selection.named) and _seen_by_checks(problem, final)
+    remains = not filed or strained > STRAINED or (holds and rest.evidence() > max(REAL, REMAINS * total))
     return Weighed(total, instead, beside, strained, skill, parity_led, least_bad, remains, unsteady, rest)
 
 
@@ -94,6 +97,13 @@ def strain(point: Point) -> float:
 def of_sensor(named: Named) -> bool:
     """Whether a cause is a fault of a sensor."""
     return effects.load(named.hypothesis.name.partition("[")[0]).place == "sensor"
+
+
+def _seen_by_checks(problem: Problem, final: Confirmed) -> bool:
+    """Whether the kinematic checks by themselves surely show the faults of sensors that are named: no error of the dynamics leaves a trace there."""
+    was, now = problem.gap_data.c - problem.gap.c, final.loss - final.dynamic_loss
+    closed = float((was - now).sum())
+    return closed > SEEN * float(was.sum()) and closed / problem.inflation > REAL
 
 
 def _unsteady(problem: Problem, selection: Selection, final: Confirmed, varies: Mapping[str, float]) -> tuple[str, ...]:

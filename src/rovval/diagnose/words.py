@@ -19,7 +19,7 @@ UNMOVED = 0.005  # of the gap: less rounds to nothing
 def sentence(document: dict[str, Any]) -> str:
     """Gap, where, cause or group, shrinkage with its interval, what is left, the file's calibration, what to fly next, and what of the log is
     no measurement."""
-    parts = [_gap(document), _where(document), cause(document), _harm(document), _left(document), calibration(document), _next(document)]
+    parts = [_gap(document), _where(document), cause(document), beside_slop(document), _harm(document), _left(document), calibration(document), _next(document)]
     parts.append(_log(document))
     return " ".join(p for p in parts if p)
 
@@ -93,6 +93,15 @@ def _one(cause: dict[str, Any]) -> str:
     other = f" or, indistinguishable in this log, {', '.join(rivals)}" if rivals else ""
     does = alone(cause) or f"by itself it shrinks the squared gap by {span(cause['shrinkage'])} on held-out windows"
     return f"{cause['effect']}{onset} ({values}; probability {chance(cause['probability'])}){other}; {does}"
+
+
+def beside_slop(document: Mapping[str, Any]) -> str:
+    """What the causes close once healthy coefficients move, where with those as filed the gap does not surely shrink and it then does."""
+    filed, eased = document.get("shrinkage") or {}, document.get("beside_slop") or {}
+    if not document.get("causes") or (filed.get("low") or 0.0) > 0 or (eased.get("low") or 0.0) <= 0:
+        return ""
+    slop = 100 * document["calibration_slop"]
+    return f"Beside coefficients within a calibration slop of {slop:g} %, which answer to each other here, they close {span(eased)} of what those leave."
 
 
 def _harm(document: dict[str, Any]) -> str:

@@ -63,7 +63,8 @@ class Effect:
     parameters that linearisation at the null value cannot see (``onset`` as a fraction of the run); ``where``: parameters that begin
     where a channel stood at the onset; ``levers``: coordinates of the point where a force acts, which it cannot see either, the one ahead
     first. ``apart``: each parameter may well be at work without the others, as an offset along one of three axes, and is tried by itself,
-    too. ``refines``: parameters that only refine the others, which are tried without them as well. ``competes`` False: a tolerance
+    too. ``refines``: parameters that only refine the others, which are tried without them as well; of an effect that is also
+    ``apart`` they say of one axis what the others say of all, and are tried one by one only. ``competes`` False: a tolerance
     that healthy vehicles have, which a diagnosis takes into account and never names."""
 
     name: str
@@ -87,6 +88,10 @@ class Effect:
     def __post_init__(self) -> None:
         object.__setattr__(self, "grid", MappingProxyType(dict(self.grid)))
         object.__setattr__(self, "where", MappingProxyType(dict(self.where)))
+
+    def of_one_axis(self, parameter: str) -> bool:
+        """Whether a parameter says of one axis what another says of all."""
+        return self.apart and parameter in self.refines
 
 
 @cache

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rovval.diagnose.words import alone, nothing, undecided
+from rovval.diagnose.words import alone, beside_slop, nothing, undecided
 from rovval.report.words import listed, number, per_cent, quantity
 from rovval.units import in_degrees
 
@@ -185,4 +185,4 @@ def _far(document: Document) -> str:
         return ""
     explainable = f", {per_cent(s['of_explainable'])} of what is above the noise" if s.get("of_explainable") is not None else ""
     held = " on stretches held out" if s.get("held_out") else ""
-    return f"With it the squared gap shrinks by {interval(s)}{held}{explainable}."
+    return f"With it the squared gap shrinks by {interval(s)}{held}{explainable}. {beside_slop(document)}".rstrip()
