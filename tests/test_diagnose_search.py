@@ -243,6 +243,14 @@ def test_what_only_shows_when_it_is_large_competes_and_is_not_called_absent():
     assert all(float(why.split("with ")[1].split()[0]) >= LEAST_SIGMA / LARGE for name, why in silent.items() if name in names)
 
 
+def test_a_parameter_whose_channel_is_not_in_the_log_does_not_compete():
+    parts, _ = cut_all([own((), 5, 120.0)], merlin(), "fossen", 10.0)
+    library, untestable = hypotheses(parts)
+    (sag,) = [h for h in library if h.name == "voltage_sag"]
+    assert [parts[0].plant.slots[s].key for s in sag.slots] == ["voltage_sag.rate"]
+    assert "voltage" in untestable["voltage_sag.gain"]
+
+
 def test_what_is_named_is_not_called_untestable(tmp_path: Path):
     """A thruster that is turned far round shows, though a turn of typical size would not."""
     document = diagnose([bluerov2(tmp_path, "turned.csv", 12, 200.0, 0.03, ("thruster_misaligned", "T1", -2.0))], load("bluerov2_heavy")).document

@@ -67,6 +67,16 @@ def test_an_effect_without_its_channel_is_refused():
         cases.run(plant, beta=parse_settings(plant, ["ground_effect:gain=100"]))
 
 
+@pytest.mark.parametrize("voltage", [None, np.full(11, np.nan)])
+def test_a_parameter_without_its_channel_is_refused(voltage):
+    plant, still = Plant(cases.merlin()), np.zeros((1, 6))
+    inputs = Inputs(0.1, np.zeros((11, 7)), False, voltage=voltage)
+    beta = parse_settings(plant, ["voltage_sag:gain=1,rate=1e-5"])
+    with pytest.raises(UsageProblem, match=r"voltage_sag\.gain needs voltage"):
+        plant.simulate(inputs, np.zeros(1, int), 5, still, still, beta[None])
+    plant.simulate(inputs, np.zeros(1, int), 5, still, still, parse_settings(plant, ["voltage_sag:rate=1e-5"])[None])
+
+
 def test_shapes_that_do_not_fit_are_refused_together():
     plant = Plant(cases.merlin())
     with pytest.raises(BadInput, match=r"(?s)nu0 is .*8 thruster speeds for 7.*samples 0 to 50 of a log of 11"):

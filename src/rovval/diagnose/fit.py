@@ -63,7 +63,8 @@ def fit(
     parts, left_out = cut_all(runs, vehicle, model, window_s)
     library, missing = hypotheses(parts)
     plant = parts[0].plant
-    out = {s: undetermined(missing[plant.slots[s].hypothesis]) for s in wanted if plant.slots[s].hypothesis in missing}
+    why = {s: missing.get(plant.slots[s].hypothesis) or missing.get(plant.slots[s].key) for s in wanted}
+    out = {s: undetermined(reason) for s, reason in why.items() if reason}
     able = tuple(s for s in wanted if s not in out)
     say(f"simulating {len(able)} parameters on {sum(p.count for p in parts)} windows", 0.1)
     names = {plant.slots[s].hypothesis for s in able}

@@ -35,6 +35,10 @@ def hypotheses(
         if missing:
             untestable[name] = f"needs {', '.join(missing)}, which this log does not hold"
             continue
+        for slot in (plant.slots[s] for s in slots):
+            if (c := slot.parameter.needs) and not all(part.run.measured(c) for part in parts):
+                untestable[slot.key] = f"needs {c}, which this log does not hold"
+        slots = tuple(s for s in slots if plant.slots[s].key not in untestable)
         next_id = len(plant.slots) + sum(len(h.directions) for h in found)
         found.extend(starts(plant, name, effect, slots, parts, next_id, periods, breaks_s))
     return found, untestable

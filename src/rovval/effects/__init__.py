@@ -39,7 +39,8 @@ class Parameter:
     """One number of an effect. ``typical`` is the 1-sigma prior size of its departure from ``null``; ``low`` and ``high`` are
     refused beyond, never clipped. ``sized`` says that low, high and typical are for a BlueROV2 and grow with the vehicle's
     weight, surge drag or thruster speed (`plant.slots`). ``target`` sets a parameter of an effect that is neither per axis nor per
-    thruster apart, as a hypothesis of its own: ``time_offset[velocity]``, ``p["delay[velocity]"]``."""
+    thruster apart, as a hypothesis of its own: ``time_offset[velocity]``, ``p["delay[velocity]"]``. ``needs``: the channel without which it
+    does nothing and is refused."""
 
     name: str
     unit: str
@@ -50,6 +51,7 @@ class Parameter:
     source: str
     sized: Kind = ""
     target: str = ""
+    needs: str = ""
 
     def __post_init__(self) -> None:
         if not self.low <= self.null <= self.high or not self.low < self.high or not self.typical > 0:

@@ -13,9 +13,9 @@ EFFECT = Effect(
     title="Voltage sag",
     place="input",
     equation="T <- T (1 + gain ((V/V_0)^2 - 1)) (1 - rate t): gain 1 is T ~ V^2 with the logged voltage (V_0 that of the vehicle's table, else the "
-    "log's first; without a voltage in the log gain does nothing), rate a steady loss since the run's start (diagnosis.md A12).",
+    "log's first), rate a steady loss since the run's start (diagnosis.md A12).",
     parameters=(
-        Parameter("gain", "1", -1.0, 2.0, 0.0, 0.5, "T ~ V^2 at a fixed command (diagnosis.md A12); 0 where the logged speed already sags"),
+        Parameter("gain", "1", -1.0, 2.0, 0.0, 0.5, "T ~ V^2 at a fixed command (diagnosis.md A12); 0 where the logged speed already sags", needs="voltage"),
         Parameter("rate", "1/s", -5e-4, 5e-4, 0.0, 5e-5, "25 % within a dive of some hours (diagnosis.md A12)"),
     ),
     signature="every thruster weakens together, slowly, and at heavy load",

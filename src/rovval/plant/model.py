@@ -166,8 +166,9 @@ class Plant:
         if problems:
             raise BadInput(all_at_once(problems, "simulate"))
         slots.check_bounds(self.slots, beta)
-        used = {self.slots[c].effect for c in np.flatnonzero((beta != self.null).any(axis=0))}
-        missing = [f"{n} needs {c}" for n in sorted(used) for c in effects.load(n).needs if c in ABSENT and getattr(inputs, c) is None]
+        moved = [self.slots[c] for c in np.flatnonzero((beta != self.null).any(axis=0))]
+        missing = [f"{n} needs {c}" for n in sorted({s.effect for s in moved}) for c in effects.load(n).needs if c in ABSENT and _absent(inputs, c)]
+        missing += [f"{s.key} needs {s.parameter.needs}" for s in moved if s.parameter.needs in ABSENT and _absent(inputs, s.parameter.needs)]
         if missing:
             raise UsageProblem(all_at_once(missing, "channels that the log does not hold"))
         return start, nu0, eta0, beta, which, gain
@@ -182,6 +183,11 @@ class Plant:
 
 
 ABSENT = ("altitude", "wall_distance", "voltage", "tether_length")
+
+
+def _absent(inputs: Inputs, channel: str) -> bool:
+    values = getattr(inputs, channel)
+    return values is None or not np.isfinite(values).any()
 
 
 def parse_settings(plant: Plant, settings: Sequence[str]) -> Array:
