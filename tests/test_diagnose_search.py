@@ -18,7 +18,7 @@ from rovval.diagnose.admissible import _beyond_the_library, simplest
 from rovval.diagnose.breaks import FEWEST, _split
 from rovval.diagnose.confirm import Confirmed, confirm, errors
 from rovval.diagnose.excited import LARGE, LEAST_SIGMA, excited
-from rovval.diagnose.finalists import _half_a_turn_later
+from rovval.diagnose.finalists import _half_a_turn_later, prior_of
 from rovval.diagnose.hypothesis import Hypothesis
 from rovval.diagnose.lanes import lanes_of
 from rovval.diagnose.library import hypotheses
@@ -241,6 +241,26 @@ def test_what_only_shows_when_it_is_large_competes_and_is_not_called_absent():
     names = {h.name for h in kept}
     assert silent.keys() & names and silent.keys() - names and not (names | silent.keys()) ^ {h.name for h in library}
     assert all(float(why.split("with ")[1].split()[0]) >= LEAST_SIGMA / LARGE for name, why in silent.items() if name in names)
+
+
+def test_a_coefficient_that_slop_moves_competes_wherever_its_search_begins():
+    """Begun elsewhere, a dead band would else be held to its tolerance by slop's own column for it."""
+    p, library = posed()
+    width = slot(p, "thruster_deadband.width")
+    begun = [h for h in library if h.name == "thruster_deadband"]
+    assert width in p.slop.sd and all(h.directions for h in begun)
+    assert all(prior_of(p, h).sd[width] > 10.0 * p.slop.sd[width] for h in begun)
+
+
+def test_what_only_places_an_effect_does_not_make_its_size_unsure():
+    """Seen from one height, a gain and a height of the ground effect are one number; that it is not nothing is sure all the same."""
+    p, _ = posed()
+    north, phase, period = (slot(p, f"current_varying.{name}") for name in ("north", "phase", "period"))
+    beta = p.origin.copy()
+    beta[[north, phase, period]] = 0.1, 0.4, 60.0
+    fitted = confirm(p, beta, (north, phase, period))
+    free, fixed = errors(p, fitted), errors(p, fitted, (phase, period))
+    assert (fixed[1:] == 0.0).all() and 0.0 < fixed[0] <= free[0]
 
 
 def test_a_parameter_whose_channel_is_not_in_the_log_does_not_compete():

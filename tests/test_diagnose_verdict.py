@@ -10,20 +10,21 @@ import pytest
 
 from diagnose_case import bare, merlin, own
 from rovval import vehicle
+from rovval.channels import AXES
 from rovval.data import Run
 from rovval.diagnose import diagnose
 from rovval.diagnose.confirm import confirm
-from rovval.diagnose.gap import axis_weight
+from rovval.diagnose.ground import relief, without_own
 from rovval.diagnose.library import hypotheses
 from rovval.diagnose.point import evidence
 from rovval.diagnose.problem import Problem, corrected_residuals, pose
 from rovval.diagnose.separate import FORM, MOST_FORM, form_share
-from rovval.diagnose.settle import settle
+from rovval.diagnose.settle import healthy_point, settle
+from rovval.diagnose.shown import UNMOVED, Way, as_filed, beside_slop, harms, skilled, stand
 from rovval.diagnose.steadied import discount, gains, loop_gain, loosened
 from rovval.diagnose.stretches import cut, cut_all
 from rovval.diagnose.tolerance import slop_prior
 from rovval.diagnose.unknown import forces
-from rovval.diagnose.weigh import UNMOVED, _harms, _settled
 from rovval.plant import Plant
 from rovval.vehicle.model import allocation
 
@@ -147,14 +148,31 @@ def test_only_what_turns_about_a_steadied_axis_is_loosened():
 
 def test_harm_is_told_from_what_is_closed_in_all():
     before = {"surge": 10.0, "yaw": 1.0}
-    assert _harms(before, {"surge": 2.0, "yaw": 4.0})
-    assert not _harms(before, {"surge": 2.0, "yaw": 2.0})
-    assert not _harms(before, before | {"yaw": 1.0 + 0.5 * UNMOVED * 11.0})  # rounding, as of a compass
+    assert harms(Way(before, {"surge": 2.0, "yaw": 4.0}, True))
+    assert not harms(Way(before, {"surge": 2.0, "yaw": 2.0}, True))
+    assert not harms(Way(before, before | {"yaw": 1.0 + 0.5 * UNMOVED * 11.0}, True))  # rounding, as of a compass
 
 
 def test_beside_a_cause_coefficients_may_be_as_slop_lets_them_be():
     p = problem("buoyancy_error:force=60", "quadratic_drag[surge]:scale=0.2")
-    final = confirm(p, p.origin, (slot(p, "buoyancy_error.force"),))
-    as_filed, settled = axis_weight(p, corrected_residuals(p, final.beta)), _settled(p, final)
-    assert settled["surge"] < 0.8 * as_filed["surge"]
-    assert settled["heave"] == pytest.approx(as_filed["heave"], rel=0.2)
+    final, healthy = confirm(p, p.origin, (slot(p, "buoyancy_error.force"),)), healthy_point(p)
+    filed, eased = as_filed(p, final, corrected_residuals(p)), beside_slop(p, final, healthy)
+    assert filed.sure and eased.sure and skilled(p, filed) and skilled(p, eased)
+    assert eased.left["surge"] < 0.8 * filed.left["surge"]
+    assert eased.left["heave"] == pytest.approx(filed.left["heave"], rel=0.2)
+
+
+def test_a_coefficient_does_not_hide_behind_its_own_tolerance():
+    """Healthy drag may be what the cause is a departure of: without its own tolerance the others leave the gap open."""
+    p = problem("quadratic_drag[surge]:scale=0.4")
+    own, healthy = (slot(p, "quadratic_drag[surge].scale"),), healthy_point(p)
+    others, final = without_own(p, healthy, own), confirm(p, p.origin, own)
+    assert healthy.beta[own[0]] != p.origin[own[0]] and others.beta[own[0]] == p.origin[own[0]]
+    assert relief(p, final, others, 0)[1] > relief(p, final, healthy, 0)[1] - 0.01 and relief(p, final, others, 0)[1] > 0.0
+
+
+def test_an_axis_on_which_the_simulator_errs_as_much_as_the_vehicle_moves_shows_nothing():
+    p = problem()
+    motion = dict.fromkeys(AXES, 2.0)
+    still = Way({axis: 1e6 * motion[axis] for axis in AXES}, {axis: 4e5 * motion[axis] for axis in AXES}, True)
+    assert not skilled(p, still) and not stand(p, [still], seen=False) and stand(p, [still], seen=True)

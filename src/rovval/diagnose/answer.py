@@ -14,7 +14,7 @@ from rovval.diagnose.breaks import change_points
 from rovval.diagnose.causes import causes, settings
 from rovval.diagnose.faults import faults
 from rovval.diagnose.gap import axis_rows, noise_loss
-from rovval.diagnose.ground import relief
+from rovval.diagnose.ground import relief, without_own
 from rovval.diagnose.localise import slices, worst
 from rovval.diagnose.miscalibrated import calibration
 from rovval.diagnose.nothing import open_gap, opened
@@ -106,7 +106,8 @@ def _beside_slop(problem: Problem, selection: Selection, judgement: Judgement, s
     """What the causes close of the gap that healthy coefficients leave, where these settle beside them."""
     if judgement.final is None:
         return None
-    return dict(zip(("total", "low", "high"), relief(problem, judgement.final, selection.healthy, seed), strict=True))
+    others = without_own(problem, selection.healthy, judgement.final.slots)
+    return dict(zip(("total", "low", "high"), relief(problem, judgement.final, others, seed), strict=True))
 
 
 def _detection(problem: Problem, selection: Selection, judgement: Judgement) -> dict[str, float]:

@@ -6,6 +6,7 @@ says, so a hypothesis that leaves a coefficient eight sigma off does not win by 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -93,14 +94,15 @@ def held_steps(problem: Problem, fitted: Confirmed) -> list[tuple[Fold, Array]]:
     return [(fold, np.where(moves, fitted.point.step(fold.train)[: len(slots)], 0.0)) for fold in problem.folds]
 
 
-def errors(problem: Problem, fitted: Confirmed) -> Array:
+def errors(problem: Problem, fitted: Confirmed, fixed: Sequence[int] = ()) -> Array:
     """Standard errors (k,) of the fitted slots that hold under autocorrelated residuals and calibration slop: the sandwich of the joint fit.
 
     Scores are summed over pairs of windows; where these are few, never less than the inflated covariance. The other coefficients are
-    off by the declared slop, of which the joint fit takes out what the log shows.
+    off by the declared slop, of which the joint fit takes out what the log shows. Slots that are ``fixed`` stand where they are: no error.
     """
     point, k = fitted.point, len(fitted.slots)
-    bread = np.linalg.inv(point.curvature)
+    free, bread = np.array([c not in fixed for c in point.columns]), np.zeros_like(point.curvature)
+    bread[np.ix_(free, free)] = np.linalg.inv(point.curvature[np.ix_(free, free)])
     score = point.data.b - np.einsum("wij,j->wi", point.data.A, point.solved(point.curvature, point.slope))
     score -= score.mean(axis=0)  # not zero on a bound, which takes up the rest
     pairs = score[: len(score) // 2 * 2].reshape(-1, 2, len(bread)).sum(axis=1)
@@ -112,9 +114,9 @@ def errors(problem: Problem, fitted: Confirmed) -> Array:
 
 def significance(problem: Problem, fitted: Confirmed, slots: tuple[int, ...]) -> float:
     """Largest departure of ``slots`` from where the vehicle stands, in standard errors that include calibration slop. Parameters that only
-    place an effect (an onset, a period) have no null of their own and do not count."""
-    error = errors(problem, fitted)
+    place an effect (an onset, a period) have no null of their own: they do not count, and stand where they are."""
     sized = [s for s in slots if not places(problem, s)]
+    error = errors(problem, fitted, [s for s in slots if s not in sized])
     return max(float(abs(fitted.beta[s] - problem.origin[s]) / max(error[fitted.slots.index(s)], 1e-12)) for s in sized)
 
 

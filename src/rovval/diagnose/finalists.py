@@ -44,7 +44,7 @@ def finalists(
     fitted: dict[str, tuple[Hypothesis, Confirmed]] = {}
 
     def moves(h: Hypothesis) -> Array:
-        return step(data, ground.widened(prior_of(h)), problem.inflation)
+        return step(data, ground.widened(prior_of(problem, h)), problem.inflation)
 
     def still(h: Hypothesis, slots: tuple[int, ...]) -> Array:
         """The start where all else stays as it stands: a step of everything may lead away what was found before."""
@@ -128,10 +128,10 @@ def begun(problem: Problem, data: Products, h: Hypothesis, moves: Array, beta: A
     still = {s for s in stays(problem.plant) if s not in own}
     for slot, value in h.at:
         start[slot] = value
-    moved = {d.id: d.slot for d in h.directions}
+    moved, begins = {d.id: d.slot for d in h.directions}, {d.slot for d in h.directions} | {slot for slot, _ in h.at}
     for column, move in zip(data.columns, moves, strict=True):
         slot = moved.get(column, column)
-        if move and 0 <= slot < len(start) and slot not in still:
+        if move and 0 <= slot < len(start) and slot not in still and (column in moved or slot not in begins):
             parameter = problem.plant.slots[slot].parameter
             if parameter.name == "amplitude" and start[slot] + move < parameter.low:
                 start, move = _half_a_turn_later(problem, h, start), -move
@@ -153,6 +153,7 @@ def freed(problem: Problem, slots: tuple[int, ...]) -> Prior:
     return Prior({s: PRIOR_WIDTH * problem.plant.slots[s].parameter.typical for s in slots})
 
 
-def prior_of(h: Hypothesis) -> Prior:
-    """The wide prior of a hypothesis."""
-    return Prior(dict(zip(h.columns, h.sd, strict=True)))
+def prior_of(problem: Problem, h: Hypothesis) -> Prior:
+    """The wide prior of a hypothesis: of its columns, and of what slop may move of it wherever it begins."""
+    own = {s: PRIOR_WIDTH * problem.plant.slots[s].parameter.typical for s in h.slots if s in problem.slop.sd}
+    return Prior(own | dict(zip(h.columns, h.sd, strict=True)))

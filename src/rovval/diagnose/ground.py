@@ -6,13 +6,16 @@ coefficients have settled, it closes what they leave, which the nearest relative
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 from rovval.diagnose.confirm import Confirmed, held_losses
+from rovval.diagnose.contest import Prior
 from rovval.diagnose.hypothesis import Hypothesis
 from rovval.diagnose.point import Point, whole_evidence
 from rovval.diagnose.problem import Problem, gap_at
-from rovval.diagnose.separate import STRONG, Losses, Rival, closed, interval
+from rovval.diagnose.separate import RELIEF, STRONG, Losses, Rival, closed, interval
+from rovval.diagnose.settle import FEW, settle
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,14 +41,28 @@ def rival(problem: Problem, h: Hypothesis, fitted: Confirmed, ground: Ground) ->
     """What a hypothesis adds to what stands; beside slop where its evidence is strong."""
     evidence = fitted.evidence - ground.evidence
     gain, kinematic = closed(ground.loss, (fitted.loss, fitted.dynamic_loss))
-    beside = closed(_settled(problem, ground.point), held_losses(problem, fitted, fitted.point.beta))[0] if evidence >= STRONG else 0.0
+    beside = 0.0
+    if evidence >= STRONG and gain < RELIEF:
+        others = without_own(problem, ground.point, h.slots)
+        beside = closed(_settled(problem, others), held_losses(problem, fitted, fitted.point.beta))[0]
     return Rival(h, fitted, evidence, gain, kinematic, beside)
 
 
-def relief(problem: Problem, fitted: Confirmed, healthy: Point, seed: int) -> tuple[float, float, float]:
-    """Share of the gap of the simulated motion, left where healthy coefficients settle alone, that the causes close beside healthy coefficients:
-    (value, low, high) of the 90 % block bootstrap on held-out windows."""
-    return interval(_settled(problem, healthy)[1], held_losses(problem, fitted, fitted.point.beta)[1], seed)
+def without_own(problem: Problem, stands: Point, slots: Sequence[int]) -> Point:
+    """What ``stands`` settled where the coefficients ``slots`` have no slop: the departure that a cause is, slop is not to imitate."""
+    own = [s for s in slots if s in problem.slop.sd]
+    if not own:
+        return stands
+    start = stands.beta.copy()
+    start[own] = problem.origin[own]
+    others = replace(problem, slop=Prior({s: sd for s, sd in problem.slop.sd.items() if s not in own}))
+    return settle(others, start, stands.columns[: stands.own], stands.scaled, FEW)
+
+
+def relief(problem: Problem, fitted: Confirmed, others: Point, seed: int) -> tuple[float, float, float]:
+    """Share of the gap of the simulated motion, left where ``others``, the healthy coefficients that are not the causes', settle alone, that the
+    causes close beside healthy coefficients: (value, low, high) of the 90 % block bootstrap on held-out windows."""
+    return interval(_settled(problem, others)[1], held_losses(problem, fitted, fitted.point.beta)[1], seed)
 
 
 def _settled(problem: Problem, point: Point) -> Losses:

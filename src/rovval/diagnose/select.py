@@ -168,7 +168,7 @@ def _detect(problem: Problem, data: Products, library: list[Hypothesis], chosen:
     typical = Prior({c: problem.plant.slots[c].parameter.typical for c in slots})
     everything = fit(Ring.of(data, problem.folds), typical, problem.inflation).step
     base = problem.slop.widened(freed(problem, chosen))
-    return detect(data, base, problem.slop, {h.label: prior_of(h) for h in library}, problem.inflation, everything, seed)
+    return detect(data, base, problem.slop, {h.label: prior_of(problem, h) for h in library}, problem.inflation, everything, seed)
 
 
 def _ranking(
@@ -176,7 +176,7 @@ def _ranking(
 ) -> tuple[tuple[str, float], ...]:
     """Every hypothesis with the held-out share of the gap that it closes by itself, slop standing still: the named ones, the finalists by
     evidence, then the others by their share in the linearised model."""
-    _, fits = contest(Ring.of(problem.gap_data, problem.folds), Prior({}), {h.label: prior_of(h) for h in library}, problem.inflation)
+    _, fits = contest(Ring.of(problem.gap_data, problem.folds), Prior({}), {h.label: prior_of(problem, h) for h in library}, problem.inflation)
     gap, share = float(problem.gap_data.c.sum()), dict[str, float]()
     for h in library:
         share[h.name] = max(1.0 - fits[h.label].loss / gap, share.get(h.name, -np.inf))

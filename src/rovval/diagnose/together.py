@@ -59,7 +59,8 @@ def together(problem: Problem, named: Sequence[Named], healthy: Point, seed: int
         if all(worthy(one, alone) for one in added):
             break
         nothing = bare(problem, healthy)
-        stands = [_worth(problem, ground, nothing) for ground in without]
+        seen = [one.kinematic >= LEAST_GAIN and worthy(one, alone) for one in added]  # by kinematics, to which no other cause is a rival
+        stands = [-np.inf if safe and not all(seen) else _worth(problem, ground, nothing) for ground, safe in zip(without, seen, strict=True)]
         found = _dropped(problem, found, found[int(np.argmax(stands))])
     return [_apart(n, {other.hypothesis.name for other in found if other is not n}) for n in found]
 

@@ -13,16 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval import effects
-from rovval.channels import AXES
 from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed
-from rovval.diagnose.gap import axis_weight
-from rovval.diagnose.ground import relief
 from rovval.diagnose.point import Point, whole_evidence
-from rovval.diagnose.problem import Problem, corrected_residuals
+from rovval.diagnose.problem import Problem
 from rovval.diagnose.select import Selection
 from rovval.diagnose.separate import FEW, form_share
-from rovval.diagnose.shrinkage import shrinkage
+from rovval.diagnose.shown import acting, as_filed, beside_slop, checked, seen_by_checks, skilled, stand
 from rovval.diagnose.together import LEAST_EVIDENCE, Named
 from rovval.diagnose.tolerance import STRAINED
 from rovval.diagnose.unknown import Forces, forces
@@ -30,13 +27,7 @@ from rovval.diagnose.wavering import drifting, wavering
 
 BETTER = 1.0  # of a cause's evidence: a generic force that has more is nearer to the truth (chosen)
 FORMLESS = 20.0  # twice the log Bayes factor of what is beside a cause, from which it is more than the form of an equation (chosen)
-ACTING = 0.15  # of what a cause closes: the axes on which it acts
-HARMS = 0.25  # of what causes close in all: a cause that opens more on one axis is the least bad (chosen)
-UNMOVED = 0.001  # of the gap: less is rounding, as of a compass, which moves nothing (chosen)
-SKILL = 0.5  # of the squared motion: an axis on which more is left is not simulated at all (chosen)
-HARDLY = 0.15  # of what an axis erred before (chosen)
 REAL = 100.0  # twice the log Bayes factor of a generic force from which it is not a healthy vehicle's form (tuning set)
-SEEN = 0.5  # of what the kinematic checks show: faults of sensors that close less of it are not shown by them alone (chosen)
 HOLDS = 0.02  # of what is left: a generic force that closes less on held-out windows is a fit to these windows (chosen)
 REMAINS = 0.10  # of a cause's evidence: less left over is form, not another cause
 WITHIN = 3.5  # standard deviations of tolerance that healthy coefficients reach (tuning set: 3.3 of some hundred)
@@ -65,27 +56,22 @@ class Weighed:
 def weigh(problem: Problem, selection: Selection, final: Confirmed, general: Forces, before: list[Array]) -> Weighed:
     """Ask the causes of ``final``; ``general`` are generic forces on the healthy vehicle, ``before`` the nominal vehicle's residuals."""
     rest, total = forces(problem, final.point), whole_evidence(problem, final.point) - whole_evidence(problem, selection.healthy)
-    after, many = corrected_residuals(problem, final.beta), problem.blocks >= FEW
-    was, now = axis_weight(problem, before), axis_weight(problem, after)
-    closed = {axis: max(was[axis] - now[axis], 0.0) for axis in was}  # of the weighted gap
-    axes = _acting(closed)
+    many, strained, filed = problem.blocks >= FEW, strain(final.point), as_filed(problem, final, before)
+    axes = acting(filed.closed)
     holds = many and rest.share(problem.folds) > HOLDS
     beside, instead = rest.evidence(axes) if holds else 0.0, general.evidence(axes)
-    excess, strained = _excess(problem, final.point, axes), strain(final.point)
-    sensors = all(of_sensor(n) for n in selection.named)  # a force imitates a bias of the sensor that shows what it does
-    able = [now, *([_settled(problem, final)] if strained <= STRAINED else [])]  # coefficients as the file has them, or as slop of the stated size lets them be
-    skill = not many or sensors or any(_skill(problem, closed, was, left) for left in able)
-    harmful = all(_harms(was, left) for left in able)
-    outdone = many and not sensors and instead > BETTER * total
+    excess = _excess(problem, final.point, axes)
+    faulty = all(of_sensor(n) for n in selection.named) and checked(problem, final)  # a force imitates a bias of the sensor that shows what it does
+    ways = [filed, *([beside_slop(problem, final, selection.healthy)] if strained <= STRAINED else [])]
+    skill = not many or faulty or any(skilled(problem, way) for way in ways)
+    stands = stand(problem, ways, seen=faulty or not many)
+    outdone = many and not faulty and instead > BETTER * total
     varies = wavering(problem, final, selection.named) if many else {}
     unsteady = _unsteady(problem, selection, final, varies) if many else ()
-    filed = _shrinks(problem, final, before, axes)
-    eased = strained <= STRAINED and relief(problem, final, selection.healthy, 0)[1] > 0
-    idle = many and not sensors and not filed and not eased
-    broken = not skill or strained > BROKEN or harmful or idle or max(varies.values(), default=0.0) > max(WAVERS * total, LEAST_EVIDENCE)
+    broken = not stands or strained > BROKEN or max(varies.values(), default=0.0) > max(WAVERS * total, LEAST_EVIDENCE)
     least_bad = outdone or broken or max(beside, excess) > max(form_share(problem.blocks) * total, FORMLESS)
-    parity_led = any(of_sensor(n) for n in selection.named) and _seen_by_checks(problem, final)
-    remains = not filed or strained > STRAINED or (holds and rest.evidence() > max(REAL, REMAINS * total))
+    parity_led = any(of_sensor(n) for n in selection.named) and seen_by_checks(problem, final)
+    remains = not filed.sure or strained > STRAINED or (holds and rest.evidence() > max(REAL, REMAINS * total))
     return Weighed(total, instead, beside, strained, skill, parity_led, least_bad, remains, unsteady, rest)
 
 
@@ -99,50 +85,11 @@ def of_sensor(named: Named) -> bool:
     return effects.load(named.hypothesis.name.partition("[")[0]).place == "sensor"
 
 
-def _seen_by_checks(problem: Problem, final: Confirmed) -> bool:
-    """Whether the kinematic checks by themselves surely show the faults of sensors that are named: no error of the dynamics leaves a trace there."""
-    was, now = problem.gap_data.c - problem.gap.c, final.loss - final.dynamic_loss
-    closed = float((was - now).sum())
-    return closed > SEEN * float(was.sum()) and closed / problem.inflation > REAL
-
-
 def _unsteady(problem: Problem, selection: Selection, final: Confirmed, varies: Mapping[str, float]) -> tuple[str, ...]:
     """Causes whose value varies more surely than `WAVERS` of their evidence, the worst first, and those that drift."""
     own = {n.hypothesis.name: max(WAVERS * n.evidence, LEAST_EVIDENCE) for n in selection.named}
     wavers = sorted((name for name, most in varies.items() if most > own[name]), key=lambda name: own[name] / varies[name])
     return tuple(dict.fromkeys((*wavers, *drifting(problem, final, selection.named))))
-
-
-def _shrinks(problem: Problem, final: Confirmed, before: list[Array], axes: tuple[str, ...]) -> bool:
-    """Whether the gap surely shrinks on held-out windows, in all or on an axis where the causes act."""
-    shrunk = shrinkage(problem, final, before, 0)
-    return shrunk["low"] > 0 or any(shrunk["axes_interval"][axis]["low"] > 0 for axis in axes if axis in shrunk["axes_interval"])
-
-
-def _acting(closed: Mapping[str, float]) -> tuple[str, ...]:
-    """Axes on which the causes close a good part of what they close."""
-    return tuple(axis for axis in AXES if closed.get(axis, 0.0) > ACTING * max(sum(closed.values()), 1e-300))
-
-
-def _skill(problem: Problem, closed: Mapping[str, float], before: Mapping[str, float], left: Mapping[str, float]) -> bool:
-    """Whether on the axis where they close most the simulator, causes added, errs well less than the vehicle moves, or hardly errs any more.
-    Where it does neither, it replays an autopilot's answers to disturbances that nobody logged, which shows nothing about the vehicle."""
-    axis = max(closed, key=lambda a: closed[a])
-    if left[axis] <= HARDLY * before[axis]:
-        return True
-    moved = [np.where(part.ok, part.y - (part.y * part.ok).sum((0, 1)) / np.maximum(part.ok.sum((0, 1)), 1), 0.0) for part in problem.parts]
-    return left[axis] <= SKILL * axis_weight(problem, moved)[axis]
-
-
-def _harms(before: Mapping[str, float], left: Mapping[str, float]) -> bool:
-    """Whether an axis gets worse by a good part of what is closed in all."""
-    closed, whole = sum(before.values()) - sum(left.values()), sum(before.values())
-    return max(left[axis] - before[axis] for axis in before) > max(HARMS * closed, UNMOVED * whole)
-
-
-def _settled(problem: Problem, final: Confirmed) -> dict[str, float]:
-    """What is left on each axis where healthy coefficients stand beside the causes: an ROV that rolls freely answers to each of them."""
-    return axis_weight(problem, corrected_residuals(problem, final.point.beta))
 
 
 def _excess(problem: Problem, point: Point, axes: tuple[str, ...]) -> float:

@@ -1,0 +1,105 @@
+"""Whether causes show what they do: that they surely close some of the gap, harm no axis by much, and do it where the simulator follows the vehicle.
+
+Asked in two ways, of which one has to do: with every other coefficient as the file has it, and beside healthy coefficients, which a vehicle that
+rolls freely answers to each. Faults of sensors are asked of the kinematic checks instead, where these see them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rovval.channels import AXES
+from rovval.data import Array
+from rovval.diagnose.confirm import Confirmed
+from rovval.diagnose.gap import axis_weight
+from rovval.diagnose.ground import relief, without_own
+from rovval.diagnose.point import Point
+from rovval.diagnose.problem import Problem, corrected_residuals
+from rovval.diagnose.shrinkage import shrinkage
+from rovval.diagnose.together import LEAST_EVIDENCE
+
+ACTING = 0.15  # of what a cause closes: the axes on which it acts
+MUCH = 0.3  # of what a cause closes: the axes on which the simulator must follow the vehicle (chosen; the one on which it closes most always)
+HARMS = 0.25  # of what causes close in all: a cause that opens more on one axis is the least bad (chosen)
+UNMOVED = 0.001  # of the gap: less is rounding, as of a compass, which moves nothing (chosen)
+SKILL = 0.5  # of the squared motion: an axis on which more is left is not simulated at all (chosen)
+HARDLY = 0.15  # of what an axis erred before (chosen)
+SEEN, SURELY = 0.5, 100.0  # share of what the kinematic checks show, and evidence, from which they name a fault by themselves (chosen)
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """Squared error of each axis without and with the causes, in one of the two ways; whether these surely close some of it."""
+
+    was: Mapping[str, float]
+    left: Mapping[str, float]
+    sure: bool
+
+    @property
+    def closed(self) -> dict[str, float]:
+        """What is closed on each axis, where it is."""
+        return {axis: max(self.was[axis] - self.left[axis], 0.0) for axis in self.was}
+
+
+def as_filed(problem: Problem, final: Confirmed, before: list[Array]) -> Way:
+    """With every other coefficient as the file has it."""
+    was, left = axis_weight(problem, before), axis_weight(problem, corrected_residuals(problem, final.beta))
+    way, shrunk = Way(was, left, False), shrinkage(problem, final, before, 0)
+    sure = shrunk["low"] > 0 or any(shrunk["axes_interval"][axis]["low"] > 0 for axis in acting(way.closed) if axis in shrunk["axes_interval"])
+    return Way(was, left, sure)
+
+
+def beside_slop(problem: Problem, final: Confirmed, healthy: Point) -> Way:
+    """Beside healthy coefficients, those that are not the causes' own settled alone before."""
+    others = without_own(problem, healthy, final.slots)
+    was, left = (axis_weight(problem, corrected_residuals(problem, point.beta)) for point in (others, final.point))
+    return Way(was, left, relief(problem, final, others, 0)[1] > 0)
+
+
+def acting(closed: Mapping[str, float], share: float = ACTING) -> tuple[str, ...]:
+    """Axes on which the causes close a good part of what they close."""
+    return tuple(axis for axis in AXES if closed.get(axis, 0.0) > share * max(sum(closed.values()), 1e-300))
+
+
+def skilled(problem: Problem, way: Way) -> bool:
+    """Whether on the axes where they close much the simulator, causes added, errs well less than the vehicle moves, or hardly errs any more.
+    Where it does neither, it replays an autopilot's answers to disturbances that nobody logged, which shows nothing about the vehicle."""
+    moved = [np.where(part.ok, part.y - (part.y * part.ok).sum((0, 1)) / np.maximum(part.ok.sum((0, 1)), 1), 0.0) for part in problem.parts]
+    motion = axis_weight(problem, moved)
+    asked = {max(way.closed, key=lambda a: way.closed[a]), *acting(way.closed, MUCH)}
+    return all(way.left[axis] <= max(HARDLY * way.was[axis], SKILL * motion[axis]) for axis in asked)
+
+
+def harms(way: Way) -> bool:
+    """Whether an axis gets worse by a good part of what is closed in all."""
+    before, after = sum(way.was.values()), sum(way.left.values())
+    return max(way.left[axis] - way.was[axis] for axis in way.was) > max(HARMS * (before - after), UNMOVED * before)
+
+
+def stand(problem: Problem, ways: Sequence[Way], seen: bool) -> bool:
+    """Whether one of the ways shows the causes; ``seen``: the kinematic checks do, and motion need not."""
+    return any(not harms(way) and (seen or (way.sure and skilled(problem, way))) for way in ways)
+
+
+def checked(problem: Problem, final: Confirmed) -> bool:
+    """Whether the kinematic checks see faults of sensors at all: there are none to ask, or what they show is closed with evidence."""
+    return not _checks(problem).any() or float(_closed_there(problem, final)) > LEAST_EVIDENCE
+
+
+def seen_by_checks(problem: Problem, final: Confirmed) -> bool:
+    """Whether the kinematic checks by themselves name the faults of sensors: no error of the dynamics leaves a trace there."""
+    closed = _closed_there(problem, final)
+    return closed * problem.inflation > SEEN * float(_checks(problem).sum()) and closed > SURELY
+
+
+def _closed_there(problem: Problem, final: Confirmed) -> float:
+    """What is closed, on held-out windows, of what the kinematic checks show, in evidence."""
+    return float((_checks(problem) - (final.loss - final.dynamic_loss)).sum()) / problem.inflation
+
+
+def _checks(problem: Problem) -> Array:
+    """What the kinematic checks of each window (m,) show."""
+    return np.asarray(problem.gap_data.c - problem.gap.c)
