@@ -156,7 +156,7 @@ def test_harm_is_told_from_what_is_closed_in_all():
 def test_beside_a_cause_coefficients_may_be_as_slop_lets_them_be():
     p = problem("buoyancy_error:force=60", "quadratic_drag[surge]:scale=0.2")
     final, healthy = confirm(p, p.origin, (slot(p, "buoyancy_error.force"),)), healthy_point(p)
-    filed, eased = as_filed(p, final, corrected_residuals(p)), beside_slop(p, final, healthy)
+    filed, eased = as_filed(p, final, corrected_residuals(p)), beside_slop(p, final, healthy, corrected_residuals(p))
     assert filed.sure and eased.sure and skilled(p, filed) and skilled(p, eased)
     assert eased.left["surge"] < 0.8 * filed.left["surge"]
     assert eased.left["heave"] == pytest.approx(filed.left["heave"], rel=0.2)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from rovval.diagnose.confirm import Confirmed, held_losses
+from rovval.diagnose.confirm import Confirmed
 from rovval.diagnose.contest import Prior
 from rovval.diagnose.hypothesis import Hypothesis
 from rovval.diagnose.point import Point, whole_evidence
@@ -44,7 +44,7 @@ def rival(problem: Problem, h: Hypothesis, fitted: Confirmed, ground: Ground) ->
     beside = 0.0
     if evidence >= STRONG and gain < RELIEF:
         others = without_own(problem, ground.point, h.slots)
-        beside = closed(_settled(problem, others), held_losses(problem, fitted, fitted.point.beta))[0]
+        beside = closed(_settled(problem, others), _settled(problem, fitted.point))[0]
     return Rival(h, fitted, evidence, gain, kinematic, beside)
 
 
@@ -61,8 +61,9 @@ def without_own(problem: Problem, stands: Point, slots: Sequence[int]) -> Point:
 
 def relief(problem: Problem, fitted: Confirmed, others: Point, seed: int) -> tuple[float, float, float]:
     """Share of the gap of the simulated motion, left where ``others``, the healthy coefficients that are not the causes', settle alone, that the
-    causes close beside healthy coefficients: (value, low, high) of the 90 % block bootstrap on held-out windows."""
-    return interval(_settled(problem, others)[1], held_losses(problem, fitted, fitted.point.beta)[1], seed)
+    causes close beside healthy coefficients: (value, low, high) of the 90 % block bootstrap over windows. All windows were fitted: a step of the
+    causes that a fold would take goes with one of the coefficients, and evidence has paid for the causes' freedom."""
+    return interval(_settled(problem, others)[1], _settled(problem, fitted.point)[1], seed)
 
 
 def _settled(problem: Problem, point: Point) -> Losses:

@@ -1,7 +1,7 @@
 """Whether causes show what they do: that they surely close some of the gap, harm no axis by much, and do it where the simulator follows the vehicle.
 
-Asked in two ways, of which one has to do: with every other coefficient as the file has it, and beside healthy coefficients, which a vehicle that
-rolls freely answers to each. Faults of sensors are asked of the kinematic checks instead, where these see them.
+Asked in two ways, of which one has to do: with every other coefficient as the file has it, and with healthy coefficients where they settle beside
+the causes; a vehicle that rolls freely answers to each of them. Faults of sensors are asked of the kinematic checks instead, where these see them.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ HARMS = 0.25  # of what causes close in all: a cause that opens more on one axis
 UNMOVED = 0.001  # of the gap: less is rounding, as of a compass, which moves nothing (chosen)
 SKILL = 0.5  # of the squared motion: an axis on which more is left is not simulated at all (chosen)
 HARDLY = 0.15  # of what an axis erred before (chosen)
+SOME, SPARED = 0.05, 2.0  # of what slop leaves, and standard deviations of tolerance (opened sets: true causes 2.5 and 3.1, an autopilot's answers 0.8)
 SEEN, SURELY = 0.5, 100.0  # share of what the kinematic checks show, and evidence, from which they name a fault by themselves (chosen)
 
 
@@ -52,11 +53,17 @@ def as_filed(problem: Problem, final: Confirmed, before: list[Array]) -> Way:
     return Way(was, left, sure)
 
 
-def beside_slop(problem: Problem, final: Confirmed, healthy: Point) -> Way:
-    """Beside healthy coefficients, those that are not the causes' own settled alone before."""
-    others = without_own(problem, healthy, final.slots)
-    was, left = (axis_weight(problem, corrected_residuals(problem, point.beta)) for point in (others, final.point))
-    return Way(was, left, relief(problem, final, others, 0)[1] > 0)
+def beside_slop(problem: Problem, final: Confirmed, healthy: Point, before: list[Array]) -> Way:
+    """Beside healthy coefficients: surely, where the causes close some of what those that are not their own leave when they settle alone, or
+    where they spare a healthy coefficient much of its strain."""
+    was, left = axis_weight(problem, before), axis_weight(problem, corrected_residuals(problem, final.point.beta))
+    value, low, _ = relief(problem, final, without_own(problem, healthy, final.slots), 0)
+    return Way(was, left, (low > 0 and value > SOME) or strain(healthy) - strain(final.point) > SPARED)
+
+
+def strain(point: Point) -> float:
+    """Standard deviations by which the most strained healthy coefficient is off."""
+    return float(np.abs(point.sigmas()).max(initial=0.0))
 
 
 def acting(closed: Mapping[str, float], share: float = ACTING) -> tuple[str, ...]:

@@ -10,9 +10,10 @@ from rovval.diagnose.confirm import Confirmed
 from rovval.diagnose.left import left
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.select import FALSE_ALARM, Selection
+from rovval.diagnose.shown import strain
 from rovval.diagnose.together import Named, jointly
 from rovval.diagnose.unknown import Forces, bare_forces, forces
-from rovval.diagnose.weigh import BROKEN, HOLDS, REAL, Weighed, of_sensor, strain, weigh
+from rovval.diagnose.weigh import BROKEN, HOLDS, REAL, Weighed, of_sensor, weigh
 
 NEAR = 0.05  # of the gap, held out: an effect that closes less is not near the truth, whatever its evidence (chosen)
 

@@ -19,7 +19,7 @@ from rovval.diagnose.point import Point, whole_evidence
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.select import Selection
 from rovval.diagnose.separate import FEW, form_share
-from rovval.diagnose.shown import acting, as_filed, beside_slop, checked, seen_by_checks, skilled, stand
+from rovval.diagnose.shown import acting, as_filed, beside_slop, checked, seen_by_checks, skilled, stand, strain
 from rovval.diagnose.together import LEAST_EVIDENCE, Named
 from rovval.diagnose.tolerance import STRAINED
 from rovval.diagnose.unknown import Forces, forces
@@ -63,7 +63,7 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
     beside, instead = rest.evidence(axes) if holds else 0.0, general.evidence(axes)
     excess = _excess(problem, final.point, axes)
     faulty = all(of_sensor(n) for n in selection.named) and checked(problem, final)  # a force imitates a bias of the sensor that shows what it does
-    ways = [filed, *([beside_slop(problem, final, selection.healthy)] if strained <= STRAINED else [])]
+    ways = [filed, *([beside_slop(problem, final, selection.healthy, before)] if strained <= STRAINED else [])]
     skill = not many or faulty or any(skilled(problem, way) for way in ways)
     stands = stand(problem, ways, seen=faulty or not many)
     outdone = many and not faulty and instead > BETTER * total
@@ -75,11 +75,6 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
     parity_led = any(of_sensor(n) for n in selection.named) and seen_by_checks(problem, final)
     remains = not filed.sure or strained > STRAINED or (holds and rest.evidence() > max(REAL, REMAINS * total))
     return Weighed(total, instead, beside, strained, skill, parity_led, least_bad, remains, unsteady, rest)
-
-
-def strain(point: Point) -> float:
-    """Standard deviations by which the most strained healthy coefficient is off."""
-    return float(np.abs(point.sigmas()).max(initial=0.0))
 
 
 def of_sensor(named: Named) -> bool:
