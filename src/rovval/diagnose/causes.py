@@ -13,7 +13,7 @@ from rovval.diagnose.shrinkage import shrinkage
 from rovval.diagnose.together import Named
 from rovval.diagnose.verdict import Judgement
 
-FORM = 0.07  # of a parameter's departure, one standard error: equations that are only nearly right (logs of the independent plant ask for it)
+FORM = 0.10  # of a parameter's departure, one standard error: equations that are only nearly right (logs of two independent plants ask for it)
 MOST_GROUP = 3  # names printed of a confusion group
 
 

@@ -32,7 +32,7 @@ HOLDS = 0.02  # of what is left: a generic force that closes less on held-out wi
 REMAINS = 0.10  # of a cause's evidence: less left over is form, not another cause
 WITHIN = 3.5  # standard deviations of tolerance that healthy coefficients reach (tuning set: 3.3 of some hundred)
 BROKEN = 7.0  # standard deviations that say by themselves that something is at work: one of some hundred healthy logs of the tuning set reached 6
-OUTWEIGHS = 10.0  # of what a coefficient beyond `STRAINED` costs by its prior: less evidence is that of something else (opened sets: 3.9 and 4.6, true 15, 29)
+OUTWEIGHS = 5.0  # of what a coefficient beyond `STRAINED` costs by its prior: less evidence is that of something else (opened sets: 3.9, 4.6; true 6.2, 15)
 WAVERS = 0.5  # of a cause's evidence: one whose value varies more surely than that is not it (opened sets: true ones 0.40 at most)
 
 
