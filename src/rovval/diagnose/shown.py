@@ -27,7 +27,7 @@ HARMS = 0.25  # of what causes close in all: a cause that opens more on one axis
 UNMOVED = 0.001  # of the gap: less is rounding, as of a compass, which moves nothing (chosen)
 SKILL = 0.5  # of the squared motion: an axis on which more is left is not simulated at all (chosen)
 HARDLY = 0.15  # of what an axis erred before (chosen)
-SOME, SPARED = 0.05, 2.0  # of what slop leaves, and standard deviations of tolerance (opened sets: true causes 2.5 and 3.1, an autopilot's answers 0.8)
+SOME, SPARED = 0.05, 2.0  # surely, of what slop leaves; and standard deviations of tolerance (opened sets: true 0.08, 2.5, 3.1; false 0.02, 0.8)
 SEEN, SURELY = 0.5, 100.0  # share of what the kinematic checks show, and evidence, from which they name a fault by themselves (chosen)
 
 
@@ -57,8 +57,8 @@ def beside_slop(problem: Problem, final: Confirmed, healthy: Point, before: list
     """Beside healthy coefficients: surely, where the causes close some of what those that are not their own leave when they settle alone, or
     where they spare a healthy coefficient much of its strain."""
     was, left = axis_weight(problem, before), axis_weight(problem, corrected_residuals(problem, final.point.beta))
-    value, low, _ = relief(problem, final, without_own(problem, healthy, final.slots), 0)
-    return Way(was, left, (low > 0 and value > SOME) or strain(healthy) - strain(final.point) > SPARED)
+    _, low, _ = relief(problem, final, without_own(problem, healthy, final.slots), 0)
+    return Way(was, left, low > SOME or strain(healthy) - strain(final.point) > SPARED)
 
 
 def strain(point: Point) -> float:

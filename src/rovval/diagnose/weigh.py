@@ -32,7 +32,7 @@ HOLDS = 0.02  # of what is left: a generic force that closes less on held-out wi
 REMAINS = 0.10  # of a cause's evidence: less left over is form, not another cause
 WITHIN = 3.5  # standard deviations of tolerance that healthy coefficients reach (tuning set: 3.3 of some hundred)
 BROKEN = 7.0  # standard deviations that say by themselves that something is at work: one of some hundred healthy logs of the tuning set reached 6
-OUTWEIGHS = 5.0  # of what a coefficient beyond `STRAINED` costs by its prior: less evidence is that of something else (opened sets: 3.9, 4.6; true 6.2, 15)
+BENT, OUTWEIGHS = 6.0, 5.0  # the same of causes with less evidence than so much of what the strain costs by its prior (opened sets: 3.9, 4.6; true 15)
 WAVERS = 0.5  # of a cause's evidence: one whose value varies more surely than that is not it (opened sets: true ones 0.40 at most)
 
 
@@ -69,7 +69,7 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
     outdone = many and not faulty and instead > BETTER * total
     varies = wavering(problem, final, selection.named) if many else {}
     unsteady = _unsteady(problem, selection, final, varies) if many else ()
-    bent = strained > STRAINED and total < OUTWEIGHS * strained**2
+    bent = strained > BENT and total < OUTWEIGHS * strained**2
     broken = not stands or strained > BROKEN or bent or max(varies.values(), default=0.0) > max(WAVERS * total, LEAST_EVIDENCE)
     least_bad = outdone or broken or max(beside, excess) > max(form_share(problem.blocks) * total, FORMLESS)
     parity_led = any(of_sensor(n) for n in selection.named) and seen_by_checks(problem, final)
