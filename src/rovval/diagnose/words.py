@@ -8,7 +8,7 @@ from typing import Any
 from rovval.diagnose.calibration_words import calibration
 from rovval.diagnose.nothing import nothing, open_gap, undecided
 from rovval.diagnose.phrases import chance, family, span, value, whole
-from rovval.diagnose.tolerance import SENSORS
+from rovval.diagnose.tolerance import SENSORS, STRAINED
 from rovval.units import in_degrees
 
 __all__ = ["alone", "calibration", "cause", "chance", "first", "moved", "nothing", "open_gap", "sentence", "undecided", "unmoved"]
@@ -98,7 +98,8 @@ def _one(cause: dict[str, Any]) -> str:
 def beside_slop(document: Mapping[str, Any]) -> str:
     """What the causes close once healthy coefficients move, where with those as filed the gap does not surely shrink and it then does."""
     filed, eased = document.get("shrinkage") or {}, document.get("beside_slop") or {}
-    if not document.get("causes") or (filed.get("low") or 0.0) > 0 or (eased.get("low") or 0.0) <= 0:
+    within = ((document.get("detection") or {}).get("strain") or 0.0) <= STRAINED
+    if not document.get("causes") or not within or (filed.get("low") or 0.0) > 0 or (eased.get("low") or 0.0) <= 0:
         return ""
     slop = 100 * document["calibration_slop"]
     return f"Beside coefficients within a calibration slop of {slop:g} %, which answer to each other here, they close {span(eased)} of what those leave."
