@@ -72,14 +72,13 @@ def _scored(problem: Problem, point: Point, slots: tuple[int, ...]) -> Confirmed
     resting = tuple(s for s, (low, high) in zip(slots, bounds, strict=True) if not low < beta[s] < high and (low, high) != (0.0, 1.0))
     found = whole_evidence(problem, point)
     fitted = Confirmed(slots, beta, point, found, problem.gap_data.c, problem.gap.c, resting)
-    loss, dynamic_loss = held_losses(problem, fitted, beta)
+    loss, dynamic_loss = _held_losses(problem, fitted)
     return replace(fitted, loss=loss, dynamic_loss=dynamic_loss)
 
 
-def held_losses(problem: Problem, fitted: Confirmed, beta: Array) -> tuple[Array, Array]:
-    """Losses (m,) with and without the kinematic checks of the parameters ``beta`` (k,), of which the fitted ones are as the windows of other folds
-    have them."""
-    dynamic, data = gap_at(problem, beta, fitted.slots)
+def _held_losses(problem: Problem, fitted: Confirmed) -> tuple[Array, Array]:
+    """Losses (m,) with and without the kinematic checks, each window scored with the parameters that other folds give."""
+    dynamic, data = gap_at(problem, fitted.beta, fitted.slots)
     own, loss, dynamic_loss = np.arange(len(fitted.slots)), data.c.copy(), dynamic.c.copy()
     for fold, step in held_steps(problem, fitted):
         loss[fold.test] = losses(data, own, step, fold.test)

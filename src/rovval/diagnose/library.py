@@ -27,16 +27,20 @@ def hypotheses(
     those that swing and those that begin during the log begin.
     """
     plant, found, untestable = parts[0].plant, list[Hypothesis](), dict[str, str]()
+
+    def logged(channel: str) -> bool:
+        return all(part.run.measured(channel) for part in parts)
+
     for name, slots in plant.hypotheses.items():
         effect = effects.load(name.partition("[")[0])
         if not effect.competes or {name, effect.name} & set(without):
             continue
-        missing = [c for c in effect.needs if not all(part.run.measured(c) for part in parts)]
+        missing = [c for c in effect.needs if not logged(c)]
         if missing:
             untestable[name] = f"needs {', '.join(missing)}, which this log does not hold"
             continue
         for slot in (plant.slots[s] for s in slots):
-            if (c := slot.parameter.needs) and not all(part.run.measured(c) for part in parts):
+            if (c := slot.parameter.needs) and not logged(c):
                 untestable[slot.key] = f"needs {c}, which this log does not hold"
         slots = tuple(s for s in slots if plant.slots[s].key not in untestable)
         next_id = len(plant.slots) + sum(len(h.directions) for h in found)
