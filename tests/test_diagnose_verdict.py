@@ -148,16 +148,16 @@ def test_only_what_turns_about_a_steadied_axis_is_loosened():
 
 def test_harm_is_told_from_what_is_closed_in_all():
     before = {"surge": 10.0, "yaw": 1.0}
-    assert harms(Way(before, {"surge": 2.0, "yaw": 4.0}, True))
-    assert not harms(Way(before, {"surge": 2.0, "yaw": 2.0}, True))
-    assert not harms(Way(before, before | {"yaw": 1.0 + 0.5 * UNMOVED * 11.0}, True))  # rounding, as of a compass
+    assert harms(Way(before, {"surge": 2.0, "yaw": 4.0}, True, True))
+    assert not harms(Way(before, {"surge": 2.0, "yaw": 2.0}, True, True))
+    assert not harms(Way(before, before | {"yaw": 1.0 + 0.5 * UNMOVED * 11.0}, True, True))  # rounding, as of a compass
 
 
 def test_beside_a_cause_coefficients_may_be_as_slop_lets_them_be():
     p = problem("buoyancy_error:force=60", "quadratic_drag[surge]:scale=0.2")
     final, healthy = confirm(p, p.origin, (slot(p, "buoyancy_error.force"),)), healthy_point(p)
     filed, eased = as_filed(p, final, corrected_residuals(p)), beside_slop(p, final, healthy, corrected_residuals(p))
-    assert filed.sure and eased.sure and skilled(p, filed) and skilled(p, eased)
+    assert filed.sure and eased.sure and filed.skill and eased.skill
     assert eased.left["surge"] < 0.8 * filed.left["surge"]
     assert eased.left["heave"] == pytest.approx(filed.left["heave"], rel=0.2)
 
@@ -173,6 +173,6 @@ def test_a_coefficient_does_not_hide_behind_its_own_tolerance():
 
 def test_an_axis_on_which_the_simulator_errs_as_much_as_the_vehicle_moves_shows_nothing():
     p = problem()
-    motion = dict.fromkeys(AXES, 2.0)
-    still = Way({axis: 1e6 * motion[axis] for axis in AXES}, {axis: 4e5 * motion[axis] for axis in AXES}, True)
-    assert not skilled(p, still) and not stand(p, [still], seen=False) and stand(p, [still], seen=True)
+    was, left = dict.fromkeys(AXES, 2e6), dict.fromkeys(AXES, 8e5)
+    still = Way(was, left, True, skilled(p, was, left))
+    assert not still.skill and not stand([still], seen=False) and stand([still], seen=True)

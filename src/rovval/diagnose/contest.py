@@ -15,6 +15,7 @@ from rovval.data import Array
 from rovval.diagnose.products import Products
 
 PAIR = 2  # neighbouring windows that are held out together: 20 s, beyond the memory of hull and thrusters
+ROUNDING = 1e-20  # of the most informative column: a column that says less is rounding (those of a real log: from 1e-14, rounding up to 1e-30)
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,9 +136,9 @@ def losses(data: Products, free: np.ndarray, step: Array, which: np.ndarray) -> 
 
 def inflation_of(data: Products, step: Array) -> float:
     """How far residuals are from white: variance of the per-window score over its variance for white residuals, median over
-    columns (the design effect of cluster sampling); never below 1."""
+    columns that do anything (the design effect of cluster sampling); never below 1."""
     score = data.b - np.einsum("wij,j->wi", data.A, step)
     spread = (score**2).mean(axis=0)
     white = np.einsum("wii->wi", data.A).mean(axis=0)
-    usable = white > 0
+    usable = white > ROUNDING * white.max(initial=0.0)
     return float(max(1.0, np.median(spread[usable] / white[usable]))) if usable.any() else 1.0

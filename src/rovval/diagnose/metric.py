@@ -45,10 +45,10 @@ def metric(
     """The metric of windows linearised about ``origin`` (k,), ``columns`` first; ``steadied`` (c,) discounts channels."""
     everything = Prior({c: parts[0].plant.slots[c].parameter.typical for c in columns})
     floor, first = _expected(parts, linear, Prior({})), _expected(parts, linear, slop)
-    early = joined_of(parts, linear, first, state_spread)
-    inflation = inflation_of(early, fit(Ring.of(early, folds), everything, 10.0).step)
-    best = fit(Ring.of(early, folds), everything, inflation).step[: len(columns)]
     plain = tuple(replace(one, S=one.S[..., : len(columns)], columns=columns) for one in linear)
+    early = joined_of(parts, plain, first, state_spread)
+    inflation = inflation_of(early, fit(Ring.of(early, folds), everything, 10.0).step)
+    best = fit(Ring.of(early, folds), everything, inflation).step
     white = first + _unexplained(parts, plain, first, best)
     variance = white * steadied
     if sum(part.count for part in parts) < ENOUGH:

@@ -33,24 +33,26 @@ SEEN, SURELY = 0.5, 100.0  # share of what the kinematic checks show, and eviden
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """Squared error of each axis without and with the causes, in one of the two ways; whether these surely close some of it."""
+    """Squared error of each axis without and with the causes, in one of the two ways; whether these surely close some of it, and whether the
+    simulator follows the vehicle where they do (`skilled`)."""
 
     was: Mapping[str, float]
     left: Mapping[str, float]
     sure: bool
+    skill: bool
 
     @property
     def closed(self) -> dict[str, float]:
         """What is closed on each axis, where it is."""
-        return {axis: max(self.was[axis] - self.left[axis], 0.0) for axis in self.was}
+        return _closed(self.was, self.left)
 
 
 def as_filed(problem: Problem, final: Confirmed, before: list[Array]) -> Way:
     """With every other coefficient as the file has it."""
     was, left = axis_weight(problem, before), axis_weight(problem, corrected_residuals(problem, final.beta))
-    way, shrunk = Way(was, left, False), shrinkage(problem, final, before, 0)
-    sure = shrunk["low"] > 0 or any(shrunk["axes_interval"][axis]["low"] > 0 for axis in acting(way.closed) if axis in shrunk["axes_interval"])
-    return Way(was, left, sure)
+    shrunk = shrinkage(problem, final, before, 0)
+    low, axes = shrunk["axes_interval"], acting(_closed(was, left))
+    return Way(was, left, shrunk["low"] > 0 or any(low[axis]["low"] > 0 for axis in axes if axis in low), skilled(problem, was, left))
 
 
 def beside_slop(problem: Problem, final: Confirmed, healthy: Point, before: list[Array]) -> Way:
@@ -58,7 +60,7 @@ def beside_slop(problem: Problem, final: Confirmed, healthy: Point, before: list
     where they spare a healthy coefficient much of its strain."""
     was, left = axis_weight(problem, before), axis_weight(problem, corrected_residuals(problem, final.point.beta))
     _, low, _ = relief(problem, final, without_own(problem, healthy, final.slots), 0)
-    return Way(was, left, low > SOME or strain(healthy) - strain(final.point) > SPARED)
+    return Way(was, left, low > SOME or strain(healthy) - strain(final.point) > SPARED, skilled(problem, was, left))
 
 
 def strain(point: Point) -> float:
@@ -71,13 +73,18 @@ def acting(closed: Mapping[str, float], share: float = ACTING) -> tuple[str, ...
     return tuple(axis for axis in AXES if closed.get(axis, 0.0) > share * max(sum(closed.values()), 1e-300))
 
 
-def skilled(problem: Problem, way: Way) -> bool:
+def skilled(problem: Problem, was: Mapping[str, float], left: Mapping[str, float]) -> bool:
     """Whether on the axes where they close much the simulator, causes added, errs well less than the vehicle moves, or hardly errs any more.
     Where it does neither, it replays an autopilot's answers to disturbances that nobody logged, which shows nothing about the vehicle."""
     moved = [np.where(part.ok, part.y - (part.y * part.ok).sum((0, 1)) / np.maximum(part.ok.sum((0, 1)), 1), 0.0) for part in problem.parts]
     motion = axis_weight(problem, moved)
-    asked = {max(way.closed, key=lambda a: way.closed[a]), *acting(way.closed, MUCH)}
-    return all(way.left[axis] <= max(HARDLY * way.was[axis], SKILL * motion[axis]) for axis in asked)
+    closed = _closed(was, left)
+    asked = {max(closed, key=lambda axis: closed[axis]), *acting(closed, MUCH)}
+    return all(left[axis] <= max(HARDLY * was[axis], SKILL * motion[axis]) for axis in asked)
+
+
+def _closed(was: Mapping[str, float], left: Mapping[str, float]) -> dict[str, float]:
+    return {axis: max(was[axis] - left[axis], 0.0) for axis in was}
 
 
 def harms(way: Way) -> bool:
@@ -86,9 +93,9 @@ def harms(way: Way) -> bool:
     return max(way.left[axis] - way.was[axis] for axis in way.was) > max(HARMS * (before - after), UNMOVED * before)
 
 
-def stand(problem: Problem, ways: Sequence[Way], seen: bool) -> bool:
+def stand(ways: Sequence[Way], seen: bool) -> bool:
     """Whether one of the ways shows the causes; ``seen``: the kinematic checks do, and motion need not."""
-    return any(not harms(way) and (seen or (way.sure and skilled(problem, way))) for way in ways)
+    return any(not harms(way) and (seen or (way.sure and way.skill)) for way in ways)
 
 
 def checked(problem: Problem, final: Confirmed) -> bool:

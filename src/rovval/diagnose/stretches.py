@@ -144,18 +144,17 @@ def residual_channels(run: Run) -> tuple[str, ...]:
 def predicted(stretches: Stretches, nu: Array, eta: Array) -> Array:
     """The residual channels of simulated motions: (b, steps + 1, 6) twice -> (b, steps + 1, c)."""
     names = (*VELOCITY_CHANNELS, "x", "y", "z", "phi", "theta", "psi")
-    out = np.empty((*nu.shape[:2], len(stretches.channels)))
-    for i, channel in enumerate(stretches.channels):
-        whole, at = divmod(names.index(channel), 6)
-        out[..., i] = (nu, eta)[whole][..., at]
-    return out
+    at = [names.index(channel) for channel in stretches.channels]
+    begins = [i for i in range(len(at)) if i == 0 or at[i] != at[i - 1] + 1 or at[i] == 6]  # neighbours are copied at once
+    blocks = [(at[i], j - i) for i, j in zip(begins, [*begins[1:], len(at)], strict=True)]
+    return np.concatenate([(nu, eta)[first // 6][..., first % 6 : first % 6 + size] for first, size in blocks], axis=-1)
 
 
 def difference(stretches: Stretches, a: Array, b: Array) -> Array:
     """a - b per channel, angles wrapped."""
     out = a - b
     for i, name in enumerate(stretches.channels):
-        if name in ANGLES:
+        if name in ANGLES and (np.abs(out[..., i]) > np.pi).any():
             out[..., i] = wrap(out[..., i])
     return np.asarray(out)
 

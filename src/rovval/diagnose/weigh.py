@@ -19,7 +19,7 @@ from rovval.diagnose.point import Point, whole_evidence
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.select import Selection
 from rovval.diagnose.separate import FEW, form_share
-from rovval.diagnose.shown import acting, as_filed, beside_slop, checked, seen_by_checks, skilled, stand, strain
+from rovval.diagnose.shown import acting, as_filed, beside_slop, checked, seen_by_checks, stand, strain
 from rovval.diagnose.together import LEAST_EVIDENCE, Named
 from rovval.diagnose.tolerance import STRAINED
 from rovval.diagnose.unknown import Forces, forces
@@ -64,8 +64,8 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
     excess = _excess(problem, final.point, axes)
     faulty = all(of_sensor(n) for n in selection.named) and checked(problem, final)  # a force imitates a bias of the sensor that shows what it does
     ways = [filed, *([beside_slop(problem, final, selection.healthy, before)] if strained <= STRAINED else [])]
-    skill = not many or faulty or any(skilled(problem, way) for way in ways)
-    stands = stand(problem, ways, seen=faulty or not many)
+    skill = not many or faulty or any(way.skill for way in ways)
+    stands = stand(ways, seen=faulty or not many)
     outdone = many and not faulty and instead > BETTER * total
     varies = wavering(problem, final, selection.named) if many else {}
     unsteady = _unsteady(problem, selection, final, varies) if many else ()

@@ -99,7 +99,7 @@ class Plant:
             true_nu = sensors.settle(self.vehicle, self.index, self.null, beta, true_nu, (first[:, -1, :6] - first[:, 0, :6]) / inputs.dt)
             lanes = _Lanes(start, true_nu, true_eta, which, gain)
         out, stopped, codes = self._run(inputs, prepared, lowered, lanes, steps)
-        seen = sensors.observe(
+        seen = sensors.overwritten(
             self.vehicle, self.index, self.null, beta,
             sensors.Log(out[..., :6], out[..., 6:], inputs.dt, nu0, eta0),
         )  # fmt: skip

@@ -43,17 +43,20 @@ def order() -> tuple[str, ...]:
 
 
 def observe(vehicle: Vehicle, index: Mapping[str, int], null: Array, beta: Array, log: Log) -> Log:
-    """The log as written; only lanes whose sensor effect is not null are touched, and what an effect hands back as it was is not copied."""
-    written = log
+    """The log as written."""
+    return overwritten(vehicle, index, null, beta, replace(log, nu=log.nu.copy(), eta=log.eta.copy()))
+
+
+def overwritten(vehicle: Vehicle, index: Mapping[str, int], null: Array, beta: Array, log: Log) -> Log:
+    """The same in the arrays of ``log`` themselves, which the caller gives away: they are the bulk of a simulation, of which few lanes have a
+    sensor effect."""
     for name, lanes in _acting(order(), index, null, beta):
-        if written is log:
-            written = replace(log, nu=log.nu.copy(), eta=log.eta.copy())
-        part = Log(written.nu[lanes], written.eta[lanes], log.dt, log.nu0[lanes], log.eta0[lanes])
+        part = Log(log.nu[lanes], log.eta[lanes], log.dt, log.nu0[lanes], log.eta0[lanes])
         seen = effects.module(name).observe(part, slots.gather(vehicle, index, name, beta[lanes]))
-        for whole, before, after in ((written.nu, part.nu, seen.nu), (written.eta, part.eta, seen.eta)):
+        for whole, before, after in ((log.nu, part.nu, seen.nu), (log.eta, part.eta, seen.eta)):
             if after is not before:
                 whole[lanes] = after
-    return written
+    return log
 
 
 def unobserve(vehicle: Vehicle, index: Mapping[str, int], null: Array, beta: Array, nu0: Array, eta0: Array) -> tuple[Array, Array]:
