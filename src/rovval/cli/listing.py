@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from rovval.effects import Effect
 
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
+GROWS = {"weight": "the weight", "drag": "the drag ahead", "speed": "the thrusters' speed"}  # what the numbers of an effect go by (`plant.slots`)
 
 
 class Kind(StrEnum):
@@ -113,7 +114,8 @@ def _effect(name: str) -> Shown:
     effect = effects.load(name.partition("[")[0])  # reports name it with its axis or thruster
     lines = [f"{effect.name}: {effect.title}", f"enters at: {effect.place}", f"equation: {effect.equation}", "", "parameters"]
     lines += [
-        f"  {p.target and f'[{p.target}] '}{p.name} [{p.unit}]  {p.low:g} to {p.high:g}, null {p.null:g}, typical {p.typical:g} ({p.source})"
+        f"  {p.target and f'[{p.target}] '}{p.name} [{p.unit}]  {p.low:g} to {p.high:g}, null {p.null:g}, typical {p.typical:g}"
+        f"{p.sized and f' on a BlueROV2, in proportion to {GROWS[p.sized]} on another vehicle'} ({p.source})"
         for p in effect.parameters
     ]
     target = {"axis": effect.axes or AXES, "thruster": ("THRUSTER",), "": ()}[effect.per]

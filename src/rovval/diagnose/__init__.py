@@ -47,18 +47,9 @@ def diagnose(
         BadInput: too little of a log can be simulated, or thruster inputs are missing.
     """
     from rovval.diagnose.answer import answer
-    from rovval.diagnose.excited import excited
-    from rovval.diagnose.library import hypotheses
-    from rovval.diagnose.problem import pose
-    from rovval.diagnose.select import select
+    from rovval.diagnose.finding import find
     from rovval.diagnose.stretches import cut_all
 
     say = progress or (lambda text, share: None)
     parts, left_out = cut_all(runs, vehicle, model, window_s)
-    library, untestable = hypotheses(parts, without=without)
-    say(f"simulating every effect of the library on {sum(p.count for p in parts)} windows", 0.05)
-    problem = pose(parts, library, calibration_slop)
-    library, silent = excited(problem, library)
-    selection = select(problem, library, seed, say)
-    say("asking how much any systematic cause could explain", 0.85)
-    return answer(problem, untestable | silent, left_out, selection, calibration_slop, seed, say)
+    return answer(find(parts, without, calibration_slop, seed, say), left_out, calibration_slop, seed, say)

@@ -13,41 +13,39 @@ from rovval.diagnose import Diagnosis, next_flight
 from rovval.diagnose.breaks import change_points
 from rovval.diagnose.causes import causes, settings
 from rovval.diagnose.faults import faults
+from rovval.diagnose.finding import Finding
 from rovval.diagnose.gap import axis_rows, noise_loss
 from rovval.diagnose.ground import relief, without_own
 from rovval.diagnose.localise import slices, worst
 from rovval.diagnose.miscalibrated import calibration
 from rovval.diagnose.nothing import open_gap, opened
 from rovval.diagnose.pictures import coherence_matrix, heat_map, traces
-from rovval.diagnose.problem import Problem, corrected_residuals
+from rovval.diagnose.problem import Problem
 from rovval.diagnose.select import Selection
 from rovval.diagnose.sensed import NO_MEASUREMENT
 from rovval.diagnose.shrinkage import harm, shrinkage
-from rovval.diagnose.verdict import Judgement, judge
+from rovval.diagnose.verdict import Judgement
 from rovval.diagnose.words import first, sentence
 from rovval.vehicle.write import with_effects
 
 MOST_SLICES = 5  # named of where the gap lies
 
 
-def answer(
-    problem: Problem, untestable: Mapping[str, str], left_out: tuple[str, ...], selection: Selection, slop: float, seed: int,
-    progress: Callable[[str, float], None],
-) -> Diagnosis:  # fmt: skip
+def answer(finding: Finding, left_out: tuple[str, ...], slop: float, seed: int, progress: Callable[[str, float], None]) -> Diagnosis:
     """Put everything that was found into one document."""
-    before = corrected_residuals(problem)
+    problem, selection, before, judgement = finding.problem, finding.selection, finding.before, finding.judgement
     axes = axis_rows(problem, before)
-    judgement = judge(problem, selection, before)
     shrunk = shrinkage(problem, judgement.final, before, seed)
     document = {
         **_head(problem, slop),
+        "since_s": finding.since,
         "verdict": judgement.verdict,
         "gap": {"axes": axes, "where": _where(problem, before, axes, seed), "change_points_s": _changes(problem, before, seed)},
-        "causes": causes(problem, judgement, before, seed),
+        "causes": causes(problem, judgement, before, finding.since, seed),
         "shrinkage": shrunk,
         "beside_slop": _beside_slop(problem, selection, judgement, seed),
         "ranking": [{"effect": name, "score": score} for name, score in selection.ranking],
-        "not_testable": [{"effect": name, "why": why} for name, why in sorted(untestable.items()) if name not in judgement.groups],
+        "not_testable": [{"effect": name, "why": why} for name, why in sorted(finding.untestable.items()) if name not in judgement.groups],
         **next_flight.rows(problem, next_flight.advise(problem, judgement)),
         "detection": _detection(problem, selection, judgement),
         "finalists": [[{"effect": n, "evidence": e, "gain": g} for n, e, g in one] for one in selection.rounds],

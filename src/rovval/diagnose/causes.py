@@ -17,9 +17,9 @@ FORM = 0.10  # of a parameter's departure, one standard error: equations that ar
 MOST_GROUP = 3  # names printed of a confusion group
 
 
-def causes(problem: Problem, judgement: Judgement, before: list[Array], seed: int) -> list[dict[str, object]]:
-    """Every cause that stands; ``before`` are the nominal vehicle's residuals."""
-    return [_cause(problem, judgement, named, before, seed) for named in judgement.named]
+def causes(problem: Problem, judgement: Judgement, before: list[Array], since: float | None, seed: int) -> list[dict[str, object]]:
+    """Every cause that stands; ``before`` are the nominal vehicle's residuals, ``since`` (s) where the part of the log begins that is told."""
+    return [_cause(problem, judgement, named, before, since, seed) for named in judgement.named]
 
 
 def members(judgement: Judgement, h: Hypothesis) -> tuple[str, ...]:
@@ -45,7 +45,7 @@ def settings(problem: Problem, final: Confirmed | None) -> tuple[str, ...]:
     return tuple(f"{name}:{','.join(values)}" for name, values in by_name.items())
 
 
-def _cause(problem: Problem, judgement: Judgement, named: Named, before: list[Array], seed: int) -> dict[str, object]:
+def _cause(problem: Problem, judgement: Judgement, named: Named, before: list[Array], since: float | None, seed: int) -> dict[str, object]:
     assert judgement.final is not None
     h, final = named.hypothesis, judgement.final
     alone = final if len(judgement.named) == 1 else roughly(problem, only(problem, final, h), h.slots, final.point.scaled)
@@ -54,7 +54,7 @@ def _cause(problem: Problem, judgement: Judgement, named: Named, before: list[Ar
         "title": effects.load(h.name.partition("[")[0]).title,
         "group": list(members(judgement, h)),
         "probability": judgement.probability[h.name],
-        "onset_s": next((float(final.beta[s]) for s in h.slots if problem.plant.slots[s].parameter.name == "onset"), None),
+        "onset_s": next((float(final.beta[s]) for s in h.slots if problem.plant.slots[s].parameter.name == "onset"), since),
         "parameters": _parameters(problem, final, h),
         "p_value": named.p_value,
         "evidence": named.evidence,

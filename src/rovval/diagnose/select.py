@@ -26,6 +26,7 @@ from rovval.diagnose.problem import Problem, at, columns_of
 from rovval.diagnose.products import Products
 from rovval.diagnose.separate import STRONG, Rival, group
 from rovval.diagnose.settle import healthy_point, resettled
+from rovval.diagnose.since import began
 from rovval.diagnose.together import LEAST_EVIDENCE, Named, together, worthy
 
 MOST = 3  # effects at once
@@ -41,7 +42,8 @@ CANDIDATES = 3  # that are settled to find the one that waits
 @dataclass(frozen=True, slots=True)
 class Selection:
     """Effects in the order found; the final joint fit (None: nothing found); where slop settles without any; every hypothesis's held-out share of the gap;
-    of each round the finalists with their evidence and held-out gain; the p-value of the round that ended the search."""
+    of each round the finalists with their evidence and held-out gain; the p-value of the round that ended the search; from when on something is at
+    work that was not there before (`since`)."""
 
     named: tuple[Named, ...]
     final: Confirmed | None
@@ -49,6 +51,7 @@ class Selection:
     ranking: tuple[tuple[str, float], ...]
     rounds: tuple[tuple[tuple[str, float, float], ...], ...]
     last_p: float
+    began: float | None
     last_evidence: float
     null_evidence: float
 
@@ -80,7 +83,7 @@ def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Cal
     final, tried = named[-1].fitted if named else None, tuple(r.told for r in rounds if r.told)
     last = rounds[-1].detection
     p, most, null = last.p_value(last.best), last.evidence[last.best], float(np.quantile(last.null, 0.95))
-    return Selection(tuple(named), final, healthy, _ranking(problem, library, named, tried), tried, p, most, null)
+    return Selection(tuple(named), final, healthy, _ranking(problem, library, named, tried), tried, p, rounds[0].began, most, null)
 
 
 def _fairer(problem: Problem, healthy: Point, named: list[Named]) -> Point:
@@ -91,12 +94,13 @@ def _fairer(problem: Problem, healthy: Point, named: list[Named]) -> Point:
 @dataclass(frozen=True, slots=True)
 class _Round:
     """The detection of a round, the finalists that may be added, all that could be the cause, and (name, evidence, held-out gain) of all
-    that were weighed."""
+    that were weighed; in the first, from when on something is at work."""
 
     detection: Detection
     able: list[Rival]
     rivals: list[Rival]
     told: tuple[tuple[str, float, float], ...]
+    began: float | None
 
 
 def _round(problem: Problem, library: list[Hypothesis], open_now: list[Hypothesis], named: list[Named], healthy: Point, seed: int) -> _Round:
@@ -105,17 +109,17 @@ def _round(problem: Problem, library: list[Hypothesis], open_now: list[Hypothesi
     stands = with_causes(named[-1].fitted) if named else bare(problem, healthy)
     data = _bank(problem, library, stands.point)
     detection = _detect(problem, data, open_now, chosen, seed)
-    most = detection.evidence[detection.best]
+    most, start = detection.evidence[detection.best], None if named else began(problem, data, open_now)
     if most < PROMISING * LEAST_EVIDENCE or (detection.p_value(detection.best) > FALSE_ALARM and most < PLAIN):
-        return _Round(detection, [], [], ())
+        return _Round(detection, [], [], (), start)
     weighed = finalists(problem, data, open_now, detection, stands, chosen)
     able = admissible(problem, sharpened(problem, admissible(problem, weighed), stands))
     told = tuple((r.hypothesis.name, r.evidence, r.gain) for r in able or weighed)
     best = [r for r in able if worthy(r, alone=not named)]
     if best:
-        return _Round(detection, best, able, told)
+        return _Round(detection, best, able, told, start)
     waiting = _waiting(problem, weighed, stands, sum(n.evidence for n in named))
-    return _Round(detection, waiting, waiting, told)
+    return _Round(detection, waiting, waiting, told, start)
 
 
 def _waiting(problem: Problem, weighed: list[Rival], stands: Ground, evidence: float) -> list[Rival]:

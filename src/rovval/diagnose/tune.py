@@ -44,8 +44,10 @@ def determinable(problem: Problem, wanted: Sequence[int]) -> tuple[tuple[int, ..
 
 
 def _confused(problem: Problem, slot: int, others: Sequence[int], why: str) -> dict[str, Any]:
-    """What a slot that is excited is confused with: tuned ones and coefficients within slop, by coherence."""
-    beside = sorted(((problem.plant.slots[s].key, coherence(problem.data, (slot,), (s,))) for s in others if s != slot), key=lambda x: -x[1])
+    """What a slot that is excited is confused with: tuned ones and coefficients within slop, by coherence; what only a start elsewhere shows (an
+    onset, a period) has no signature of its own."""
+    others = [s for s in others if s != slot and s in problem.data.columns]
+    beside = sorted(((problem.plant.slots[s].key, coherence(problem.data, (slot,), (s,))) for s in others), key=lambda x: -x[1])
     named = " and ".join(f"{name} ({value:.2f})" for name, value in beside[:2])
     return undetermined(f"{why}; most like {named}" if named else why, beside[:2])
 

@@ -19,8 +19,8 @@ UNMOVED = 0.005  # of the gap: less rounds to nothing
 def sentence(document: dict[str, Any]) -> str:
     """Gap, where, cause or group, shrinkage with its interval, what is left, the file's calibration, what to fly next, and what of the log is
     no measurement."""
-    parts = [_gap(document), _where(document), cause(document), beside_slop(document), _harm(document), _left(document), calibration(document), _next(document)]
-    parts.append(_log(document))
+    parts = [since(document), _gap(document), _where(document), cause(document), beside_slop(document), _harm(document), _left(document)]
+    parts += [calibration(document), _next(document), _log(document)]
     return " ".join(p for p in parts if p)
 
 
@@ -49,6 +49,14 @@ def unmoved(shrinkage: Mapping[str, Any]) -> bool:
     """Whether the gap stays as it is."""
     total = shrinkage.get("total")
     return total is not None and abs(total) < UNMOVED
+
+
+def since(document: Mapping[str, Any]) -> str:
+    """From where the log is told, where something begins in it that the windows before deny."""
+    begins = document.get("since_s")
+    if begins is None:
+        return ""
+    return f"Told from {begins:.0f} s on, where the log changes: what is named is not there before (a vehicle written from this has it always)."
 
 
 def _gap(document: dict[str, Any]) -> str:

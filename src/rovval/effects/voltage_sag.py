@@ -16,7 +16,7 @@ EFFECT = Effect(
     "log's first), rate a steady loss since the run's start (diagnosis.md A12).",
     parameters=(
         Parameter("gain", "1", -1.0, 2.0, 0.0, 0.5, "T ~ V^2 at a fixed command (diagnosis.md A12); 0 where the logged speed already sags", needs="voltage"),
-        Parameter("rate", "1/s", -5e-4, 5e-4, 0.0, 5e-5, "25 % within a dive of some hours (diagnosis.md A12)"),
+        Parameter("rate", "1/s", 0.0, 5e-4, 0.0, 5e-5, "25 % within a dive of some hours (diagnosis.md A12); no supply recovers in a dive"),
     ),
     signature="every thruster weakens together, slowly, and at heavy load",
     confused_with=("rpm_scale", "current_varying", "thruster_degraded"),

@@ -1,0 +1,61 @@
+"""The search as a whole: on every window of the logs, and where something began during one, on the part from there on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from rovval.data import Array
+from rovval.diagnose.excited import excited
+from rovval.diagnose.library import hypotheses
+from rovval.diagnose.problem import Problem, corrected_residuals, pose
+from rovval.diagnose.select import Selection, select
+from rovval.diagnose.since import CLEARER, MORE, after
+from rovval.diagnose.stretches import Stretches
+from rovval.diagnose.verdict import Judgement, judge
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What was posed, found and judged; ``untestable`` hypotheses with the reason; ``before`` the nominal vehicle's residuals; ``since``: seconds
+    since the run's start from which the log was searched, None for all of it."""
+
+    problem: Problem
+    untestable: Mapping[str, str]
+    selection: Selection
+    before: list[Array]
+    judgement: Judgement
+    since: float | None = None
+
+
+def find(parts: tuple[Stretches, ...], without: Sequence[str], slop: float, seed: int, say: Callable[[str, float], None]) -> Finding:
+    """Search all windows; where the log changes, those after the change as well, which are told if they explain clearly more."""
+    whole = _searched(parts, without, slop, seed, say)
+    began = whole.selection.began
+    if began is None or _event(whole):
+        return whole
+    say(f"searching the part from {began:.0f} s on", 0.85)
+    late = _searched((after(parts[0], began),), without, slop, seed, lambda text, share: None)
+    return replace(late, since=began) if _clearer(late.judgement, whole.judgement) and not _event(late) else whole
+
+
+def _searched(parts: tuple[Stretches, ...], without: Sequence[str], slop: float, seed: int, say: Callable[[str, float], None]) -> Finding:
+    library, untestable = hypotheses(parts, without=without)
+    say(f"simulating every effect of the library on {sum(p.count for p in parts)} windows", 0.05)
+    problem = pose(parts, library, slop)
+    library, silent = excited(problem, library)
+    selection = select(problem, library, seed, say)
+    say("asking how much any systematic cause could explain", 0.85)
+    before = corrected_residuals(problem)
+    return Finding(problem, untestable | silent, selection, before, judge(problem, selection, before))
+
+
+def _event(one: Finding) -> bool:
+    """Whether a cause was named that has an onset of its own: that is what changes the log, where it changes."""
+    return any(one.problem.plant.slots[s].parameter.name == "onset" for n in one.judgement.named for s in n.hypothesis.slots)
+
+
+def _clearer(late: Judgement, whole: Judgement) -> bool:
+    """Whether what follows the change is explained, with clearly more evidence than the whole log gives any cause."""
+    known = whole.causes if whole.named else 0.0
+    return bool(late.named) and late.causes > max(MORE * known, known + CLEARER)

@@ -1,0 +1,98 @@
+"""Whether what is at work began during the log, of effects that have no onset of their own: the part after it is then diagnosed by itself.
+
+A cause that is there half of the time is fitted with half of its size, and its nearest relative, which moves in that half only, may fit as well.
+In the linearised model every window could be the first with the cause in it; the best of these must have clearly more evidence than the cause has
+on the whole log, and the windows before must deny that it was there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rovval.data import Array
+from rovval.diagnose.contest import Prior, free_of
+from rovval.diagnose.finalists import prior_of
+from rovval.diagnose.hypothesis import Hypothesis
+from rovval.diagnose.problem import Problem
+from rovval.diagnose.products import Products
+from rovval.diagnose.stretches import Stretches
+
+BEFORE, AFTER = 3, 6  # windows without and with it, at least (chosen)
+HINTED, DENIED = 10.0, 20.0  # twice the log Bayes factor, linearised: of the part over the whole, and of the windows before against it (chosen)
+CLEARER, MORE = 20.0, 1.2  # the same of what was found in the part over what was found in the whole, and its least ratio to that (chosen)
+TRIED = 12  # first windows with it that are tried, evenly spread, before those about the best of them (chosen)
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """Sums over some windows, slop taken out: what a hypothesis explains there is read off its own columns."""
+
+    A: Array
+    b: Array
+
+    @classmethod
+    def of(cls, data: Products, windows: slice, slop: Prior, inflation: float) -> _Part:
+        """Slop settles on these windows alone."""
+        A, b = data.A[windows].sum(axis=0), data.b[windows].sum(axis=0)
+        free, ridge, offset = free_of(data, slop, inflation)
+        if not len(free):
+            return cls(A, b)
+        slope = b[free] - ridge @ offset
+        toward = np.linalg.solve(A[np.ix_(free, free)] + ridge, np.concatenate([A[free], slope[:, None]], axis=1))
+        return cls(A - A[:, free] @ toward[:, :-1], b - A[:, free] @ toward[:, -1])
+
+
+def began(problem: Problem, data: Products, library: Sequence[Hypothesis]) -> float | None:
+    """Seconds since the run's start from which something is clearly at work that was not there before; None where nothing says so, and for
+    several logs, each of which has a beginning of its own. ``data`` is the library linearised where healthy coefficients settled."""
+    if len(problem.parts) > 1 or problem.blocks < BEFORE + AFTER:
+        return None
+    slots = problem.plant.slots
+    priors = {h.label: prior_of(problem, h) for h in library if not any(slots[s].parameter.name == "onset" for s in h.slots)}
+    whole = _Part.of(data, slice(None), problem.slop, problem.inflation)
+    most = max((_explained(whole, data.place(tuple(prior.sd)), prior, problem.inflation)[0] for prior in priors.values()), default=0.0)
+    least = most + HINTED
+    first, last = BEFORE, problem.blocks - AFTER
+    step = max(1, (last - first) // TRIED)
+    found = {k: _begins(problem, data, priors, k, least) for k in range(first, last + 1, step)}
+    at = max(found, key=lambda k: found[k])
+    near = range(max(first, at - step + 1), min(last, at + step - 1) + 1) if found[at] else ()
+    found |= {k: _begins(problem, data, priors, k, least) for k in near if k not in found}
+    at = max(found, key=lambda k: found[k])
+    part = problem.parts[0]
+    return float(part.start[at] * part.run.dt) if found[at] else None
+
+
+def _begins(problem: Problem, data: Products, priors: Mapping[str, Prior], k: int, least: float) -> float:
+    """Most evidence of a hypothesis in the windows from the ``k``-th on, of those with more than ``least`` that the windows before deny; else 0."""
+    after = _Part.of(data, slice(k, None), problem.slop, problem.inflation)
+    before = _Part.of(data, slice(k), problem.slop, problem.inflation)
+    best = 0.0
+    for prior in priors.values():
+        at = data.place(tuple(prior.sd))
+        evidence, size = _explained(after, at, prior, problem.inflation)
+        if evidence > max(best, least) and _worth(before, at, size) < -DENIED * problem.inflation:
+            best = evidence
+    return best
+
+
+def _explained(part: _Part, at: np.ndarray, prior: Prior, inflation: float) -> tuple[float, Array]:
+    """Twice the log Bayes factor of a hypothesis, whose columns are ``at``, over slop in some windows, and its size there."""
+    ridge = inflation / np.array(list(prior.sd.values())) ** 2
+    H, slope = part.A[np.ix_(at, at)] + np.diag(ridge), part.b[at]
+    size = np.linalg.solve(H, slope)
+    return float(slope @ size / inflation - np.linalg.slogdet(H)[1] + np.log(ridge).sum()), size
+
+
+def _worth(part: _Part, at: np.ndarray, size: Array) -> float:
+    """What a hypothesis of a given size takes from the loss of some windows."""
+    return float(2.0 * part.b[at] @ size - size @ part.A[np.ix_(at, at)] @ size)
+
+
+def after(part: Stretches, since: float) -> Stretches:
+    """The windows of a run from ``since`` (s) on."""
+    kept = part.start * part.run.dt >= since
+    return replace(part, start=part.start[kept], nu0=part.nu0[kept], eta0=part.eta0[kept], y=part.y[kept], ok=part.ok[kept])

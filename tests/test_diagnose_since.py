@@ -1,0 +1,60 @@
+"""What begins during a log, of effects without an onset of their own: found where it is, on a plant of another kind, and nowhere else."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diagnose_case import LIBRARY, merlin
+from rovval import store
+from rovval.blind.log import write_csv
+from rovval.blind.plant import fly
+from rovval.blind.spec import Planted
+from rovval.data import Run
+from rovval.diagnose import diagnose
+from rovval.diagnose.contest import Prior
+from rovval.diagnose.products import Products
+from rovval.diagnose.since import _explained, _Part, _worth
+from rovval.diagnose.words import since
+
+BEGINS = 120.0
+
+
+@pytest.fixture(scope="module")
+def logs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Run, Run]:
+    """A current that begins in mid-log, and the same current from the first second on."""
+    folder, runs = tmp_path_factory.mktemp("since"), []
+    for i, onset in enumerate((BEGINS, None)):
+        flight = fly(LIBRARY / "merlin.toml", "rich", [Planted("inflow_loss", None, 1.5, onset)], 21, 240.0, 0.02)
+        path = folder / f"log{i}.csv"
+        write_csv(flight, path)
+        runs.append(store.open_run(path, "merlin", folder / f"archive{i}"))
+    return runs[0], runs[1]
+
+
+def test_what_begins_in_mid_log_is_told_from_there_on(logs: tuple[Run, Run]) -> None:
+    document = diagnose([logs[0]], merlin()).document
+    assert document["since_s"] == pytest.approx(BEGINS, abs=15.0)
+    assert [c["effect"] for c in document["causes"]] == ["inflow_loss"]
+    assert document["causes"][0]["onset_s"] == document["since_s"] and document["shrinkage"]["total"] > 0.5
+    assert document["sentence"].startswith(since(document)) and since(document)
+
+
+def test_what_is_always_there_has_no_beginning(logs: tuple[Run, Run]) -> None:
+    document = diagnose([logs[1]], merlin()).document
+    assert document["since_s"] is None and since(document) == "" and [c["effect"] for c in document["causes"]] == ["inflow_loss"]
+    assert document["causes"][0]["onset_s"] is None
+
+
+def test_the_windows_before_deny_what_they_do_not_hold() -> None:
+    """One cause beside a coefficient of slop, in closed form: the size from the later windows makes the earlier ones worse."""
+    rng = np.random.default_rng(0)
+    x = rng.normal(size=(8, 30, 2))
+    r = 0.1 * rng.normal(size=(8, 30)) + np.where(np.arange(8)[:, None] >= 4, 2.0, 0.0) * x[..., 0] + 0.03 * x[..., 1]
+    data = Products(np.einsum("wti,wtj->wij", x, x), np.einsum("wti,wt->wi", x, r), (r**2).sum(axis=1), (0, 1))
+    slop, wide, at = Prior({1: 0.05}), Prior({0: 4.0}), np.array([0])
+    late, early = (_Part.of(data, windows, slop, 1.0) for windows in (slice(4, None), slice(4)))
+    evidence, size = _explained(late, at, wide, 1.0)
+    assert size == pytest.approx([2.0], abs=0.05) and evidence > 300.0
+    assert _worth(late, at, size) > 300.0 and _worth(early, at, size) < -300.0
+    assert _explained(early, at, wide, 1.0)[0] < 0.0
