@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from rovval.blind import generate, plant
 from rovval.blind.catalogue import build, catalogue, names
 from rovval.blind.dynamics import BASE, Plant
-from rovval.blind.grid import grid
+from rovval.blind.grid import BEGIN, DURATION_S, grid
 from rovval.blind.hull import read_hull
 from rovval.blind.log import header, write_csv
 from rovval.blind.missions import MISSIONS
@@ -299,6 +299,8 @@ def test_the_grid_holds_every_effect_and_healthy_logs(merlin: Path) -> None:
     assert sum(not case.effects for case in cases) >= 40
     assert len({case.seed for case in cases}) == len(cases)
     assert {len(case.effects) for case in cases} == {0, 1, 2, 3}
+    begun = [e for case in cases for e in case.effects if e.onset_s is not None]
+    assert len(begun) == BEGIN and all(0.3 * DURATION_S <= float(e.onset_s or 0.0) <= 0.55 * DURATION_S for e in begun)
 
 
 def test_the_plant_shares_no_code_with_what_it_tests() -> None:

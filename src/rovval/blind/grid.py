@@ -1,9 +1,9 @@
-"""The standard set of cases: healthy logs, every effect alone, foreign effects, twos and threes, over all missions."""
+"""The standard set of cases: healthy logs, every effect alone, foreign effects, twos and threes, effects that begin in mid-log, over all missions."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +16,7 @@ from rovval.blind.spec import Planted, stream
 SINGLES = (("rich", 1.0), ("rich", 2.0), ("survey", 1.0), ("", 1.5))  # mission ("" = the others in turn) and severity
 DURATION_S = 300.0
 AXES_A_CASE = 3  # targets of an axis effect taken in turn
+BEGIN, BEGINS = 24, (0.3, 0.55)  # logs of a set with an effect that begins during the log, and which shares of it have gone by then
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,9 +63,21 @@ def grid(vehicle: Path, seed: int, repeats: int = 1, nulls: int = 8) -> list[Cas
                 chosen = rng.choice(known, count, replace=False)
                 mission = str(rng.choice(["rich", "survey"]))
                 plans.append((mission, tuple(_planted(str(n), _any(str(n), thrusters, rng), 1.2, rng) for n in chosen)))
+        plans += [(str(rng.choice(["rich", "survey"])), (_begun(str(n), thrusters, rng),)) for n in rng.choice(lasting(), BEGIN, replace=False)]
     order = rng.permutation(len(plans))
     seeds = rng.choice(2**31 - 1, len(plans), replace=False)
     return [Case(plans[i][0], plans[i][1], int(s)) for i, s in zip(order, seeds, strict=True)]
+
+
+def lasting() -> tuple[str, ...]:
+    """The library's effects that are there from the start unless an onset is asked for; a thruster degraded later is `thruster_fault_onset`."""
+    return tuple(n for n in names(foreign=False) if not catalogue()[n].event and n != "thruster_degraded")
+
+
+def _begun(name: str, thrusters: Sequence[str], rng: np.random.Generator) -> Planted:
+    """An effect that begins during the log."""
+    late = round(DURATION_S * float(rng.uniform(*BEGINS)), 1)
+    return replace(_planted(name, _any(name, thrusters, rng), 1.5, rng), onset_s=late)
 
 
 def _any(name: str, thrusters: Sequence[str], rng: np.random.Generator) -> str | None:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from rovval import effects
 from rovval.blind.spec import Array
 from rovval.data import Run
 from rovval.diagnose.confirm import confirm
@@ -22,6 +23,7 @@ from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem, at, gap_at, pose
 from rovval.diagnose.products import Products
 from rovval.diagnose.settle import healthy_point
+from rovval.diagnose.since import after
 from rovval.diagnose.starts import placed
 from rovval.diagnose.stretches import cut
 from rovval.vehicle.model import Vehicle
@@ -75,6 +77,8 @@ def _fit(
 ) -> tuple[Problem, Point, Wanted, Array] | None:
     """The problem, the healthy vehicle, the hypotheses that were free, and the fitted point."""
     part = cut(run, vehicle, model, window_s)
+    begins = [onsets[name] for name in true if name in onsets and not has_onset(name)]
+    part = after(part, max(begins)) if begins else part
     library, _ = hypotheses((part,))
     if not true or not set(true) <= {h.name for h in library}:
         return None
@@ -92,6 +96,11 @@ def _fitted(problem: Problem, healthy: Point, wanted: Wanted, onsets: Mapping[st
     ranks = range(min(STARTS, max(map(len, wanted))))
     tried = [confirm(problem, _from(problem, healthy, data, wanted, rank, onsets), _slots(wanted)).beta for rank in ranks]
     return min(tried, key=lambda beta: _left(problem, wanted, beta)[1])
+
+
+def has_onset(name: str) -> bool:
+    """Whether a hypothesis has an onset of its own; of others, the part of the log after it is what they are fitted to."""
+    return any(p.name == "onset" for p in effects.load(name.partition("[")[0]).parameters)
 
 
 def _left(problem: Problem, wanted: Wanted, beta: Array) -> Array:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from rovval.blind.grid import lasting
+
 RICH = ("rich", "steps", "protocol")
 POOR = ("survey", "station", "yoyo")
 MAGNITUDES = ((1.25, "about 1"), (1.6, "about 1.5"), (float("inf"), "about 2"))  # upper end of |severity|, in words
@@ -25,6 +27,8 @@ def strata(label: Mapping[str, Any], best: Mapping[str, float]) -> list[str]:
         several = {2: "two", 3: "three"}.get(len(effects), "many")
         return [several, f"{several}, each distinguishable"] if best.get("each", 0.0) >= SEEN else [several]
     one = effects[0]
+    if one["onset_s"] is not None and one["name"] in lasting():
+        return ["single, begins in mid-log"] + ["single, begins in mid-log, distinguishable"] * ((oracle or 0.0) >= SEEN)
     form = "same form" if one["form"] == "equal" else "different form"
     excitation = "rich" if mission in RICH else "poor"
     size = next(words for end, words in MAGNITUDES if abs(one["severity"]) < end)
