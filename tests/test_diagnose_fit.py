@@ -12,8 +12,12 @@ from rovval.compare import compare
 from rovval.data import Run
 from rovval.diagnose.fit import FitResult, fit
 from rovval.diagnose.fit_text import _changes
+from rovval.diagnose.library import hypotheses
+from rovval.diagnose.problem import pose
+from rovval.diagnose.stretches import cut_all
 from rovval.diagnose.tolerance import slop_prior
 from rovval.diagnose.tunable import chosen
+from rovval.diagnose.tune import _confused
 from rovval.errors import UsageProblem
 from rovval.plant import Plant
 from rovval.simulate import simulate
@@ -75,6 +79,15 @@ def test_collinear_parameters_are_named_with_what_they_are_like():
     confused = [u for u in done.document["undetermined"] if u["with"]]
     assert confused
     assert all(0.0 <= w["coherence"] <= 1.0 for u in confused for w in u["with"])
+
+
+def test_what_only_a_start_elsewhere_shows_is_no_namesake():
+    """An onset has no slope where nothing is at work: a parameter is not said to be like it."""
+    parts, _ = cut_all([own((), 5, 100.0)], merlin(), "fossen", 10.0)
+    p = pose(parts, hypotheses(parts)[0], 0.05)
+    drag, onset, mass = (p.plant.index[key] for key in ("linear_drag[surge].scale", "tether_snag.onset", "added_mass[surge].scale"))
+    assert onset not in p.data.columns
+    assert [row["parameter"] for row in _confused(p, drag, (drag, onset, mass), "why")["with"]] == ["added_mass[surge].scale"]
 
 
 def test_nothing_to_tune_writes_the_vehicle_as_it_was():

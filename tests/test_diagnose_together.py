@@ -10,15 +10,17 @@ import pytest
 
 from diagnose_case import foreign, merlin, own
 from rovval.diagnose import diagnose
+from rovval.diagnose.admissible import possible
+from rovval.diagnose.confirm import confirm
 from rovval.diagnose.contest import PAIR, folds_of
 from rovval.diagnose.hypothesis import Hypothesis
 from rovval.diagnose.library import hypotheses
 from rovval.diagnose.problem import Problem, pose
 from rovval.diagnose.products import Products
 from rovval.diagnose.select import select
-from rovval.diagnose.separate import RELIEF
+from rovval.diagnose.separate import RELIEF, Rival, denied
 from rovval.diagnose.stretches import cut_all
-from rovval.diagnose.together import LEAST_GAIN
+from rovval.diagnose.together import LEAST_GAIN, worthy
 from rovval.diagnose.wavering import SHARES, _varies, wavering
 
 
@@ -40,6 +42,23 @@ def test_a_cause_that_healthy_coefficients_hide_is_found_beside_them():
     (cause,) = document["causes"]
     assert "current_constant" in cause["group"] and document["shrinkage"]["total"] < LEAST_GAIN, document["sentence"]
     assert document["beside_slop"]["low"] > RELIEF
+
+
+def test_a_coefficient_surely_off_is_named_though_the_gap_is_another_axis():
+    """Trim within its tolerance makes nine tenths of the gap, in heave; sway's drag is out of tolerance as no healthy file's is."""
+    document = diagnose([own(("quadratic_drag[sway]:scale=0.8", "buoyancy_error:force=60"), 5, 240.0)], merlin()).document
+    (cause,) = document["causes"]
+    assert cause["effect"] == "quadratic_drag[sway]" and document["shrinkage"]["total"] < LEAST_GAIN
+    assert document["shrinkage"]["axes"]["sway"] > 0.4 and "that of sway by" in document["sentence"]
+
+
+def test_a_fault_of_a_sensor_that_the_kinematic_checks_deny_is_not_named():
+    p, library = posed("buoyancy_error:force=60")
+    (h,) = (h for h in library if h.label == "time_offset[attitude]")
+    fitted = confirm(p, p.origin, h.slots)
+    seen, against = (Rival(h, fitted, 900.0, 0.5, kinematic) for kinematic in (0.1, -0.5))
+    assert worthy(seen, alone=True) and not denied(seen)
+    assert denied(against) and not worthy(against, alone=True) and against not in possible(p, [against])
 
 
 def test_what_slop_alone_makes_is_not_called_a_cause_beside_it():

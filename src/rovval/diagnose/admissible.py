@@ -5,7 +5,7 @@ from __future__ import annotations
 from rovval import effects
 from rovval.diagnose.confirm import places, significance
 from rovval.diagnose.problem import Problem
-from rovval.diagnose.separate import PER_PARAMETER, Rival, alike, form_share
+from rovval.diagnose.separate import PER_PARAMETER, Rival, alike, denied, form_share
 
 HALF_REVERSED = 0.55  # 0.5 is a dead thruster; the margin is chosen
 LEAST_SIGMA = 2.2  # standard errors, slop included, by which an effect departs from nothing (tuning set: healthy logs reach 2.0)
@@ -30,7 +30,7 @@ def admissible(problem: Problem, weighed: list[Rival]) -> list[Rival]:
 
 def possible(problem: Problem, weighed: list[Rival]) -> list[Rival]:
     """Finalists whose size is beyond what slop of all other coefficients could feign and within what the library knows, best evidence first."""
-    rivals = [r for r in _in_form(problem, weighed) if not _beyond_the_library(problem, r)]
+    rivals = [r for r in _in_form(problem, weighed) if not _beyond_the_library(problem, r) and not denied(r)]
     return [r for r in rivals if significance(problem, r.fitted, r.hypothesis.slots) >= LEAST_SIGMA and _beyond_tolerance(problem, r)]
 
 

@@ -32,11 +32,11 @@ def find(parts: tuple[Stretches, ...], without: Sequence[str], slop: float, seed
     """Search all windows; where the log changes, those after the change as well, which are told if they explain clearly more."""
     whole = _searched(parts, without, slop, seed, say)
     began = whole.selection.began
-    if began is None or _event(whole):
+    if began is None or _event(whole) or began.evidence < _asked(whole.judgement):
         return whole
-    say(f"searching the part from {began:.0f} s on", 0.85)
-    late = _searched((after(parts[0], began),), without, slop, seed, lambda text, share: None)
-    return replace(late, since=began) if _clearer(late.judgement, whole.judgement) and not _event(late) else whole
+    say(f"searching the part from {began.since:.0f} s on", 0.85)
+    late = _searched((after(parts[0], began.since),), without, slop, seed, lambda text, share: None)
+    return replace(late, since=began.since) if late.judgement.causes > _asked(whole.judgement) and late.judgement.named and not _event(late) else whole
 
 
 def _searched(parts: tuple[Stretches, ...], without: Sequence[str], slop: float, seed: int, say: Callable[[str, float], None]) -> Finding:
@@ -55,7 +55,7 @@ def _event(one: Finding) -> bool:
     return any(one.problem.plant.slots[s].parameter.name == "onset" for n in one.judgement.named for s in n.hypothesis.slots)
 
 
-def _clearer(late: Judgement, whole: Judgement) -> bool:
-    """Whether what follows the change is explained, with clearly more evidence than the whole log gives any cause."""
+def _asked(whole: Judgement) -> float:
+    """Evidence from which what follows a change is clearer than what the whole log says."""
     known = whole.causes if whole.named else 0.0
-    return bool(late.named) and late.causes > max(MORE * known, known + CLEARER)
+    return max(MORE * known, known + CLEARER)

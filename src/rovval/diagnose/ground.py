@@ -16,6 +16,7 @@ from rovval.diagnose.point import Point, whole_evidence
 from rovval.diagnose.problem import Problem, gap_at
 from rovval.diagnose.separate import RELIEF, STRONG, Losses, Rival, closed, interval
 from rovval.diagnose.settle import FEW, settle
+from rovval.diagnose.tolerance import STRAINED, WITHIN
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +46,8 @@ def rival(problem: Problem, h: Hypothesis, fitted: Confirmed, ground: Ground) ->
     if evidence >= STRONG and gain < RELIEF:
         others = without_own(problem, ground.point, h.slots)
         beside = closed(_settled(problem, others), _settled(problem, fitted.point))[0]
-    return Rival(h, fitted, evidence, gain, kinematic, beside)
+    mends = evidence >= STRONG and gain > 0.0 and ground.point.strain() > STRAINED and fitted.point.strain() <= WITHIN
+    return Rival(h, fitted, evidence, gain, kinematic, beside, mends)
 
 
 def without_own(problem: Problem, stands: Point, slots: Sequence[int]) -> Point:

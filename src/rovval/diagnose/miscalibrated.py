@@ -24,11 +24,10 @@ from rovval.diagnose.select import Selection
 from rovval.diagnose.separate import FEW
 from rovval.diagnose.shrinkage import harm, shrinkage
 from rovval.diagnose.together import LATER_GAIN
-from rovval.diagnose.tolerance import STRAINED
+from rovval.diagnose.tolerance import STRAINED, WITHIN
 from rovval.diagnose.tunable import is_searched
 from rovval.diagnose.tune import determinable, tuned
 from rovval.diagnose.verdict import Judgement
-from rovval.diagnose.weigh import WITHIN
 
 ROUNDS = 6  # of setting strained coefficients free, which may strain others
 LEAST = 3  # strained coefficients: one or two are what an effect of the library, or its nearest relative, leaves (chosen)

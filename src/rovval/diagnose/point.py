@@ -70,6 +70,10 @@ class Point:
         step = self.solved(self.curvature, self.slope)
         return np.asarray((self.offset + step)[self.own :] * np.sqrt(self.precision[self.own :]))
 
+    def strain(self) -> float:
+        """Standard deviations by which the most strained healthy coefficient is off."""
+        return float(np.abs(self.sigmas()).max(initial=0.0))
+
     def left(self) -> Array:
         """Loss of the dynamics per window (m,), what stays in the tangent at its best."""
         step = self.solved(self.curvature, self.slope, self.still)

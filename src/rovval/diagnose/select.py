@@ -26,7 +26,7 @@ from rovval.diagnose.problem import Problem, at, columns_of
 from rovval.diagnose.products import Products
 from rovval.diagnose.separate import STRONG, Rival, group
 from rovval.diagnose.settle import healthy_point, resettled
-from rovval.diagnose.since import began
+from rovval.diagnose.since import Beginning, began
 from rovval.diagnose.together import LEAST_EVIDENCE, Named, together, worthy
 
 MOST = 3  # effects at once
@@ -42,8 +42,8 @@ CANDIDATES = 3  # that are settled to find the one that waits
 @dataclass(frozen=True, slots=True)
 class Selection:
     """Effects in the order found; the final joint fit (None: nothing found); where slop settles without any; every hypothesis's held-out share of the gap;
-    of each round the finalists with their evidence and held-out gain; the p-value of the round that ended the search; from when on something is at
-    work that was not there before (`since`)."""
+    of each round the finalists with their evidence and held-out gain; the p-value of the round that ended the search; from when on something
+    seems to be at work that was not there before (`since`)."""
 
     named: tuple[Named, ...]
     final: Confirmed | None
@@ -51,7 +51,7 @@ class Selection:
     ranking: tuple[tuple[str, float], ...]
     rounds: tuple[tuple[tuple[str, float, float], ...], ...]
     last_p: float
-    began: float | None
+    began: Beginning | None
     last_evidence: float
     null_evidence: float
 
@@ -100,7 +100,7 @@ class _Round:
     able: list[Rival]
     rivals: list[Rival]
     told: tuple[tuple[str, float, float], ...]
-    began: float | None
+    began: Beginning | None
 
 
 def _round(problem: Problem, library: list[Hypothesis], open_now: list[Hypothesis], named: list[Named], healthy: Point, seed: int) -> _Round:

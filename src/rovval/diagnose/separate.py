@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rovval import effects
 from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed
 from rovval.diagnose.hypothesis import Hypothesis
@@ -21,13 +22,15 @@ ALIKE = 0.6  # of the best gain: with fewer windows than that, whoever closes as
 PER_PARAMETER = 0.05  # chosen: what each parameter that the best has more may add to it
 TEMPER = 4.0  # twice the log Bayes factor that counts as a nat of belief, beside the form's share (chosen on the tuning set)
 STRONG, RELIEF = 60.0, 0.2  # evidence from which it is asked what is closed beside slop, and the share that counts (opened logs: wrong ones 0.12 at most)
+DENIED = 0.2  # of what the kinematic checks show: a fault of a sensor that adds as much is not there (opened logs: true ones add nothing, false ones 0.3 to 15)
 LEVEL = 0.05  # one-sided: a member of the group must be this plausible to be as good as the winner
 
 
 @dataclass(frozen=True, slots=True)
 class Rival:
     """A finalist: its re-simulated fit, its evidence over what stood before, and the share of the gap it closes by itself, held out; the same
-    of what the kinematic checks alone show (`closed`), and of what slop leaves, slop settled beside it (`ground`)."""
+    of what the kinematic checks alone show (`closed`), and of what slop leaves, slop settled beside it (`ground`). ``mends``: with much evidence,
+    and without it a coefficient is beyond its tolerance, with it none: a drag may be surely wrong and yet be little of a gap that is heave's."""
 
     hypothesis: Hypothesis
     fitted: Confirmed
@@ -35,6 +38,7 @@ class Rival:
     gain: float
     kinematic: float
     beside: float = 0.0
+    mends: bool = False
 
     @property
     def closes(self) -> float:
@@ -43,6 +47,11 @@ class Rival:
 
 
 Losses = tuple[Array, Array]
+
+
+def denied(one: Rival) -> bool:
+    """Whether a fault of a sensor makes the kinematic checks worse, which no error of the dynamics touches."""
+    return effects.load(one.hypothesis.name.partition("[")[0]).place == "sensor" and one.kinematic < -DENIED
 
 
 def closed(was: Losses, now: Losses) -> tuple[float, float]:

@@ -60,12 +60,7 @@ def beside_slop(problem: Problem, final: Confirmed, healthy: Point, before: list
     where they spare a healthy coefficient much of its strain."""
     was, left = axis_weight(problem, before), axis_weight(problem, corrected_residuals(problem, final.point.beta))
     _, low, _ = relief(problem, final, without_own(problem, healthy, final.slots), 0)
-    return Way(was, left, low > SOME or strain(healthy) - strain(final.point) > SPARED, skilled(problem, was, left))
-
-
-def strain(point: Point) -> float:
-    """Standard deviations by which the most strained healthy coefficient is off."""
-    return float(np.abs(point.sigmas()).max(initial=0.0))
+    return Way(was, left, low > SOME or healthy.strain() - final.point.strain() > SPARED, skilled(problem, was, left))
 
 
 def acting(closed: Mapping[str, float], share: float = ACTING) -> tuple[str, ...]:

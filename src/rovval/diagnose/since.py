@@ -1,8 +1,8 @@
 """Whether what is at work began during the log, of effects that have no onset of their own: the part after it is then diagnosed by itself.
 
 A cause that is there half of the time is fitted with half of its size, and its nearest relative, which moves in that half only, may fit as well.
-In the linearised model every window could be the first with the cause in it; the best of these must have clearly more evidence than the cause has
-on the whole log, and the windows before must deny that it was there.
+In the linearised model every window could be the first with the cause in it; it must have clearly more evidence there than on the whole log, and the
+windows before must deny that it was there.
 """
 
 from __future__ import annotations
@@ -45,36 +45,43 @@ class _Part:
         return cls(A - A[:, free] @ toward[:, :-1], b - A[:, free] @ toward[:, -1])
 
 
-def began(problem: Problem, data: Products, library: Sequence[Hypothesis]) -> float | None:
-    """Seconds since the run's start from which something is clearly at work that was not there before; None where nothing says so, and for
-    several logs, each of which has a beginning of its own. ``data`` is the library linearised where healthy coefficients settled."""
+@dataclass(frozen=True, slots=True)
+class Beginning:
+    """Seconds since the run's start from which something seems to be at work, and its linearised evidence there."""
+
+    since: float
+    evidence: float
+
+
+def began(problem: Problem, data: Products, library: Sequence[Hypothesis]) -> Beginning | None:
+    """From where on something is at work that was not there before; None where nothing says so, and for several logs, each of which has a
+    beginning of its own. ``data`` is the library linearised where healthy coefficients settled."""
     if len(problem.parts) > 1 or problem.blocks < BEFORE + AFTER:
         return None
     slots = problem.plant.slots
     priors = {h.label: prior_of(problem, h) for h in library if not any(slots[s].parameter.name == "onset" for s in h.slots)}
     whole = _Part.of(data, slice(None), problem.slop, problem.inflation)
-    most = max((_explained(whole, data.place(tuple(prior.sd)), prior, problem.inflation)[0] for prior in priors.values()), default=0.0)
-    least = most + HINTED
+    always = {name: _explained(whole, data.place(tuple(prior.sd)), prior, problem.inflation)[0] for name, prior in priors.items()}
     first, last = BEFORE, problem.blocks - AFTER
     step = max(1, (last - first) // TRIED)
-    found = {k: _begins(problem, data, priors, k, least) for k in range(first, last + 1, step)}
+    found = {k: _begins(problem, data, priors, always, k) for k in range(first, last + 1, step)}
     at = max(found, key=lambda k: found[k])
     near = range(max(first, at - step + 1), min(last, at + step - 1) + 1) if found[at] else ()
-    found |= {k: _begins(problem, data, priors, k, least) for k in near if k not in found}
+    found |= {k: _begins(problem, data, priors, always, k) for k in near if k not in found}
     at = max(found, key=lambda k: found[k])
     part = problem.parts[0]
-    return float(part.start[at] * part.run.dt) if found[at] else None
+    return Beginning(float(part.start[at] * part.run.dt), found[at]) if found[at] else None
 
 
-def _begins(problem: Problem, data: Products, priors: Mapping[str, Prior], k: int, least: float) -> float:
-    """Most evidence of a hypothesis in the windows from the ``k``-th on, of those with more than ``least`` that the windows before deny; else 0."""
+def _begins(problem: Problem, data: Products, priors: Mapping[str, Prior], always: Mapping[str, float], k: int) -> float:
+    """Most evidence of a hypothesis in the windows from the ``k``-th on, of those with more than on the whole log that the windows before deny."""
     after = _Part.of(data, slice(k, None), problem.slop, problem.inflation)
     before = _Part.of(data, slice(k), problem.slop, problem.inflation)
     best = 0.0
-    for prior in priors.values():
+    for name, prior in priors.items():
         at = data.place(tuple(prior.sd))
         evidence, size = _explained(after, at, prior, problem.inflation)
-        if evidence > max(best, least) and _worth(before, at, size) < -DENIED * problem.inflation:
+        if evidence > max(best, max(always[name], 0.0) + HINTED) and _worth(before, at, size) < -DENIED * problem.inflation:
             best = evidence
     return best
 

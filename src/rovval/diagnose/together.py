@@ -16,7 +16,7 @@ from rovval.diagnose.ground import Ground, bare, rival, with_causes
 from rovval.diagnose.hypothesis import Hypothesis
 from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem
-from rovval.diagnose.separate import Rival, closed, group
+from rovval.diagnose.separate import Rival, closed, denied, group
 
 LEAST_GAIN = 0.15  # of the gap, on held-out windows: less is not worth a name (opened sets: 0 of 8 below it were right)
 LATER_GAIN = 0.18  # of what is left, the same for a second and third effect: the forms of equations leave structure (0 of 7 were right)
@@ -39,8 +39,13 @@ class Named:
 
 
 def worthy(one: Rival, alone: bool) -> bool:
-    """Whether a rival closes enough of the gap, or of what kinematics show, with enough evidence; ``alone``: nothing was found before it."""
+    """Whether a rival closes enough of the gap, or of what kinematics show, with enough evidence, or mends the file; ``alone``: nothing was found
+    before it."""
     gain = max(one.closes, one.kinematic)
+    if denied(one):
+        return False
+    if one.mends:
+        return True
     if alone:
         return gain >= LEAST_GAIN and one.evidence >= LEAST_EVIDENCE
     return gain >= LATER_GAIN and one.evidence * min(gain, 1.0) >= LATER_WORTH

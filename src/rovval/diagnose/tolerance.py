@@ -25,6 +25,7 @@ LEAST_LEVEL = 0.01  # m per unit of slop, for level: 0.2 kg of ballast moved by 
 CURVE = 4.0  # of the typical dead band per unit of slop: 5 % slop goes with a curve that is off by as much at small commands (chosen)
 SPLIT = 0.1  # m/s, rad/s: drag is known as a whole at this speed; how much of it is linear is off by as much as that (chosen)
 UNKNOWN = 0.5  # m/s, rad/s: the same for an axis without linear drag in the file, where nobody has measured it (chosen)
+WITHIN = 3.5  # standard deviations of tolerance that healthy coefficients reach (tuning set: 3.3 of some hundred)
 STRAINED = 5.0  # standard deviations from which a coefficient is off by more than slop of the stated size
 SENSORS = {
     "attitude_bias": 0.01,  # rad: AHRS of the class give 0.2 to 0.5 degrees static (Xsens MTi data sheets)

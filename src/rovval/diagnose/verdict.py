@@ -10,7 +10,6 @@ from rovval.diagnose.confirm import Confirmed
 from rovval.diagnose.left import left
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.select import FALSE_ALARM, Selection
-from rovval.diagnose.shown import strain
 from rovval.diagnose.together import Named, jointly
 from rovval.diagnose.unknown import Forces, bare_forces, forces
 from rovval.diagnose.weigh import BROKEN, HOLDS, REAL, Weighed, of_sensor, weigh
@@ -62,7 +61,7 @@ def _named(problem: Problem, selection: Selection, final: Confirmed, weighed: We
 def _nameless(problem: Problem, selection: Selection, weighed: Weighed | None, general: Forces) -> Judgement:
     """No gap, or an unknown cause where something is surely at work: a force, a strain, an effect that nearly fits."""
     total, skill, unsteady = (weighed.total, weighed.skill, weighed.unsteady) if weighed else (0.0, True, ())
-    anything, strained = general.evidence(), strain(selection.healthy)
+    anything, strained = general.evidence(), selection.healthy.strain()
     tried = max((worth if gain > NEAR else worth / 3 for _, worth, gain in selection.rounds[0]), default=0.0) if selection.rounds else 0.0
     nearly = skill and (max(total, tried) > REAL or bool(unsteady))
     real = nearly or (anything > REAL and general.share(problem.folds) > HOLDS) or strained > BROKEN

@@ -19,9 +19,9 @@ from rovval.diagnose.point import Point, whole_evidence
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.select import Selection
 from rovval.diagnose.separate import FEW, form_share
-from rovval.diagnose.shown import acting, as_filed, beside_slop, checked, seen_by_checks, stand, strain
+from rovval.diagnose.shown import acting, as_filed, beside_slop, checked, seen_by_checks, stand
 from rovval.diagnose.together import LEAST_EVIDENCE, Named
-from rovval.diagnose.tolerance import STRAINED
+from rovval.diagnose.tolerance import STRAINED, WITHIN
 from rovval.diagnose.unknown import Forces, forces
 from rovval.diagnose.wavering import drifting, wavering
 
@@ -30,7 +30,6 @@ FORMLESS = 20.0  # twice the log Bayes factor of what is beside a cause, from wh
 REAL = 100.0  # twice the log Bayes factor of a generic force from which it is not a healthy vehicle's form (tuning set)
 HOLDS = 0.02  # of what is left: a generic force that closes less on held-out windows is a fit to these windows (chosen)
 REMAINS = 0.10  # of a cause's evidence: less left over is form, not another cause
-WITHIN = 3.5  # standard deviations of tolerance that healthy coefficients reach (tuning set: 3.3 of some hundred)
 BROKEN = 7.0  # standard deviations that say by themselves that something is at work: one of some hundred healthy logs of the tuning set reached 6
 BENT, OUTWEIGHS = 6.0, 5.0  # the same of causes with less evidence than so much of what the strain costs by its prior (opened sets: 3.9, 4.6; true 15)
 WAVERS = 0.5  # of a cause's evidence: one whose value varies more surely than that is not it (opened sets: true ones 0.40 at most)
@@ -57,7 +56,7 @@ class Weighed:
 def weigh(problem: Problem, selection: Selection, final: Confirmed, general: Forces, before: list[Array]) -> Weighed:
     """Ask the causes of ``final``; ``general`` are generic forces on the healthy vehicle, ``before`` the nominal vehicle's residuals."""
     rest, total = forces(problem, final.point), whole_evidence(problem, final.point) - whole_evidence(problem, selection.healthy)
-    many, strained, filed = problem.blocks >= FEW, strain(final.point), as_filed(problem, final, before)
+    many, strained, filed = problem.blocks >= FEW, final.point.strain(), as_filed(problem, final, before)
     axes = acting(filed.closed)
     holds = many and rest.share(problem.folds) > HOLDS
     beside, instead = rest.evidence(axes) if holds else 0.0, general.evidence(axes)

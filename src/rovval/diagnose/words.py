@@ -13,6 +13,7 @@ from rovval.units import in_degrees
 
 __all__ = ["alone", "calibration", "cause", "chance", "first", "moved", "nothing", "open_gap", "sentence", "undecided", "unmoved"]
 MOST_VALUES = 3  # parameters of a cause that fit a sentence
+LITTLE = 0.15  # of the gap: less than a cause closes for its name, unless an axis shows it (`together`)
 UNMOVED = 0.005  # of the gap: less rounds to nothing
 
 
@@ -99,8 +100,15 @@ def _one(cause: dict[str, Any]) -> str:
     values = ", ".join(value(name, p) for name, p in list(moved(cause["parameters"]).items())[:MOST_VALUES])
     onset = f" from {cause['onset_s']:.0f} s on" if cause["onset_s"] is not None else ""
     other = f" or, indistinguishable in this log, {', '.join(rivals)}" if rivals else ""
-    does = alone(cause) or f"by itself it shrinks the squared gap by {span(cause['shrinkage'])} on held-out windows"
+    does = alone(cause) or f"by itself it shrinks the squared gap by {span(cause['shrinkage'])} on held-out windows{_most(cause['shrinkage'])}"
     return f"{cause['effect']}{onset} ({values}; probability {chance(cause['probability'])}){other}; {does}"
+
+
+def _most(shrinkage: Mapping[str, Any]) -> str:
+    """The axis that a cause closes most of, where it closes little of all."""
+    axes = shrinkage.get("axes") or {}
+    best = max(axes, key=lambda axis: axes[axis], default="")
+    return f", that of {best} by {whole(axes[best])} %" if best and (shrinkage.get("total") or 0.0) < LITTLE <= axes[best] else ""
 
 
 def beside_slop(document: Mapping[str, Any]) -> str:
