@@ -14,6 +14,8 @@ from rovval.diagnose.since import CLEARER, MORE, after
 from rovval.diagnose.stretches import Stretches
 from rovval.diagnose.verdict import Judgement, judge
 
+WORTH = 0.5  # of the evidence asked for, linearised: with less, what follows a change is not searched (opened logs: 0.54 of one that was there)
+
 
 @dataclass(frozen=True, slots=True)
 class Finding:
@@ -32,11 +34,11 @@ def find(parts: tuple[Stretches, ...], without: Sequence[str], slop: float, seed
     """Search all windows; where the log changes, those after the change as well, which are told if they explain clearly more."""
     whole = _searched(parts, without, slop, seed, say)
     began = whole.selection.began
-    if began is None or _event(whole) or began.evidence < _asked(whole.judgement):
+    if began is None or _event(whole) or began.evidence < WORTH * _asked(whole):
         return whole
     say(f"searching the part from {began.since:.0f} s on", 0.85)
     late = _searched((after(parts[0], began.since),), without, slop, seed, lambda text, share: None)
-    return replace(late, since=began.since) if late.judgement.causes > _asked(whole.judgement) and late.judgement.named and not _event(late) else whole
+    return replace(late, since=began.since) if late.judgement.causes > _asked(whole) and late.judgement.named and not _event(late) else whole
 
 
 def _searched(parts: tuple[Stretches, ...], without: Sequence[str], slop: float, seed: int, say: Callable[[str, float], None]) -> Finding:
@@ -55,7 +57,8 @@ def _event(one: Finding) -> bool:
     return any(one.problem.plant.slots[s].parameter.name == "onset" for n in one.judgement.named for s in n.hypothesis.slots)
 
 
-def _asked(whole: Judgement) -> float:
-    """Evidence from which what follows a change is clearer than what the whole log says."""
-    known = whole.causes if whole.named else 0.0
+def _asked(whole: Finding) -> float:
+    """Evidence from which what follows a change is clearer than anything that the whole log shows, named or not."""
+    tried = [evidence for _, evidence, _ in (whole.selection.rounds[0] if whole.selection.rounds else ())]
+    known = max([0.0, *tried, *([whole.judgement.causes] if whole.judgement.named else [])])
     return max(MORE * known, known + CLEARER)
