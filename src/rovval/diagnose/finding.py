@@ -13,6 +13,7 @@ from rovval.diagnose.select import Selection, select
 from rovval.diagnose.since import CLEARER, MORE, after
 from rovval.diagnose.stretches import Stretches
 from rovval.diagnose.verdict import Judgement, judge
+from rovval.errors import BadInput
 
 WORTH = 0.5  # of the evidence asked for, linearised: with less, what follows a change is not searched (opened logs: 0.54 of one that was there)
 
@@ -37,7 +38,10 @@ def find(parts: tuple[Stretches, ...], without: Sequence[str], slop: float, seed
     if began is None or _event(whole) or began.evidence < WORTH * _asked(whole):
         return whole
     say(f"searching the part from {began.since:.0f} s on", 0.85)
-    late = _searched((after(parts[0], began.since),), without, slop, seed, lambda text, share: None)
+    try:
+        late = _searched((after(parts[0], began.since),), without, slop, seed, lambda text, share: None)
+    except BadInput:  # too few of its windows can be simulated: the log as a whole was
+        return whole
     return replace(late, since=began.since) if late.judgement.causes > _asked(whole) and late.judgement.named and not _event(late) else whole
 
 
