@@ -22,7 +22,7 @@ BEGINS = 120.0
 
 @pytest.fixture(scope="module")
 def logs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Run, Run]:
-    """A current that begins in mid-log, and the same current from the first second on."""
+    """A loss of thrust that begins in mid-log, and the same loss from the first second on."""
     folder, runs = tmp_path_factory.mktemp("since"), []
     for i, onset in enumerate((BEGINS, None)):
         flight = fly(LIBRARY / "merlin.toml", "rich", [Planted("inflow_loss", None, 1.5, onset)], 21, 240.0, 0.02)

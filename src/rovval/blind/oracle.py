@@ -77,7 +77,7 @@ def _fit(
 ) -> tuple[Problem, Point, Wanted, Array] | None:
     """The problem, the healthy vehicle, the hypotheses that were free, and the fitted point."""
     part = cut(run, vehicle, model, window_s)
-    begins = [onsets[name] for name in true if name in onsets and not has_onset(name)]
+    begins = [onsets[name] for name in true if name in onsets and not effects.load(name.partition("[")[0]).begins]  # no onset of their own
     part = after(part, max(begins)) if begins else part
     library, _ = hypotheses((part,))
     if not true or not set(true) <= {h.name for h in library}:
@@ -96,11 +96,6 @@ def _fitted(problem: Problem, healthy: Point, wanted: Wanted, onsets: Mapping[st
     ranks = range(min(STARTS, max(map(len, wanted))))
     tried = [confirm(problem, _from(problem, healthy, data, wanted, rank, onsets), _slots(wanted)).beta for rank in ranks]
     return min(tried, key=lambda beta: _left(problem, wanted, beta)[1])
-
-
-def has_onset(name: str) -> bool:
-    """Whether a hypothesis has an onset of its own; of others, the part of the log after it is what they are fitted to."""
-    return any(p.name == "onset" for p in effects.load(name.partition("[")[0]).parameters)
 
 
 def _left(problem: Problem, wanted: Wanted, beta: Array) -> Array:

@@ -58,7 +58,7 @@ def _searched(parts: tuple[Stretches, ...], without: Sequence[str], slop: float,
 
 def _event(one: Finding) -> bool:
     """Whether a cause was named that has an onset of its own: that is what changes the log, where it changes."""
-    return any(one.problem.plant.slots[s].parameter.name == "onset" for n in one.judgement.named for s in n.hypothesis.slots)
+    return any(n.hypothesis.effect.begins for n in one.judgement.named)
 
 
 def _asked(whole: Finding) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rovval.diagnose.lanes import Direction
+from rovval.effects import Effect, load
 
 PRIOR_WIDTH = 4.0  # wide prior, in typical sizes: keeps a parameter that the log does not see from running away
 
@@ -21,6 +22,11 @@ class Hypothesis:
     sd: tuple[float, ...]
     at: tuple[tuple[int, float], ...] = ()
     directions: tuple[Direction, ...] = ()
+
+    @property
+    def effect(self) -> Effect:
+        """The effect of the library that it sets free, whatever its axis or thruster."""
+        return load(self.name.partition("[")[0])
 
     @property
     def whole(self) -> bool:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rovval import effects
 from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed
 from rovval.diagnose.hypothesis import Hypothesis
@@ -51,7 +50,7 @@ Losses = tuple[Array, Array]
 
 def denied(one: Rival) -> bool:
     """Whether a fault of a sensor makes the kinematic checks worse, which no error of the dynamics touches."""
-    return effects.load(one.hypothesis.name.partition("[")[0]).place == "sensor" and one.kinematic < -DENIED
+    return one.hypothesis.effect.place == "sensor" and one.kinematic < -DENIED
 
 
 def closed(was: Losses, now: Losses) -> tuple[float, float]:

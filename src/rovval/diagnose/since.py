@@ -21,7 +21,7 @@ from rovval.diagnose.products import Products
 from rovval.diagnose.stretches import Stretches
 
 BEFORE, AFTER = 3, 6  # windows without and with it, at least (chosen)
-HINTED, DENIED = 10.0, 20.0  # twice the log Bayes factor, linearised: of the part over the whole, and of the windows before against it (chosen)
+HINTED, AGAINST = 10.0, 20.0  # twice the log Bayes factor, linearised: of the part over the whole, and of the windows before against it (chosen)
 CLEARER, MORE = 20.0, 1.2  # the same of what was found in the part over what was found in the whole, and its least ratio to that (chosen)
 TRIED = 12  # first windows with it that are tried, evenly spread, before those about the best of them (chosen)
 
@@ -58,8 +58,7 @@ def began(problem: Problem, data: Products, library: Sequence[Hypothesis]) -> Be
     beginning of its own. ``data`` is the library linearised where healthy coefficients settled."""
     if len(problem.parts) > 1 or problem.blocks < BEFORE + AFTER:
         return None
-    slots = problem.plant.slots
-    priors = {h.label: prior_of(problem, h) for h in library if not any(slots[s].parameter.name == "onset" for s in h.slots)}
+    priors = {h.label: prior_of(problem, h) for h in library if not h.effect.begins}
     whole = _Part.of(data, slice(None), problem.slop, problem.inflation)
     always = {name: _explained(whole, data.place(tuple(prior.sd)), prior, problem.inflation)[0] for name, prior in priors.items()}
     first, last = BEFORE, problem.blocks - AFTER
@@ -81,7 +80,7 @@ def _begins(problem: Problem, data: Products, priors: Mapping[str, Prior], alway
     for name, prior in priors.items():
         at = data.place(tuple(prior.sd))
         evidence, size = _explained(after, at, prior, problem.inflation)
-        if evidence > max(best, max(always[name], 0.0) + HINTED) and _worth(before, at, size) < -DENIED * problem.inflation:
+        if evidence > max(best, max(always[name], 0.0) + HINTED) and _worth(before, at, size) < -AGAINST * problem.inflation:
             best = evidence
     return best
 

@@ -47,7 +47,7 @@ def _meant(plant: Plant, one: str) -> list[int]:
 def is_searched(plant: Plant, slot: int) -> bool:
     """Whether a slot belongs to what begins or turns at a time or place that `diagnose` searches for."""
     effect = effects.load(plant.slots[slot].effect)
-    return bool(effect.grid) or any(p.name == "onset" for p in effect.parameters)
+    return bool(effect.grid) or effect.begins
 
 
 def _near(plant: Plant, asked: str) -> str:

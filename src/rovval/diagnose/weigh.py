@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rovval import effects
 from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed
 from rovval.diagnose.point import Point, whole_evidence
@@ -78,7 +77,7 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
 
 def of_sensor(named: Named) -> bool:
     """Whether a cause is a fault of a sensor."""
-    return effects.load(named.hypothesis.name.partition("[")[0]).place == "sensor"
+    return named.hypothesis.effect.place == "sensor"
 
 
 def _unsteady(problem: Problem, selection: Selection, final: Confirmed, varies: Mapping[str, float]) -> tuple[str, ...]:

@@ -91,6 +91,11 @@ class Effect:
         object.__setattr__(self, "grid", MappingProxyType(dict(self.grid)))
         object.__setattr__(self, "where", MappingProxyType(dict(self.where)))
 
+    @property
+    def begins(self) -> bool:
+        """Whether it has an onset of its own."""
+        return any(p.name == "onset" for p in self.parameters)
+
     def of_one_axis(self, parameter: str) -> bool:
         """Whether a parameter says of one axis what another says of all."""
         return self.apart and parameter in self.refines
