@@ -17,7 +17,7 @@ from rovval.diagnose.lanes import Direction, Lane, lanes_of, one_sided, state_st
 from rovval.diagnose.stretches import VELOCITY_CHANNELS, Stretches, difference, predicted
 
 AT_ONCE = 60  # windows that are simulated before their slopes are taken: ten minutes of log, some 0.3 GB
-LANES = 20_000  # lanes a call, to bound memory (about 200 MB)
+LANES = 2_000  # lanes a call: 20 MB, which stay with the process; larger arrays go back to the system each time (measured: a tenth slower)
 UNLOGGED = 0.3  # m/s, rad/s, rad: start of what was neither logged nor follows from the pose: anything slow is possible (chosen)
 FROM_SLOPE = 0.01  # m/s, rad/s: least error of a start taken as the slope of the logged pose over a second (chosen)
 POSE_SLOPE = {"u": "x", "v": "y", "w": "z", "p": "phi", "q": "theta", "r": "psi"}
@@ -47,7 +47,7 @@ def simulate_windows(stretches: Stretches, beta: Array, nu0: Array, eta0: Array,
         motion = stretches.plant.simulate(
             stretches.driven.inputs, stretches.start[which[part]], stretches.steps, nu0[part], eta0[part], beta[part]
         )
-        out[part] = predicted(stretches, motion.nu, motion.eta)
+        predicted(stretches, motion.nu, motion.eta, out[part])
         fine[part] = motion.stopped < 0
     return out, fine
 
@@ -62,7 +62,8 @@ def linearise(
     lanes = lanes_of(stretches, beta, states, columns, directions) + one_sided(stretches, beta, coarse)
     ids = (*columns, *(d.id for d in directions), *coarse)
     shape = (m, stretches.steps + 1, len(stretches.channels))
-    r, S, J, valid = np.zeros(shape), np.zeros((*shape, len(ids))), np.zeros((*shape, len(states) + len(drifting))), np.zeros(m, dtype=bool)
+    r, J, valid = np.zeros(shape), np.zeros((*shape, len(states) + len(drifting))), np.zeros(m, dtype=bool)
+    S = np.moveaxis(np.zeros((len(ids), *shape)), 0, -1)  # a column in one piece, as it is made
     for i, channel in enumerate(drifting):
         J[..., channel, len(states) + i] = 1.0
     place = {column: i for i, column in enumerate(ids)}

@@ -121,7 +121,7 @@ def in_metric(problem: Problem, linear: Sequence[Linear]) -> tuple[Scaled, ...]:
 
 def products_about(problem: Problem, beta: Array, linear: Sequence[Scaled]) -> tuple[Products, Products]:
     """Products of linearisations about ``beta``: (dynamics alone, dynamics and parity)."""
-    dynamic = joined([one.products(one.linear.r) for one in linear])
+    dynamic = joined([one.products(one.r) for one in linear])
     return dynamic, dynamic + _kinematic(problem, beta, dynamic.columns)
 
 
@@ -131,7 +131,7 @@ def carried(problem: Problem, beta: Array, linear: Sequence[Scaled]) -> Products
     found = list[Products]()
     for part, one in zip(problem.parts, linear, strict=True):
         r, fine = residual(part, beta)
-        if not fine[one.linear.valid].all():
+        if not fine[one.valid].all():
             return None
         found.append(one.products(r))
     dynamic = joined(found)

@@ -7,9 +7,10 @@ each window (Woodbury identity; `research`: efficient-score projection with a fi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from rovval.data import Array
 from rovval.diagnose.linearise import Linear
@@ -37,6 +38,8 @@ class Products:
 
 def joined(parts: list[Products]) -> Products:
     """Windows of several runs behind one another."""
+    if len(parts) == 1:
+        return replace(parts[0], offset=None)
     return Products(
         np.concatenate([p.A for p in parts]),
         np.concatenate([p.b for p in parts]),
@@ -47,21 +50,31 @@ def joined(parts: list[Products]) -> Products:
 
 @dataclass(frozen=True, slots=True)
 class Scaled:
-    """A linearisation in the metric: slopes ``x`` (m, n c, k) over the standard errors, of which ``root`` (m, n c) is the inverse, and nuisances
-    ``q`` (m, n c, s) turned so that S^T V^-1 S = x^T x - y^T y =: ``A`` (m, k, k) with ``y`` = q^T x (m, s, k)."""
+    """A linearisation in the metric: residual ``r``, nuisances ``J``, ``columns`` and ``valid`` as in `Linear`; slopes ``x`` (m, n c, k) over the
+    standard errors, of which ``root`` (m, n c) is the inverse (0: no measurement); nuisances ``q`` (m, n c, s) turned so that
+    S^T V^-1 S = x^T x - y^T y =: ``A`` (m, k, k) with ``y`` = q^T x (m, s, k)."""
 
-    linear: Linear
+    r: Array
+    J: Array
+    columns: tuple[int, ...]
+    valid: np.ndarray
     root: Array
     q: Array
     x: Array
     y: Array
     A: Array
 
+    @property
+    def linear(self) -> Linear:
+        """The linearisation itself; slopes are 0 where nothing was measured."""
+        S = self.x / np.where(self.root > 0, self.root, 1.0)[..., None]
+        return Linear(self.r, S.reshape(*self.r.shape, len(self.columns)), self.J, self.columns, self.valid)
+
     def products(self, r: Array) -> Products:
         """Products of a residual ``r`` (m, n, c) with these slopes."""
         scaled = r.reshape(self.root.shape) * self.root
         z = _onto(self.q, scaled)
-        return Products(self.A, _onto(self.x, scaled) - _onto(self.y, z), (scaled**2).sum(axis=1) - (z**2).sum(axis=1), self.linear.columns)
+        return Products(self.A, _onto(self.x, scaled) - _onto(self.y, z), (scaled**2).sum(axis=1) - (z**2).sum(axis=1), self.columns)
 
 
 def products(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> Products:
@@ -79,26 +92,27 @@ def products(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> 
 def scaled(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> Scaled:
     """A linearisation in the metric, kept for products with many residuals; arguments as for `products`."""
     m, n, k = len(linear.r), linear.r[0].size, linear.S.shape[-1]
-    root, q, x, y = np.zeros((m, n)), np.zeros((m, n, len(spread))), np.zeros((m, n, k)), np.zeros((m, len(spread), k))
+    root, q, x, y = np.empty((m, n)), np.empty((m, n, len(spread))), _columns_first(m, n, k), np.empty((m, len(spread), k))
     for w in range(m):
         root[w], q[w], x[w], y[w] = _window(linear, w, ok, variance, spread)
-    return Scaled(linear, root, q, x, y, _gram(x, x) - _gram(y, y))
+    return Scaled(linear.r, linear.J, linear.columns, linear.valid, root, q, x, y, _gram(x, x) - _gram(y, y))
 
 
 def beside(own: Linear, other: Scaled, columns: tuple[int, ...]) -> Scaled:
     """A linearisation with further ``columns``, whose slopes are taken from another one nearby, and its nuisances with them."""
-    place, k, m = [other.linear.columns.index(c) for c in columns], len(own.columns), len(own.r)
-    mine = own.S.reshape(*other.root.shape, k) * other.root[..., None]
-    S, x = _joined(own.S, other.linear.S, place), _joined(mine, other.x, place)
-    y = _joined(_gram(other.q, mine), other.y, place)
+    place, k, m = [other.columns.index(c) for c in columns], len(own.columns), len(own.r)
+    x = _columns_first(m, other.root.shape[1], k + len(place))
+    mine = x[..., :k] = own.S.reshape(*other.root.shape, k) * other.root[..., None]
+    x[..., k:] = other.x[..., place]
+    y = np.concatenate([_gram(other.q, mine), other.y[..., place]], axis=-1)
     A = np.empty((m, k + len(place), k + len(place)))
     A[:, k:, k:] = other.A[:, place][..., place]
     A[:, :k] = _gram(mine, x) - _gram(y[..., :k], y)
     A[:, k:, :k] = np.swapaxes(A[:, :k, k:], 1, 2)
-    J, q = other.linear.J, other.q
+    J, q = other.J, other.q
     if not own.valid.all():  # the other's slopes there are of a window that ran
-        S, J, q, x, y, A = (np.where(own.valid.reshape(-1, *[1] * (a.ndim - 1)), a, 0.0) for a in (S, J, q, x, y, A))
-    return Scaled(Linear(own.r, S, J, (*own.columns, *columns), own.valid), other.root, q, x, y, A)
+        J, q, x, y, A = (np.where(own.valid.reshape(-1, *[1] * (a.ndim - 1)), a, 0.0) for a in (J, q, x, y, A))
+    return Scaled(own.r, J, (*own.columns, *columns), own.valid, other.root, q, x, y, A)
 
 
 def _window(linear: Linear, w: int, ok: np.ndarray, variance: Array, spread: Array) -> tuple[Array, Array, Array, Array]:
@@ -106,7 +120,7 @@ def _window(linear: Linear, w: int, ok: np.ndarray, variance: Array, spread: Arr
     root = np.where(ok[w], 1.0 / np.sqrt(variance), 0.0).reshape(-1)
     x = linear.S[w].reshape(len(root), -1) * root[:, None]
     j = linear.J[w].reshape(len(root), -1)[:, : len(spread)] * root[:, None] * spread
-    q = j @ np.linalg.inv(np.linalg.cholesky(np.eye(j.shape[1]) + j.T @ j)).T
+    q = solve_triangular(np.linalg.cholesky(np.eye(j.shape[1]) + j.T @ j), j.T, lower=True, check_finite=False).T
     return root, q, x, q.T @ x
 
 
@@ -120,13 +134,9 @@ def _gram(a: Array, b: Array) -> Array:
     return np.asarray(np.swapaxes(a, 1, 2) @ b)
 
 
-def _joined(own: Array, other: Array, place: list[int]) -> Array:
-    """Own columns, then those of the other at ``place``."""
-    k = own.shape[-1]
-    out = np.empty((*own.shape[:-1], k + len(place)))
-    out[..., :k] = own
-    np.take(other, place, axis=-1, out=out[..., k:])
-    return out
+def _columns_first(m: int, n: int, k: int) -> Array:
+    """Room for (m, n, k) in which a column lies in one piece: they are made, and taken from one another, one by one."""
+    return np.empty((m, k, n)).swapaxes(1, 2)
 
 
 def start_corrected(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> Array:

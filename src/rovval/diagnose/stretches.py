@@ -141,13 +141,13 @@ def residual_channels(run: Run) -> tuple[str, ...]:
     return tuple(c for c in chosen if run.measured(c))
 
 
-def predicted(stretches: Stretches, nu: Array, eta: Array) -> Array:
-    """The residual channels of simulated motions: (b, steps + 1, 6) twice -> (b, steps + 1, c)."""
+def predicted(stretches: Stretches, nu: Array, eta: Array, out: Array | None = None) -> Array:
+    """The residual channels of simulated motions: (b, steps + 1, 6) twice -> (b, steps + 1, c), into ``out`` where it is given."""
     names = (*VELOCITY_CHANNELS, "x", "y", "z", "phi", "theta", "psi")
     at = [names.index(channel) for channel in stretches.channels]
     begins = [i for i in range(len(at)) if i == 0 or at[i] != at[i - 1] + 1 or at[i] == 6]  # neighbours are copied at once
     blocks = [(at[i], j - i) for i, j in zip(begins, [*begins[1:], len(at)], strict=True)]
-    return np.concatenate([(nu, eta)[first // 6][..., first % 6 : first % 6 + size] for first, size in blocks], axis=-1)
+    return np.concatenate([(nu, eta)[first // 6][..., first % 6 : first % 6 + size] for first, size in blocks], axis=-1, out=out)
 
 
 def difference(stretches: Stretches, a: Array, b: Array) -> Array:
