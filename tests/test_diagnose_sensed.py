@@ -10,6 +10,7 @@ import pytest
 from diagnose_case import merlin, own
 from rovval.data import Array, Run
 from rovval.diagnose import diagnose
+from rovval.diagnose.cleaned import cleaned, grain
 from rovval.diagnose.sensed import at_stop, pings, sensed
 
 
@@ -73,3 +74,21 @@ def test_held_velocities_are_no_filter_and_hide_no_cause(effects: tuple[str, ...
     assert [row["finding"] for row in document["log"]] == ["held"]
     assert document["verdict"] == verdict
     assert [c["effect"] for c in document["causes"]] == [e.partition(":")[0] for e in effects]
+
+
+@pytest.mark.parametrize("step", [0.02, 0.1])
+def test_a_channel_in_coarse_steps_is_no_better_than_its_rounding(step: float):
+    """A slow vehicle repeats its values, of which no difference shows noise; what rounding really does is measured against the log it was made of."""
+    slow = 0.4 * np.sin(0.03 * np.arange(3000) * 0.1 + 0.3)
+    coarse = np.round(slow / step) * step
+    run = with_values(own((), 5, 300.0), u=coarse)
+    _, _, (noise,), _ = cleaned(run, ("u",))
+    assert grain(coarse) == pytest.approx(step, rel=1e-6)
+    assert noise == pytest.approx(np.sqrt(np.mean((coarse - slow) ** 2)), rel=0.2)
+
+
+def test_values_that_lie_on_no_grid_have_no_grain():
+    rng = np.random.default_rng(0)
+    assert grain(rng.normal(size=2000)) == 0.0, "a fine channel"
+    assert grain(np.zeros(2000)) == 0.0, "one that never moves"
+    assert grain(np.repeat(rng.normal(size=200), 10)) == 0.0, "held, but on no grid"

@@ -12,6 +12,8 @@ from rovval.frames import wrap
 ANGLES = ("phi", "theta", "psi")
 BELIEVED = {"u": 1e-3, "v": 1e-3, "w": 1e-3, "p": 1e-3, "q": 1e-3, "r": 1e-3, "phi": 1e-3, "theta": 1e-3, "psi": 2e-3, "x": 5e-3, "y": 5e-3, "z": 5e-3}
 # m/s, rad/s, rad, m: below these no ROV sensor is believed (chosen; keeps a noise-free log from dividing by zero)
+FEWEST_LEVELS, REPEATS = 3, 5  # values of a channel that repeat themselves, and how often each does on the average, in coarse steps (chosen)
+ROUNDING, OFF_GRID = 1e-6, 0.1  # of the largest step: a smaller one is rounding; and of a step, by which levels may miss their grid (chosen)
 OUTLIER_SIGMA = 8.0  # chosen: a sample this far from its neighbours' line is an outlier of the sensor
 
 
@@ -29,7 +31,7 @@ def cleaned(run: Run, channels: Sequence[str]) -> tuple[Array, Flags, Array, Fla
         wild = _wild(series, name)
         spoiled[real] |= wild & keep[real]
         keep[real] &= ~wild
-        noise[i] = white_noise(series, keep[real])
+        noise[i] = max(white_noise(series, keep[real]), grain(run.get(name)) / np.sqrt(12.0))
         good[:, i] = keep
     return np.where(good, values, 0.0), good, noise, spoiled
 
@@ -61,3 +63,16 @@ def white_noise(series: Array, good: Flags) -> float:
     third = np.diff(series, n=3)
     usable = good[3:] & good[2:-1] & good[1:-2] & good[:-3]
     return float(1.4826 * np.median(np.abs(third[usable])) / np.sqrt(20.0)) if usable.any() else 0.0
+
+
+def grain(values: Array) -> float:
+    """Step in which a channel is written, from values (n,) that repeat themselves; 0 where these lie on no grid. Rounding to it errs uniformly, with
+    a variance of a twelfth of its square (Widrow 1956)."""
+    held = values[1:][values[1:] == values[:-1]]
+    levels = np.unique(held)
+    if len(levels) < FEWEST_LEVELS or len(levels) * REPEATS > len(held):
+        return 0.0
+    steps = np.diff(levels)
+    steps = steps[steps > ROUNDING * steps.max()]
+    multiples = steps / steps.min()
+    return float(steps.min()) if (np.abs(multiples - np.round(multiples)) < OFF_GRID).all() else 0.0
