@@ -18,13 +18,15 @@ from rovval.diagnose.ground import relief, without_own
 from rovval.diagnose.library import hypotheses
 from rovval.diagnose.point import evidence
 from rovval.diagnose.problem import Problem, corrected_residuals, pose
+from rovval.diagnose.products import Products
 from rovval.diagnose.separate import FORM, MOST_FORM, form_share
 from rovval.diagnose.settle import healthy_point, settle
 from rovval.diagnose.shown import UNMOVED, Way, as_filed, beside_slop, harms, skilled, stand
+from rovval.diagnose.shrinkage import shrinkage
 from rovval.diagnose.steadied import discount, gains, loop_gain, loosened
 from rovval.diagnose.stretches import cut, cut_all
 from rovval.diagnose.tolerance import slop_prior
-from rovval.diagnose.unknown import forces
+from rovval.diagnose.unknown import Forces, forces
 from rovval.plant import Plant
 from rovval.vehicle.model import allocation
 
@@ -160,6 +162,28 @@ def test_beside_a_cause_coefficients_may_be_as_slop_lets_them_be():
     assert filed.sure and eased.sure and filed.skill and eased.skill
     assert eased.left["surge"] < 0.8 * filed.left["surge"]
     assert eased.left["heave"] == pytest.approx(filed.left["heave"], rel=0.2)
+
+
+def test_what_closes_one_axis_surely_and_the_whole_perhaps_is_not_sure(monkeypatch: pytest.MonkeyPatch):
+    p = problem("buoyancy_error:force=60")
+    final, before = confirm(p, p.origin, (slot(p, "buoyancy_error.force"),)), corrected_residuals(p)
+    told = shrinkage(p, final, before, 0)
+    monkeypatch.setattr("rovval.diagnose.shown.shrinkage", lambda *_: told | {"low": -0.01})
+    assert told["axes_interval"]["heave"]["low"] > 0.0 and not as_filed(p, final, before).sure
+
+
+def test_one_force_alone_is_worth_what_it_is_with_the_others_held():
+    """Against the evidence of that force alone, worked out with the whole matrix; on the axes asked for."""
+    rng = np.random.default_rng(0)
+    axes = ("surge", "sway", "surge", "yaw", "roll", "heave")
+    X = rng.normal(size=(30, 12, 4 + len(axes)))
+    r = rng.normal(size=(30, 12)) + 0.8 * X[..., 6]
+    data = Products(np.einsum("wni,wnj->wij", X, X), np.einsum("wni,wn->wi", X, r), (r**2).sum(axis=1), tuple(range(X.shape[-1])))
+    beside = Forces(tuple((axis, str(i)) for i, axis in enumerate(axes)), data, np.full(4, 2.0), rng.normal(size=4), 1.7)
+    one_by_one = {axis: max(beside.evidence([axis], str(i)) for i, a in enumerate(axes) if a == axis) for axis in axes}
+    assert beside.alone(["surge"]) == pytest.approx(one_by_one["surge"]) == pytest.approx(beside.alone())
+    assert beside.alone(["sway", "yaw"]) == pytest.approx(max(one_by_one["sway"], one_by_one["yaw"], 0.0))
+    assert beside.alone() > beside.evidence(), "many that gain nothing cost more than the one gains"
 
 
 def test_a_coefficient_does_not_hide_behind_its_own_tolerance():

@@ -14,6 +14,7 @@ from rovval.diagnose.stretches import Stretches, difference, predicted
 from rovval.vehicle.model import allocation
 
 STEP = 0.05  # of a force, for its finite difference
+SLOW = 0.1  # of a velocity's rms: more has a side that it goes to (chosen)
 LEAST = 0.01  # of the largest force, that an axis is held to have at least, so that none is mute
 
 
@@ -34,6 +35,9 @@ def features_of(stretches: Stretches) -> dict[str, Array]:
         if c in got:
             found[c], found[f"{c}|{c}|"] = got[c], got[c] * np.abs(got[c])
             found[f"|{c}|"] = np.abs(got[c])
+    for c in ("u", "v", "w"):
+        if c in got and (rms := float(np.sqrt(np.mean(got[c] ** 2)))) > 0.0:
+            found[f"sign of {c}"] = np.tanh(got[c] / (SLOW * rms))
     for a, b in (("u", "v"), ("u", "r"), ("v", "r"), ("u", "w")):
         if a in got and b in got:
             found[f"{a}{b}"] = got[a] * got[b]

@@ -26,6 +26,7 @@ MUCH = 0.3  # of what a cause closes: the axes on which the simulator must follo
 HARMS = 0.25  # of what causes close in all: a cause that opens more on one axis is the least bad (chosen)
 UNMOVED = 0.001  # of the gap: less is rounding, as of a compass, which moves nothing (chosen)
 SKILL = 0.5  # of the squared motion: an axis on which more is left is not simulated at all (chosen)
+NOTHING = 0.05  # of the squared error: less is form, whatever its evidence (chosen)
 HARDLY = 0.15  # of what an axis erred before (chosen)
 SOME, SPARED = 0.05, 2.0  # surely, of what slop leaves; and standard deviations of tolerance (opened sets: true 0.08, 2.5, 3.1; false 0.02, 0.8)
 SEEN, SURELY = 0.5, 100.0  # share of what the kinematic checks show, and evidence, from which they name a fault by themselves (chosen)
@@ -46,13 +47,17 @@ class Way:
         """What is closed on each axis, where it is."""
         return _closed(self.was, self.left)
 
+    @property
+    def all_of_it(self) -> bool:
+        """Whether the causes leave next to nothing."""
+        return sum(self.left.values()) <= NOTHING * sum(self.was.values())
+
 
 def as_filed(problem: Problem, final: Confirmed, before: list[Array]) -> Way:
     """With every other coefficient as the file has it."""
     was, left = axis_weight(problem, before), axis_weight(problem, corrected_residuals(problem, final.beta))
     shrunk = shrinkage(problem, final, before, 0)
-    low, axes = shrunk["axes_interval"], acting(_closed(was, left))
-    return Way(was, left, shrunk["low"] > 0 or any(low[axis]["low"] > 0 for axis in axes if axis in low), skilled(problem, was, left))
+    return Way(was, left, shrunk["low"] > 0, skilled(problem, was, left))
 
 
 def beside_slop(problem: Problem, final: Confirmed, healthy: Point, before: list[Array]) -> Way:

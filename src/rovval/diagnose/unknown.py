@@ -40,6 +40,18 @@ class Forces:
         chosen = [i for i, (axis, name) in enumerate(self.names) if axis in axes and feature in ("", name)]
         return max(self._evidence(chosen, share) for share in SHARES) - self._evidence([], 1.0) if chosen else 0.0
 
+    def alone(self, axes: Sequence[str] = AXES) -> float:
+        """The same of the one force, one feature on one of ``axes``, that has most: where few are at work, all together cost more than they gain."""
+        own = np.arange(len(self.precision))
+        chosen = np.array([len(own) + i for i, (axis, _) in enumerate(self.names) if axis in axes], dtype=int)
+        A = self.data.A.sum(axis=0)
+        b = self.data.b.sum(axis=0) - np.concatenate([self.pull, np.zeros(len(self.names))])
+        H, cross = A[np.ix_(own, own)] + np.diag(self.precision), A[np.ix_(own, chosen)]
+        shown = np.diag(A)[chosen] - (cross * np.linalg.solve(H, cross)).sum(axis=0)  # beside the point's columns, which give way
+        slope = b[chosen] - cross.T @ np.linalg.solve(H, b[own])
+        ridge = self.inflation / np.array(SHARES)[:, None] ** 2
+        return float((slope**2 / (shown + ridge) / self.inflation - np.log1p(shown / ridge)).max(initial=0.0))
+
     @property
     def features(self) -> tuple[str, ...]:
         """What the forces depend on."""

@@ -11,6 +11,7 @@ from rovval.diagnose.left import left
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.select import FALSE_ALARM, Selection
 from rovval.diagnose.together import Named, jointly
+from rovval.diagnose.tolerance import STRAINED
 from rovval.diagnose.unknown import Forces, bare_forces, forces
 from rovval.diagnose.weigh import BROKEN, HOLDS, REAL, Weighed, of_sensor, weigh
 
@@ -77,7 +78,8 @@ def _steady(problem: Problem, selection: Selection, weighed: Weighed, general: F
     selection = _only(problem, selection, kept)
     assert selection.final is not None
     again = weigh(problem, selection, selection.final, general, before)
-    return selection, replace(again, remains=True, least_bad=again.least_bad or bool(again.unsteady), unsteady=weighed.unsteady)
+    alone = again.least_bad or bool(again.unsteady) or again.strain > STRAINED  # what went took up the strain: another cause is there
+    return selection, replace(again, remains=True, least_bad=alone, unsteady=weighed.unsteady)
 
 
 def _only(problem: Problem, selection: Selection, kept: tuple[Named, ...]) -> Selection:

@@ -1,6 +1,6 @@
 """What is asked of causes before they are named: a library effect is not named for being the least bad.
 
-Does it do better than a generic force on the axes where it acts? What would such a force still gain beside it? How far must healthy
+Does it do better than a generic force on the axes where it acts? What would such a force still gain beside it, what a single one? How far must healthy
 coefficients leave their tolerance so that it fits? Does the simulator follow the vehicle there at all? Does no axis get worse by much?
 And does it hold still? A true cause passes all; the nearest relative of an effect that the library lacks fails one of them.
 """
@@ -26,6 +26,7 @@ from rovval.diagnose.wavering import drifting, wavering
 
 BETTER = 1.0  # of a cause's evidence: a generic force that has more is nearer to the truth (chosen)
 FORMLESS = 20.0  # twice the log Bayes factor of what is beside a cause, from which it is more than the form of an equation (chosen)
+LONE, LEFT = 60.0, 0.15  # the same of a single force of what is beside, and its share of a cause's evidence (opened sets: 7 of 9 beyond both were wrong)
 REAL = 100.0  # twice the log Bayes factor of a generic force from which it is not a healthy vehicle's form (tuning set)
 HOLDS = 0.02  # of what is left: a generic force that closes less on held-out windows is a fit to these windows (chosen)
 REMAINS = 0.10  # of a cause's evidence: less left over is form, not another cause
@@ -69,6 +70,8 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
     unsteady = _unsteady(problem, selection, final, varies) if many else ()
     bent = strained > BENT and total < OUTWEIGHS * strained**2
     broken = not stands or strained > BROKEN or bent or max(varies.values(), default=0.0) > max(WAVERS * total, LEAST_EVIDENCE)
+    lone = rest.alone(axes) if many and not faulty and not any(way.all_of_it for way in ways) else 0.0
+    broken = broken or lone > max(LONE, LEFT * total)
     least_bad = outdone or broken or max(beside, excess) > max(form_share(problem.blocks) * total, FORMLESS)
     parity_led = any(of_sensor(n) for n in selection.named) and seen_by_checks(problem, final)
     remains = not filed.sure or strained > STRAINED or (holds and rest.evidence() > max(REAL, REMAINS * total))
