@@ -18,12 +18,13 @@ from rovval.diagnose.admissible import _beyond_the_library, simplest
 from rovval.diagnose.breaks import FEWEST, _split
 from rovval.diagnose.confirm import Confirmed, confirm, errors
 from rovval.diagnose.excited import LARGE, LEAST_SIGMA, excited
-from rovval.diagnose.finalists import _half_a_turn_later, prior_of
+from rovval.diagnose.finalists import _half_a_turn_later, finalists, prior_of
 from rovval.diagnose.hypothesis import Hypothesis
 from rovval.diagnose.lanes import lanes_of
 from rovval.diagnose.library import hypotheses
 from rovval.diagnose.linearise import linearise
 from rovval.diagnose.problem import Problem, columns_of, pose
+from rovval.diagnose.select import select
 from rovval.diagnose.separate import Rival
 from rovval.diagnose.settle import healthy_point, resettled, settle
 from rovval.diagnose.starts import LEVER, MOST_STARTS
@@ -277,6 +278,24 @@ def test_what_is_named_is_not_called_untestable(tmp_path: Path):
     assert [c["effect"] for c in document["causes"]] == ["thruster_misaligned[T1]"], document["sentence"]
     untestable = {row["effect"] for row in document["not_testable"]}
     assert "thruster_misaligned[T2]" in untestable and "thruster_misaligned[T1]" not in untestable
+
+
+def test_what_the_finalists_kept_out_is_tried_where_none_of_them_stands(monkeypatch: pytest.MonkeyPatch):
+    """The first ones settled are none that is there, as where a bogus one promises much."""
+    p, library = posed("buoyancy_error:force=200")
+    asked = list[set[str]]()
+
+    def settled(problem: Problem, data: Any, hypotheses: list[Hypothesis], promised: dict[str, float], *rest: Any) -> list[Rival]:
+        asked.append({h.name for h in hypotheses})
+        if len(asked) > 1:
+            return finalists(problem, data, hypotheses, promised, *rest)
+        bogus = [h for h in hypotheses if h.label == "linear_drag[yaw]"]
+        return finalists(problem, data, bogus, {h.label: 50.0 for h in bogus}, *rest)
+
+    monkeypatch.setattr("rovval.diagnose.select.finalists", settled)
+    found = select(p, library, 0, lambda *_: None)
+    assert [n.hypothesis.name for n in found.named] == ["buoyancy_error"]
+    assert asked[0] - asked[1] == {"linear_drag[yaw]"}, "what was settled is not settled again"
 
 
 @pytest.mark.parametrize("at", [3, 10, 17])

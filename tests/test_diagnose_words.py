@@ -173,3 +173,9 @@ def test_what_is_closed_beside_slop_is_said_where_the_gap_stays_open_without_it(
     document |= {"shrinkage": filed, "beside_slop": {"total": 0.93, "low": 0.9, "high": 0.95}}
     assert ("93 % [90, 95] of what those leave" in sentence(document)) is said
     assert ("93 % [90, 95] of what those leave" in diagnosis_markdown.text(document)) is said
+
+
+def test_windows_in_which_the_simulation_stops_are_told():
+    d = make_diagnosis() | {"log": [], "windows": 30}
+    assert "of 30 windows" not in sentence(d | {"windows_stopped": 0}) + sentence(d)
+    assert "Of the log: 3 of 30 windows, in which the simulation of the vehicle as it is filed stops, were left out." in sentence(d | {"windows_stopped": 3})

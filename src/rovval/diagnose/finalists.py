@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -12,7 +12,6 @@ from rovval.data import Array
 from rovval.diagnose.admissible import DEGRADED, REVERSED, SERIOUS
 from rovval.diagnose.confirm import Confirmed, confirm, roughly
 from rovval.diagnose.contest import Prior, step
-from rovval.diagnose.detect import Detection
 from rovval.diagnose.ground import Ground, rival
 from rovval.diagnose.hypothesis import PRIOR_WIDTH, Hypothesis
 from rovval.diagnose.problem import Problem
@@ -31,15 +30,15 @@ SHARPENED = 4  # finalists that are settled with slopes made at their own point
 
 
 def finalists(
-    problem: Problem, data: Products, library: list[Hypothesis], detection: Detection, stands: Ground, chosen: tuple[int, ...]
+    problem: Problem, data: Products, library: list[Hypothesis], promised: Mapping[str, float], stands: Ground, chosen: tuple[int, ...]
 ) -> list[Rival]:
     """The best starting point of each of the best hypotheses, settled jointly with what was chosen before; best evidence first.
 
-    ``data`` is the library linearised where what ``stands`` settled.
+    ``data`` is the library linearised where what ``stands`` settled, ``promised`` the evidence there of each starting point.
     """
     base = stands.point
-    ordered = sorted(library, key=lambda h: -detection.evidence[h.label])
-    least = SCREENED * max(detection.evidence[detection.best], 0.0)
+    ordered = sorted(library, key=lambda h: -promised[h.label])
+    least = SCREENED * max(promised[ordered[0].label], 0.0)
     ground = problem.slop.widened(freed(problem, chosen))
     fitted: dict[str, tuple[Hypothesis, Confirmed]] = {}
 
@@ -61,7 +60,7 @@ def finalists(
 
     tries = Counter[str]()
     for h in ordered:
-        promising = detection.evidence[h.label] > (least if len(fitted) >= FEWEST else min(least, ANYWAY))
+        promising = promised[h.label] > (least if len(fitted) >= FEWEST else min(least, ANYWAY))
         if promising and (tries[h.name] < TRIES if h.name in fitted and _valleys(h) else h.name not in fitted and len(fitted) < FINALISTS):
             refit(h)
             tries[h.name] += 1
@@ -72,7 +71,7 @@ def finalists(
         for h in (*twins[:MOST_TWINS], *turned):
             if h.name not in fitted:
                 refit(h)
-    return _weighed(problem, list(_retried(problem, detection, fitted, still if chosen else None, stands.evidence).values()), stands)
+    return _weighed(problem, list(_retried(problem, promised, fitted, still if chosen else None, stands.evidence).values()), stands)
 
 
 def _valleys(h: Hypothesis) -> bool:
@@ -81,12 +80,12 @@ def _valleys(h: Hypothesis) -> bool:
 
 
 def _retried(
-    problem: Problem, detection: Detection, fitted: dict[str, tuple[Hypothesis, Confirmed]],
+    problem: Problem, promised: Mapping[str, float], fitted: dict[str, tuple[Hypothesis, Confirmed]],
     still: Callable[[Hypothesis, tuple[int, ...]], Array] | None, ground: float,
 ) -> dict[str, tuple[Hypothesis, Confirmed]]:
     """The fits, those settled with care that promise most and of which a quick fit, whose slopes stand still, kept little; from where it ended, and
     from ``still``, where there is one."""
-    promise = {name: detection.evidence[h.label] for name, (h, _) in fitted.items()}
+    promise = {name: promised[h.label] for name, (h, _) in fitted.items()}
     kept = {name: quick.evidence - ground for name, (_, quick) in fitted.items()}
     least = HOPEFUL * max(kept.values(), default=0.0)
     short = sorted((name for name in fitted if kept[name] < PROMISED * promise[name] and promise[name] >= least), key=lambda name: -promise[name])

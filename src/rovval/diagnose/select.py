@@ -112,14 +112,27 @@ def _round(problem: Problem, library: list[Hypothesis], open_now: list[Hypothesi
     most, start = detection.evidence[detection.best], None if named else began(problem, data, open_now)
     if most < PROMISING * LEAST_EVIDENCE or (detection.p_value(detection.best) > FALSE_ALARM and most < PLAIN):
         return _Round(detection, [], [], (), start)
-    weighed = finalists(problem, data, open_now, detection, stands, chosen)
+    one, tried = _settled(problem, data, open_now, detection, named, stands, start)
+    rest = [h for h in open_now if h.name not in tried]
+    if one.able or named or max((detection.evidence[h.label] for h in rest), default=0.0) < LEAST_EVIDENCE:
+        return one
+    other, _ = _settled(problem, data, rest, detection, named, stands, start)  # which something had kept out that promised much and keeps nothing
+    return replace(other, told=tuple(sorted((*one.told, *other.told), key=lambda row: -row[1])))
+
+
+def _settled(
+    problem: Problem, data: Products, library: list[Hypothesis], detection: Detection, named: list[Named], stands: Ground, start: Beginning | None
+) -> tuple[_Round, set[str]]:
+    """The best of a library settled by re-simulation, and which of them may be added; names of those that were settled."""
+    weighed = finalists(problem, data, library, detection.evidence, stands, named[-1].fitted.slots if named else ())
+    tried = {r.hypothesis.name for r in weighed}
     able = admissible(problem, sharpened(problem, admissible(problem, weighed), stands))
     told = tuple((r.hypothesis.name, r.evidence, r.gain) for r in able or weighed)
     best = [r for r in able if worthy(r, alone=not named)]
     if best:
-        return _Round(detection, best, able, told, start)
+        return _Round(detection, best, able, told, start), tried
     waiting = _waiting(problem, weighed, stands, sum(n.evidence for n in named))
-    return _Round(detection, waiting, waiting, told, start)
+    return _Round(detection, waiting, waiting, told, start), tried
 
 
 def _waiting(problem: Problem, weighed: list[Rival], stands: Ground, evidence: float) -> list[Rival]:

@@ -137,9 +137,11 @@ def _next(document: dict[str, Any]) -> str:
 
 
 def _log(document: dict[str, Any]) -> str:
-    """What of the log is no measurement; of several logs, of how many."""
+    """What of the log is no measurement, of several logs, of how many; and in how many windows nothing was compared."""
     found: dict[tuple[str, str], list[str]] = {}
     for row in document.get("log") or ():
         found.setdefault((row["channel"], row["finding"]), []).append(row["detail"])
     said = [f"{channel} {details[0]}" + (f" (and in {len(details) - 1} more)" if len(details) > 1 else "") for (channel, _), details in found.items()]
+    if stopped := document.get("windows_stopped") or 0:
+        said.append(f"{stopped} of {document['windows']} windows, in which the simulation of the vehicle as it is filed stops, were left out")
     return f"Of the log: {'; '.join(said)}." if said else ""
