@@ -195,9 +195,17 @@ def test_a_channel_that_never_changes_is_no_measurement():
     ],
 )  # fmt: skip
 def test_what_is_large_or_has_its_datum_in_the_log_is_found(tmp_path: Path, planted, name):
-    """A loss or a dead band beyond what is usual, and a change with depth about a depth that the log goes through; independent plant."""
+    """A loss or a dead band beyond what is usual, and a change with depth about a depth that the log goes through; independent plant. The dead band there
+    is of low flow: above it nothing is missing, which no gain of all thrusters is to make up for."""
     document = diagnose([foreign(tmp_path, planted, 41, 160.0, 0.03)], merlin()).document
     assert name in document["causes"][0]["group"][:2], document["sentence"]
+    assert "rpm_scale" not in {c["effect"] for c in document["causes"]}
+
+
+def test_propellers_that_are_all_of_one_hand_are_found_where_the_file_has_them_in_pairs(tmp_path: Path):
+    document = diagnose([bluerov2(tmp_path, "hand.csv", 12, 160.0, 0.03, ("propeller_torque", "", 1.5))], load("bluerov2_heavy")).document
+    (cause,) = document["causes"]
+    assert cause["effect"] == "propeller_torque" and cause["parameters"]["common"]["value"] < -0.02, document["sentence"]
 
 
 def test_a_change_with_depth_begins_at_depths_of_the_log():

@@ -11,6 +11,7 @@ import pytest
 import plant_cases as cases
 from rovval import effects
 from rovval.channels import AXES, CHANNELS
+from rovval.effects import thruster_deadband
 from rovval.frames import wrap
 from rovval.plant import Inputs, Plant, compose
 from rovval.plant.sensors import Log, observe
@@ -154,3 +155,14 @@ def test_the_true_heading_is_found_at_the_corners_of_every_deviation_card():
     shown = psi + compass._deviation(psi, p)
     _, eta = compass.unobserve(np.zeros((n, 6)), np.concatenate([np.zeros((n, 5)), shown], axis=1), p)
     np.testing.assert_allclose(eta[:, 5:], psi, atol=1e-12)
+
+
+def test_what_a_dead_band_takes_is_made_up_beyond_it_and_no_more():
+    """A band of the drive takes its width all along; one of low flow is caught up with at 1 + 1 / catch widths, and never gives more than there is."""
+    n = np.linspace(-10.0, 10.0, 401)
+    drive, flow = thruster_deadband.acting(2.0, 0.0, n), thruster_deadband.acting(2.0, 0.5, n)
+    np.testing.assert_allclose(drive, np.sign(n) * np.maximum(np.abs(n) - 2.0, 0.0), atol=1e-12)
+    inside, beyond = np.abs(n) <= 2.0, np.abs(n) >= 6.0
+    assert (flow[inside] == 0.0).all() and np.abs(flow[beyond] - n[beyond]).max() < 1e-12
+    assert (np.abs(flow) <= np.abs(n) + 1e-12).all() and (np.abs(flow) >= np.abs(drive) - 1e-12).all()
+    np.testing.assert_array_equal(thruster_deadband.acting(0.0, 0.0, n), n)

@@ -75,8 +75,11 @@ def test_a_null_effect_changes_nothing_to_the_last_bit():
 
 
 def test_every_slot_does_something():
-    """No parameter is declared and then forgotten: with its companions away from null, each one alters the motion."""
-    plant = Plant(cases.merlin())
+    """No parameter is declared and then forgotten: with its companions away from null, each one alters the motion (of a vehicle whose propellers are
+    not all of one hand)."""
+    merlin = cases.merlin()
+    first, *others = merlin.thruster
+    plant = Plant(merlin.model_copy(update={"thruster": (first.model_copy(update={"handedness": -first.handedness}), *others)}))
     rng = np.random.default_rng(6)
     inputs = cases.random_inputs(rng, plant)
     base = np.array([min(max(s.parameter.null + s.parameter.typical, s.parameter.low), s.parameter.high) for s in plant.slots])

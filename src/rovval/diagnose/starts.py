@@ -20,6 +20,7 @@ from rovval.plant import Plant
 ONSETS = 9  # starting points for an onset, evenly inside the log
 FAR = {  # typical sizes of starting points away from the null value (chosen)
     "cg_offset": (-5.0, -2.0, 2.0, 5.0), "time_offset": (-8.0, -4.0, 4.0, 8.0), "thrust_lag": (3.0,), "velocity_filter_lag": (3.0,),
+    "clock_drift": (-14.0, -6.0, 6.0, 14.0),  # clocks that are a second or two apart in the end
 }  # fmt: skip
 LEVER = 0.7  # of the furthest thruster's distance: where a force may act (chosen)
 DEPTHS = (0.25, 0.5, 0.75)  # quantiles of a log's depth where what changes with depth may have its datum (chosen)
@@ -39,7 +40,7 @@ def starts(
         far = _far(plant, name, effect, slots, next_id)
         return [*_near(plant, name, effect, slots), *_alone(plant, name, effect, slots), *far, *_levers(plant, name, effect, slots, next_id + len(far))]
     named = {plant.slots[s].parameter.name: s for s in slots}
-    own = tuple(s for s in slots if s not in grids) or (-1,)
+    own = tuple(s for s in slots if s not in grids and plant.slots[s].parameter.name not in effect.refines) or (-1,)
     if effect.where:
         own, grids = (-1,), grids | {slots[0]: tuple(size * plant.slots[slots[0]].parameter.typical for size in CAUGHT)}
     points, most = [dict(zip(grids, point, strict=True)) for point in product(*grids.values())], MOST_STARTS * (3 if own == (-1,) else 1)

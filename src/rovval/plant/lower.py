@@ -131,8 +131,7 @@ def pack(lowered: Lowered, spec: compose.Spec, dt: float, substeps: int) -> Arra
     put(where.first["shift"], np.stack([lanes.shift / dt, lanes.drift / dt], axis=1))
     put(where.first["jet"], np.concatenate([lanes.wake, lanes.side[:, None]], axis=1))
     position = np.array([t.position for t in lanes.vehicle.thruster])
-    hand = np.array([t.handedness for t in lanes.vehicle.thruster], dtype=float)
-    moment = np.cross(position, lanes.direction) + (lanes.torque_arm[:, None] * hand)[..., None] * lanes.direction
+    moment = np.cross(position, lanes.direction) + lanes.torque_arm[..., None] * lanes.direction
     thruster = np.zeros((size, k, where.stride))
     thruster[..., 0], thruster[..., 1] = lanes.k_pos, lanes.k_neg
     thruster[..., 2:5], thruster[..., 5:8] = lanes.direction, moment

@@ -41,7 +41,6 @@ class Run:
     def __post_init__(self) -> None:
         vehicle = self.plant.vehicle
         self.place = np.array([t.position for t in vehicle.thruster])
-        self.hand = np.array([t.handedness for t in vehicle.thruster], dtype=float)
         self.jets, self.side = geometry.jets(vehicle), geometry.hull_side(vehicle)
 
 
