@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import functools
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +14,7 @@ from diagnose_case import bare, merlin, own
 from rovval import vehicle
 from rovval.channels import AXES
 from rovval.data import Run
-from rovval.diagnose import diagnose
+from rovval.diagnose import diagnose, verdict
 from rovval.diagnose.confirm import confirm
 from rovval.diagnose.ground import relief, without_own
 from rovval.diagnose.library import hypotheses
@@ -27,6 +29,7 @@ from rovval.diagnose.steadied import discount, gains, loop_gain, loosened
 from rovval.diagnose.stretches import cut, cut_all
 from rovval.diagnose.tolerance import slop_prior
 from rovval.diagnose.unknown import Forces, forces
+from rovval.diagnose.weigh import Weighed
 from rovval.plant import Plant
 from rovval.vehicle.model import allocation
 
@@ -184,6 +187,18 @@ def test_one_force_alone_is_worth_what_it_is_with_the_others_held():
     assert beside.alone(["surge"]) == pytest.approx(one_by_one["surge"]) == pytest.approx(beside.alone())
     assert beside.alone(["sway", "yaw"]) == pytest.approx(max(one_by_one["sway"], one_by_one["yaw"], 0.0))
     assert beside.alone() > beside.evidence(), "many that gain nothing cost more than the one gains"
+
+
+@pytest.mark.parametrize(("strain", "stands"), [(4.1, True), (5.7, False)])
+def test_what_stands_without_an_unsteady_cause_leaves_the_file_within_its_tolerance(monkeypatch: pytest.MonkeyPatch, strain: float, stands: bool):
+    """Else what went had taken up the strain, and something else is there."""
+    named = [SimpleNamespace(hypothesis=SimpleNamespace(name=name)) for name in ("crossflow_loss", "voltage_sag")]
+    selection: Any = SimpleNamespace(named=named, final=object())
+    asked: Any = Weighed(400.0, 100.0, 0.0, 4.0, True, False, False, False, ("voltage_sag",), None)  # type: ignore[arg-type]
+    monkeypatch.setattr("rovval.diagnose.verdict._only", lambda *_: selection)
+    monkeypatch.setattr("rovval.diagnose.verdict.weigh", lambda *_: replace(asked, strain=strain, unsteady=()))
+    _, again = verdict._steady(None, selection, asked, None, [])  # type: ignore[arg-type]
+    assert again.least_bad is not stands and again.remains and again.unsteady == ("voltage_sag",)
 
 
 def test_a_coefficient_does_not_hide_behind_its_own_tolerance():
