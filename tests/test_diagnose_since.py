@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
-from diagnose_case import LIBRARY, merlin
+from diagnose_case import LIBRARY, merlin, own
 from rovval import store
 from rovval.blind.log import write_csv
 from rovval.blind.plant import fly
@@ -13,9 +16,12 @@ from rovval.blind.spec import Planted
 from rovval.data import Run
 from rovval.diagnose import diagnose
 from rovval.diagnose.contest import Prior
+from rovval.diagnose.finding import find
 from rovval.diagnose.products import Products
-from rovval.diagnose.since import _explained, _Part, _worth
+from rovval.diagnose.since import Beginning, _explained, _Part, _worth
+from rovval.diagnose.stretches import Stretches, cut_all
 from rovval.diagnose.words import since
+from rovval.errors import BadInput
 
 BEGINS = 120.0
 
@@ -58,3 +64,21 @@ def test_the_windows_before_deny_what_they_do_not_hold() -> None:
     assert size == pytest.approx([2.0], abs=0.05) and evidence > 300.0
     assert _worth(late, at, size) > 300.0 and _worth(early, at, size) < -300.0
     assert _explained(early, at, wide, 1.0)[0] < 0.0
+
+
+def test_a_part_that_cannot_be_simulated_leaves_the_answer_of_the_whole(monkeypatch: pytest.MonkeyPatch):
+    parts, _ = cut_all([own((), 5, 100.0)], merlin(), "fossen", 10.0)
+    whole: Any = SimpleNamespace(
+        selection=SimpleNamespace(began=Beginning(40.0, 500.0), rounds=()), judgement=SimpleNamespace(named=(), causes=0.0)
+    )
+    asked = list[int]()
+
+    def searched(some: tuple[Stretches, ...], *_: Any) -> Any:
+        asked.append(some[0].count)
+        if len(asked) > 1:
+            raise BadInput("too few windows can be simulated", "")
+        return whole
+
+    monkeypatch.setattr("rovval.diagnose.finding._searched", searched)
+    assert find(parts, (), 0.05, 0, lambda *_: None) is whole
+    assert asked == [parts[0].count, int((parts[0].start * parts[0].run.dt >= 40.0).sum())]
