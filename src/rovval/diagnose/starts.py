@@ -20,7 +20,6 @@ from rovval.plant import Plant
 ONSETS = 9  # starting points for an onset, evenly inside the log
 FAR = {  # typical sizes of starting points away from the null value (chosen)
     "cg_offset": (-5.0, -2.0, 2.0, 5.0), "time_offset": (-8.0, -4.0, 4.0, 8.0), "thrust_lag": (3.0,), "velocity_filter_lag": (3.0,),
-    "clock_drift": (-14.0, -6.0, 6.0, 14.0),  # clocks that are a second or two apart in the end
 }  # fmt: skip
 LEVER = 0.7  # of the furthest thruster's distance: where a force may act (chosen)
 DEPTHS = (0.25, 0.5, 0.75)  # quantiles of a log's depth where what changes with depth may have its datum (chosen)
