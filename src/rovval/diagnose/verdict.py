@@ -78,8 +78,8 @@ def _steady(problem: Problem, selection: Selection, weighed: Weighed, general: F
     selection = _only(problem, selection, kept)
     assert selection.final is not None
     again = weigh(problem, selection, selection.final, general, before)
-    alone = again.least_bad or bool(again.unsteady) or again.strain > STRAINED  # what went took up the strain: another cause is there
-    return selection, replace(again, remains=True, least_bad=alone, unsteady=weighed.unsteady)
+    least_bad = again.least_bad or bool(again.unsteady) or again.strain > STRAINED  # what went took up the strain: another cause is there
+    return selection, replace(again, remains=True, least_bad=least_bad, unsteady=weighed.unsteady)
 
 
 def _only(problem: Problem, selection: Selection, kept: tuple[Named, ...]) -> Selection:

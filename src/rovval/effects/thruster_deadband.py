@@ -16,7 +16,7 @@ EFFECT = Effect(
     "is missing at the edge of the band is made up beyond it.",
     parameters=(
         Parameter("width", "rev/s", 0.0, 60.0, 0.0, 2.5, "0 to 12 % of full command; T200: 300 rpm (diagnosis.md A3); searched to full speed", "speed"),
-        Parameter("catch", "1", 0.0, 9.0, 0.0, 1.0, "0: a dead band of the drive, all along; else one of low flow, caught up with at 1 + 1 / catch widths"),
+        Parameter("catch", "1", 0.0, 30.0, 0.0, 1.0, "0: a dead band of the drive, all along; else one of low flow, caught up with at 1 + 1 / catch widths"),
     ),
     signature="small commands do nothing: hunting about a hover, weak answers to small steps",
     confused_with=("rpm_scale", "linear_drag", "reverse_asymmetry"),
