@@ -21,6 +21,7 @@ from rovval.diagnose.select import select
 from rovval.diagnose.separate import RELIEF, Rival, denied
 from rovval.diagnose.stretches import cut_all
 from rovval.diagnose.together import LEAST_GAIN, worthy
+from rovval.diagnose.verdict import COMPANY
 from rovval.diagnose.wavering import SHARES, _varies, wavering
 
 
@@ -34,6 +35,8 @@ def test_a_second_cause_does_not_lead_the_first_away():
     """A step of all parameters at once takes the waves out of step, and a list beside them would seem to be worth nothing."""
     document = diagnose([own(("waves:amplitude=1.2,period=6.2,direction=-2,phase=0.4", "cg_offset:x=-0.012"), 5, 240.0)], merlin()).document
     assert {c["effect"] for c in document["causes"]} == {"waves", "cg_offset"}, document["sentence"]
+    first, second = sorted(document["causes"], key=lambda c: -c["evidence"])
+    assert second["probability"] <= COMPANY < first["probability"], "a further name is less sure"
 
 
 def test_a_cause_that_healthy_coefficients_hide_is_found_beside_them():
