@@ -26,7 +26,7 @@ from rovval.diagnose.wavering import drifting, wavering
 
 BETTER = 1.0  # of a cause's evidence: a generic force that has more is nearer to the truth (chosen)
 FORMLESS = 20.0  # twice the log Bayes factor of what is beside a cause, from which it is more than the form of an equation (chosen)
-LONE, LEFT = 75.0, 0.15  # the same of a single force beside, and its share of a cause's evidence (opened sets: of 6 beyond both 1 right; a real log 61)
+LONE, LEFT = 75.0, 0.15  # the same of a single force beside, and its share of a cause's evidence (opened sets: the 5 beyond both were wrong; a right one 61)
 REAL = 100.0  # twice the log Bayes factor of a generic force from which it is not a healthy vehicle's form (tuning set)
 HOLDS = 0.02  # of what is left: a generic force that closes less on held-out windows is a fit to these windows (chosen)
 REMAINS = 0.10  # of a cause's evidence: less left over is form, not another cause
