@@ -300,7 +300,7 @@ def test_what_the_finalists_kept_out_is_tried_where_none_of_them_stands(monkeypa
         bogus = [h for h in hypotheses if h.label == "linear_drag[yaw]"]
         return finalists(problem, data, bogus, {h.label: 50.0 for h in bogus}, *rest)
 
-    monkeypatch.setattr("rovval.diagnose.select.finalists", settled)
+    monkeypatch.setattr("rovval.diagnose.round.finalists", settled)
     found = select(p, library, 0, lambda *_: None)
     assert [n.hypothesis.name for n in found.named] == ["buoyancy_error"]
     assert asked[0] - asked[1] == {"linear_drag[yaw]"}, "what was settled is not settled again"

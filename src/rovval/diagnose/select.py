@@ -1,6 +1,6 @@
 """Which effects: forward selection with joint refit, each step detected on top of slop, named by held-out re-simulation.
 
-A round asks three questions. Is there anything beyond calibration slop (`detect`)? Which hypotheses, refitted by re-simulation, do best on
+A round (`round`) asks three questions. Is there anything beyond calibration slop (`detect`)? Which hypotheses, refitted by re-simulation, do best on
 windows that they were not fitted on (`confirm`)? Which others does this log not tell from the best (`separate`)? It stops when a gain
 is not real or too small to matter; an effect that later ones make needless is dropped again. In the end the causes are weighed beside each
 other (`together`), and where one falls the search goes on without it.
@@ -13,30 +13,23 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rovval.diagnose.admissible import admissible, possible, simplest
+from rovval.diagnose.admissible import simplest
 from rovval.diagnose.confirm import Confirmed, confirm, roughly
-from rovval.diagnose.contest import Prior, Ring, contest, fit
-from rovval.diagnose.detect import Detection, detect
-from rovval.diagnose.finalists import finalists, freed, prior_of, sharpened
-from rovval.diagnose.ground import Ground, bare, with_causes
+from rovval.diagnose.contest import Prior, Ring, contest
+from rovval.diagnose.finalists import prior_of
 from rovval.diagnose.hypothesis import Hypothesis
 from rovval.diagnose.library import retuned
 from rovval.diagnose.point import Point
-from rovval.diagnose.problem import Problem, at, columns_of
-from rovval.diagnose.products import Products
-from rovval.diagnose.separate import STRONG, Rival, group
+from rovval.diagnose.problem import Problem
+from rovval.diagnose.round import Round, search
+from rovval.diagnose.separate import group
 from rovval.diagnose.settle import healthy_point, resettled
-from rovval.diagnose.since import Beginning, began
-from rovval.diagnose.together import LEAST_EVIDENCE, Named, together, worthy
+from rovval.diagnose.since import Beginning
+from rovval.diagnose.together import Named, together
 
 MOST = 3  # effects at once
 ROUNDS = 5  # of the search: an effect that later ones make needless leaves its place
-FALSE_ALARM = 0.05  # family-wise, over the whole library
-PLAIN = 20.0  # twice the log Bayes factor that needs no p-value: where a strong effect is left of the log, null draws hold some of it
 NEEDLESS = 6.0  # twice the log Bayes factor below which an effect is dropped again (Kass & Raftery 1995: positive evidence)
-PROMISING = 0.5  # of `LEAST_EVIDENCE`, in the linearised model: less is not re-simulated
-REMAINS = 0.1  # share of the evidence of what stands from which what closes little by itself may wait for another, if it is strong (chosen)
-CANDIDATES = 3  # that are settled to find the one that waits
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,11 +54,11 @@ def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Cal
     healthy = healthy_point(problem)
     tuned = retuned(problem, library, healthy)
     named, spent = list[Named](), set[str]()
-    rounds = list[_Round]()
+    rounds = list[Round]()
     for number in range(ROUNDS):
         progress(f"screening {len(tuned)} hypotheses, round {number + 1}", 0.3 + 0.1 * number)
         open_now = [h for h in tuned if h.name not in {n.hypothesis.name for n in named} | spent]
-        rounds.append(_round(problem, tuned, open_now, named, healthy, seed + number))
+        rounds.append(search(problem, tuned, open_now, named, healthy, seed + number))
         if rounds[-1].able:
             named = _pruned(problem, [*named, _found(problem, rounds[-1], seed)])
             if len(named) < MOST:
@@ -91,60 +84,7 @@ def _fairer(problem: Problem, healthy: Point, named: list[Named]) -> Point:
     return resettled(problem, healthy, named[-1].fitted.point, named[-1].fitted.slots) if named else healthy
 
 
-@dataclass(frozen=True, slots=True)
-class _Round:
-    """The detection of a round, the finalists that may be added, all that could be the cause, and (name, evidence, held-out gain) of all
-    that were weighed; in the first, from when on something is at work."""
-
-    detection: Detection
-    able: list[Rival]
-    rivals: list[Rival]
-    told: tuple[tuple[str, float, float], ...]
-    began: Beginning | None
-
-
-def _round(problem: Problem, library: list[Hypothesis], open_now: list[Hypothesis], named: list[Named], healthy: Point, seed: int) -> _Round:
-    """Is there anything beyond what stands, and which of the open hypotheses may be added to it?"""
-    chosen = named[-1].fitted.slots if named else ()
-    stands = with_causes(named[-1].fitted) if named else bare(problem, healthy)
-    data = _bank(problem, library, stands.point)
-    detection = _detect(problem, data, open_now, chosen, seed)
-    most, start = detection.evidence[detection.best], None if named else began(problem, data, open_now)
-    if most < PROMISING * LEAST_EVIDENCE or (detection.p_value(detection.best) > FALSE_ALARM and most < PLAIN):
-        return _Round(detection, [], [], (), start)
-    one, tried = _settled(problem, data, open_now, detection, named, stands, start)
-    rest = [h for h in open_now if h.name not in tried]
-    if one.able or named or max((detection.evidence[h.label] for h in rest), default=0.0) < LEAST_EVIDENCE:
-        return one
-    other, _ = _settled(problem, data, rest, detection, named, stands, start)  # which something had kept out that promised much and keeps nothing
-    return replace(other, told=tuple(sorted((*one.told, *other.told), key=lambda row: -row[1])))
-
-
-def _settled(
-    problem: Problem, data: Products, library: list[Hypothesis], detection: Detection, named: list[Named], stands: Ground, start: Beginning | None
-) -> tuple[_Round, set[str]]:
-    """The best of a library settled by re-simulation, and which of them may be added; names of those that were settled."""
-    weighed = finalists(problem, data, library, detection.evidence, stands, named[-1].fitted.slots if named else ())
-    tried = {r.hypothesis.name for r in weighed}
-    able = admissible(problem, sharpened(problem, admissible(problem, weighed), stands))
-    told = tuple((r.hypothesis.name, r.evidence, r.gain) for r in able or weighed)
-    best = [r for r in able if worthy(r, alone=not named)]
-    if best:
-        return _Round(detection, best, able, told, start), tried
-    waiting = _waiting(problem, weighed, stands, sum(n.evidence for n in named))
-    return _Round(detection, waiting, waiting, told, start), tried
-
-
-def _waiting(problem: Problem, weighed: list[Rival], stands: Ground, evidence: float) -> list[Rival]:
-    """The finalist with the most evidence, which closes little by itself, as long as others are still to be found: of two causes that
-    offset each other, each alone opens the gap. Whether it is worth its name is asked again in the end (`together`). Of causes that stand with so
-    much ``evidence``, the form of the equations alone leaves a share."""
-    least = max(STRONG, REMAINS * evidence)
-    rivals = [r for r in possible(problem, weighed) if r.evidence >= least][:CANDIDATES]
-    return [r for r in possible(problem, sharpened(problem, rivals, stands)) if r.evidence >= least][:1] if rivals else []
-
-
-def _found(problem: Problem, one: _Round, seed: int) -> Named:
+def _found(problem: Problem, one: Round, seed: int) -> Named:
     """The best of those that may be added, with those that this log does not tell from it."""
     best = simplest(problem, one.able)
     members = group(problem, one.rivals, seed)
@@ -171,23 +111,6 @@ def _pruned(problem: Problem, named: list[Named]) -> list[Named]:
     return named
 
 
-def _bank(problem: Problem, library: list[Hypothesis], base: Point) -> Products:
-    """Linearise everything about the point reached."""
-    columns, directions = columns_of(library, problem.slop)
-    data = at(problem, base.beta, tuple(sorted({*columns, *base.columns})), directions)
-    offset = np.array([base.beta[c] - problem.origin[c] if c < len(base.beta) else 0.0 for c in data.columns])
-    return replace(data, offset=offset)
-
-
-def _detect(problem: Problem, data: Products, library: list[Hypothesis], chosen: tuple[int, ...], seed: int) -> Detection:
-    """Evidence of each hypothesis on top of slop and of what was chosen before."""
-    slots = [c for c in data.columns if c < len(problem.plant.slots)]
-    typical = Prior({c: problem.plant.slots[c].parameter.typical for c in slots})
-    everything = fit(Ring.of(data, problem.folds), typical, problem.inflation).step
-    base = problem.slop.widened(freed(problem, chosen))
-    return detect(data, base, problem.slop, {h.label: prior_of(problem, h) for h in library}, problem.inflation, everything, seed)
-
-
 def _ranking(
     problem: Problem, library: list[Hypothesis], named: list[Named], rounds: Sequence[tuple[tuple[str, float, float], ...]]
 ) -> tuple[tuple[str, float], ...]:
@@ -200,5 +123,3 @@ def _ranking(
     share |= {name: gain for name, _, gain in (rounds[0] if rounds else ())}
     leading = dict.fromkeys([n.hypothesis.name for n in named] + [name for name, _, _ in (rounds[0] if rounds else ())])
     return tuple((name, share[name]) for name in (*leading, *sorted(share.keys() - leading.keys(), key=lambda n: -share[n])))
-
-

@@ -9,7 +9,8 @@ from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed
 from rovval.diagnose.left import left
 from rovval.diagnose.problem import Problem
-from rovval.diagnose.select import FALSE_ALARM, Selection
+from rovval.diagnose.round import FALSE_ALARM
+from rovval.diagnose.select import Selection
 from rovval.diagnose.together import Named, jointly
 from rovval.diagnose.tolerance import STRAINED
 from rovval.diagnose.unknown import Forces, bare_forces, forces
