@@ -206,6 +206,7 @@ ALIASES = [
     (planted("time_offset", "attitude", delay_s=0.4), cause("time_offset[attitude]"), True),
     (planted("time_offset", "attitude", delay_s=0.4), cause("time_offset"), False),
     (planted("time_offset", "attitude", delay_s=0.4), cause("velocity_filter_lag"), False),
+    (planted("time_offset", "depth", delay_s=0.4), cause("time_offset[depth]"), True),
     (planted("velocity_filter_lag", None), cause("time_offset"), False),
     (planted("current_constant", None), cause("current_varying"), False),
 ]

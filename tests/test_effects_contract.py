@@ -84,6 +84,7 @@ def test_a_window_reproduces_the_log_that_its_own_effects_made():
         ("dvl_misalignment.yaw", 0.2, 1e-9), ("dvl_lever_arm.x", 0.5, 1e-9), ("compass_deviation.sine", 0.2, 1e-9), ("attitude_bias.phi", 0.05, 1e-9),
         ("time_offset.tau", 0.25, 1e-9), ("thrust_lag.tau", 0.3, 1e-9), ("gyro_bias.r", 0.02, 1e-9), ("velocity_filter_lag.tau", 0.3, 0.05),
         ("time_offset[velocity].delay", 0.3, 0.05), ("time_offset[attitude].delay", 0.3, 0.05),
+        ("time_offset[depth].delay", 0.3, 1e-9),
     ):  # fmt: skip
         beta = plant.null.copy()
         beta[plant.index[key]] = value
@@ -102,7 +103,7 @@ def test_sensors_of_many_lanes_are_those_of_one_lane_at_a_time():
     for key, value, lanes in (
         ("gyro_bias.r", 0.02, slice(None)), ("dvl_lever_arm.x", 0.5, [0, 2, 5]), ("dvl_misalignment.yaw", 0.2, [1, 2, 3]), ("compass_deviation.sine", 0.2, [4]),
         ("velocity_filter_lag.tau", 0.3, [2, 3]), ("time_offset[velocity].delay", -0.25, [0, 3]),
-        ("time_offset[attitude].delay", 0.15, [3, 5]), ("time_offset.tau", 0.2, [1]),
+        ("time_offset[attitude].delay", 0.15, [3, 5]), ("time_offset[depth].delay", 0.2, [0, 3]), ("time_offset.tau", 0.2, [1]),
     ):  # fmt: skip
         beta[lanes, plant.index[key]] = value
     before = motion.nu.copy(), motion.eta.copy()
@@ -119,7 +120,7 @@ def test_sensors_of_many_lanes_are_those_of_one_lane_at_a_time():
 def test_a_delay_of_one_sensor_leaves_all_else_and_is_a_hypothesis_of_its_own():
     """From a steady start (no acceleration to begin with) the log is the true motion, that sensor's part that much later; early ones too."""
     plant = Plant(cases.merlin())
-    assert [len(plant.hypotheses[f"time_offset{which}"]) for which in ("", "[velocity]", "[attitude]")] == [1, 1, 1]
+    assert [len(plant.hypotheses[f"time_offset{which}"]) for which in ("", "[velocity]", "[attitude]", "[depth]")] == [1, 1, 1, 1]
     still = cases.changed(plant.vehicle, volume=plant.vehicle.body.mass / plant.vehicle.water.density)
     plant = Plant(still)
     speed = np.where(np.arange(100)[:, None] < 20, 0.0, np.linspace(-3.0, 3.0, 7))
@@ -127,7 +128,7 @@ def test_a_delay_of_one_sensor_leaves_all_else_and_is_a_hypothesis_of_its_own():
     true = plant.simulate(inputs, first, 90, zero, zero, plant.null[None])
     whole = np.concatenate([true.nu[0], true.eta[0, :, :3], np.unwrap(true.eta[0, :, 3:], axis=0)], axis=1)
     assert np.abs(whole[:, 11]).max() > np.pi / 2 and np.ptp(whole[:, :6], axis=0).min() > 1e-3
-    for which, part in (("velocity", (0, 1, 2)), ("attitude", (3, 4, 5, 9, 10, 11))):
+    for which, part in (("velocity", (0, 1, 2)), ("attitude", (3, 4, 5, 9, 10, 11)), ("depth", (8,))):
         for delay in (0.25, -0.25):
             beta = plant.null.copy()
             beta[plant.index[f"time_offset[{which}].delay"]] = delay

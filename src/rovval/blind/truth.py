@@ -31,7 +31,7 @@ def name(effect: Row) -> str:
     """The library's hypothesis for a planted effect; a foreign one keeps its own name, which no hypothesis has."""
     if effect["name"] == "inertia_error" and effect["target"] == "surge":
         return "added_mass[surge]"  # see `alias`
-    apart = effect["name"] in TARGETED or (effect["name"] == "time_offset" and effect["target"] in ("velocity", "attitude"))
+    apart = effect["name"] in TARGETED or (effect["name"] == "time_offset" and effect["target"] in ("velocity", "attitude", "depth"))
     return f"{effect['name']}[{effect['target']}]" if apart else str(effect["name"])
 
 
