@@ -335,3 +335,19 @@ def test_thrust_under_way_is_the_file_s_open_water_curve():
         said = body.under_way(turn, [speed, 0.0, 0.0, 0.0, 0.0, 0.0])[unit]
         assert said == pytest.approx(np.polyval(curve, j) / curve[-1], rel=1e-6)
     assert not Plant(nominal(read_hull(LIBRARY / "merlin.toml")), [], scales(hull), Given(np.zeros(7)), 1e6).advancing
+
+
+@pytest.mark.parametrize("name", ["merlin", "bluerov2_heavy"])
+def test_what_is_scaled_by_force_stays_what_there_is(name):
+    """Of a large severity: the step of density is no brine's, and the nodes of a tether weigh what a line of ordinary thickness weighs."""
+    hull = read_hull(vehicle(name))
+    scale = scales(hull)
+    setting = draw_setting(hull, scale, 5, DURATION_S)
+    layer, line = (build(Planted(effect, severity=2.4), hull, scale, setting) for effect in ("density_gradient", "tether_drag"))
+    assert 0.0 < layer.values["half_step_density"] <= 14.0 + 1e-9
+    thick, length = line.values["diameter_m"], line.values["length_m"]
+    assert thick in (0.0076, 0.03) and 50.0 < length < 1000.0
+    drag = 0.5 * hull.density * line.values["normal_drag"] * thick * length * scale.speed**2
+    assert drag == pytest.approx(2.5 * 2.4 * scale.force)
+    in_water = 2.0 * hull.density * math.pi / 4.0 * thick**2 * length  # neutral, and as much again of the water about it
+    assert 5.0 * line.node_mass == pytest.approx(in_water) and in_water < 2.0 * hull.mass

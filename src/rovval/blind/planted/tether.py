@@ -1,7 +1,8 @@
 """The tether as a chain of lumped masses with slack, in the same water as the vehicle.
 
 Nodes carry half of the line on each side; segments pull only when stretched; drag is normal and tangential (Morison, cylinder).
-The stiffness is chosen soft enough for an explicit solver: the line's stretch stays below a per cent or so at working loads.
+The stiffness is chosen soft enough for an explicit solver: the line's stretch stays at some per cent at working loads. A short line that
+drags as much as wanted would be as thick as a barrel: the nodes carry drag and mass of a longer one of ordinary thickness, in bights.
 """
 
 from __future__ import annotations
@@ -17,7 +18,8 @@ from rovval.blind.spec import Array
 SEGMENTS = 5
 NORMAL = 1.2  # drag coefficient of a cylinder across the flow
 TANGENTIAL = 0.02
-PULSE = 14.0  # rad/s, natural frequency of a node on its segments (chosen, see above)
+THICK = {True: 0.03, False: 0.0076}  # m, line of a work-class vehicle (chosen) and of a small one (diagnosis.md T1)
+PULSE = 30.0  # rad/s, natural frequency of a node on its segments (chosen, see above)
 
 
 def paid_out(anchor: Array, place: Array, before: float) -> float:
@@ -37,19 +39,20 @@ class TetherDrag(Effect):
     unit = "the whole line, broadside at working speed, drags 2.5 times the working force; its end feels a share"
 
     def setup(self, plan: Planting) -> None:
-        """Diameter for the wanted drag; masses; anchor."""
+        """Length in bights for the wanted drag; masses; anchor."""
         sc, hull, st = plan.scale, plan.hull, plan.setting
         self.anchor = st.anchor
         self.length = paid_out(st.anchor, np.array([0.0, 0.0, st.depth]), 0.0)
         full = 2.5 * self.s * sc.force
-        self.diameter = full / (0.5 * hull.density * NORMAL * self.length * sc.speed**2)
-        section = math.pi / 4.0 * self.diameter**2
-        self.node_mass = 2.0 * hull.density * section * self.length / SEGMENTS  # line and its added mass, neutral
+        self.diameter = full / (0.5 * hull.density * NORMAL * self.length * sc.speed**2)  # of a line without bights
+        thick = THICK[sc.work_class]
+        bights = self.length * self.diameter / thick
+        self.node_mass = 2.0 * hull.density * math.pi / 4.0 * thick**2 * bights / SEGMENTS  # line and its added mass, neutral
         self.stiffness = self.node_mass * PULSE**2 / 4.0
         self.damping = 0.4 * math.sqrt(self.stiffness * self.node_mass)
         self.rho = hull.density
         self.tie = fairlead(plan)
-        self.values = {"diameter_m": self.diameter, "length_m": self.length}
+        self.values = {"diameter_m": thick, "length_m": bights, "span_m": self.length}
         self.values |= {"normal_drag": NORMAL, "anchor": st.anchor.tolist()}
 
     def start(self, k: Kin) -> Array:

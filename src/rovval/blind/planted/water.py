@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from rovval.blind.effect import RAMP_S, Effect, Flow, Kin, Planting
 from rovval.blind.spec import STEP_S, Array
+
+SALT = 14.0  # kg/m3, half of what sea water is heavier than fresh (1027 - 999): a small vehicle's step would else be that to a brine
 
 
 class _Moving(Effect):
@@ -157,11 +161,12 @@ class DensityGradient(Effect):
     name = "density_gradient"
     least = -9.0
     place = "water"
-    unit = "net buoyancy changes by +-0.15 of the working force across a layer of 3 m"
+    unit = "net buoyancy changes by +-0.15 of the working force across a layer of 3 m, at most as from fresh water to sea water"
 
     def setup(self, plan: Planting) -> None:
         """Half step (N), middle and thickness (m)."""
-        self.step = 0.15 * self.s * plan.scale.force
+        salt = SALT * plan.hull.gravity * plan.hull.volume
+        self.step = float(np.clip(0.15 * self.s * plan.scale.force, -salt, salt))
         self.middle = plan.setting.depth + float(plan.rng.uniform(-1.5, 0.5))
         self.values = {
             "half_step_n": self.step,
