@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 import plant_cases as cases
-from rovval import effects
+from rovval import effects, vehicle
 from rovval.channels import AXES, CHANNELS
 from rovval.effects import thruster_deadband
+from rovval.effects._lanes import jet_on_hull
 from rovval.frames import wrap
 from rovval.plant import Inputs, Plant, compose
 from rovval.plant.sensors import Log, observe
@@ -73,6 +74,14 @@ def test_a_sensor_s_log_starts_where_it_was_measured(name):
     out = plant.simulate(inputs, np.full(5, 10), 20, nu, eta, np.tile(beta, (5, 1)))
     assert np.abs(out.nu[:, 0] - nu).max() < 1e-12
     assert np.abs(np.angle(np.exp(1j * (out.eta[:, 0] - eta)))).max() < 1e-12
+
+
+def test_the_jet_that_meets_the_hull_most_squarely_loses_what_the_effect_says():
+    """Vectored thrusters of a BlueROV2 blow at it when they push out, all alike, the upright ones past it; of a Merlin the upright ones meet it most."""
+    small, large = (jet_on_hull(vehicle.load(n)) for n in ("bluerov2_heavy", "merlin"))
+    assert np.allclose(small, [[1.0, 0.0]] * 4 + [[0.0, 0.0]] * 4)
+    assert large.max() == 1.0 and large[:2].max() == 1.0 and np.all((large[3:].max(axis=1) > 0.6) & (large[3:].max(axis=1) < 0.75))
+    assert np.all(np.minimum(large[:, 0], large[:, 1]) == 0.0)
 
 
 def test_a_window_reproduces_the_log_that_its_own_effects_made():
@@ -142,8 +151,6 @@ def test_a_delay_of_one_sensor_leaves_all_else_and_is_a_hypothesis_of_its_own():
 
 def test_sized_parameters_grow_with_the_vehicle():
     """A buoyancy error of newtons means another thing for 13 kg than for 3 t."""
-    from rovval import vehicle
-
     small, large = (Plant(vehicle.load(n)) for n in ("bluerov2_heavy", "merlin"))
     typical = [p.slots[p.index["buoyancy_error.force"]].parameter.typical for p in (small, large)]
     assert typical[0] == pytest.approx(3.0, rel=1e-3) and typical[1] == pytest.approx(3.0 * 2936 * 9.81 / 132.57, rel=1e-3)

@@ -12,6 +12,7 @@ from rovval.frames import skew
 from rovval.vehicle.model import Vehicle, allocation, inertia, square
 
 Array = NDArray[np.float64]
+PASSES = 0.1  # cosine under which a jet passes the hull by (chosen: 6 degrees, as a jet spreads)
 SECONDS_PER_MINUTE = 60.0  # thrust gains in a vehicle file are N / rpm^2, here N / (rev/s)^2
 
 
@@ -148,11 +149,10 @@ def reference_speed(vehicle: Vehicle) -> float:
 
 
 def jet_on_hull(vehicle: Vehicle) -> Array:
-    """(k, 2): how squarely the jet of each thruster, turning ahead and astern, meets the hull's middle (cosine, 0 if away)."""
-    rows = []
-    for thruster, way in zip(vehicle.thruster, allocation(vehicle)[:3].T, strict=True):
-        place = np.array(thruster.position)
-        length = float(np.linalg.norm(place))
-        cosine = float(place @ way) / length if length > 1e-9 else 0.0
-        rows.append([max(cosine, 0.0), max(-cosine, 0.0)])
-    return np.array(rows)
+    """(k, 2): how squarely the jet of each thruster, turning ahead and astern, meets the hull's middle: the cosine over the largest of the vehicle's
+    jets, 0 of one that leads away or passes by (under `PASSES`)."""
+    place = np.array([thruster.position for thruster in vehicle.thruster])
+    away = np.linalg.norm(place, axis=1)
+    cosine = np.divide(np.einsum("ki,ik->k", place, allocation(vehicle)[:3]), away, out=np.zeros(len(place)), where=away > 1e-9)
+    meets = np.maximum(np.stack([cosine, -cosine], axis=1), 0.0)
+    return np.where(meets < PASSES, 0.0, meets / max(float(meets.max()), PASSES))

@@ -14,7 +14,8 @@ EFFECT = Effect(
     name="hull_interaction",
     title="Thruster and hull interaction",
     place="input",
-    equation="T <- (1 - loss c) T for the sense of rotation whose jet points at the hull's middle, c the cosine of the angle it meets it at; "
+    equation="T <- (1 - loss c) T for the sense of rotation whose jet points at the hull's middle, c the cosine of the angle it meets it at over "
+    "that of the jet that meets it most squarely, which so loses loss (0 under a cosine of 0.1: it passes by); "
     "side force side |T at rest| towards the hull, across the thruster (Coanda; diagnosis.md A9).",
     parameters=(
         Parameter("loss", "1", -0.3, 1.0, 0.0, 0.15, "5 to 30 % (diagnosis.md A9)"),

@@ -73,6 +73,9 @@ class CrossflowLoss(_Inflow):
         return np.asarray(thrust * (1.0 - self.level(k.t) * (1.0 - 1.0 / (1.0 + self.inverse * across))))
 
 
+PASSES = 0.1  # cosine between jet and the way to the middle under which it passes the hull by
+
+
 class HullInteraction(_Inflow):
     """A jet that blows at the hull loses thrust and is bent along it: sign-dependent gain and a side force."""
 
@@ -80,12 +83,13 @@ class HullInteraction(_Inflow):
     unit = "0.35 of the thrust of the jets that hit the hull, and 0.2 of it sideways"
 
     def scale(self) -> None:
-        """Which sign of thrust blows at the middle of the vehicle: the jet goes opposite to the push."""
+        """Which sign of thrust blows at the middle of the vehicle: the jet goes opposite to the push; none of a unit whose jet passes by."""
         inward = np.sum(self.aim * self.at, axis=1)
-        self.hits = np.where(np.abs(inward) < 0.05, 1.0, np.sign(inward))
+        self.hits = np.where(np.abs(inward) < PASSES * np.linalg.norm(self.at, axis=1), 0.0, np.sign(inward))
         side = np.cross(self.aim, np.array([0.0, 0.0, 1.0]))
         flat = np.linalg.norm(side, axis=1) < 0.5
-        side[flat] = np.sign(self.at[flat, 1:2] + 1e-9) * np.array([0.0, 1.0, 0.0])
+        side[flat] = np.array([0.0, 1.0, 0.0])
+        side *= np.where(np.sum(side * self.at, axis=1, keepdims=True) < 0.0, -1.0, 1.0)  # the jet clings to the hull and draws it outward
         self.side = np.hstack([side, np.cross(self.at, side)])
         self.loss, self.bend = min(1.0, 0.35 * self.s), 0.2 * self.s
         self.values = {"loss": self.loss, "side_share": self.bend}
