@@ -16,6 +16,8 @@ from rovval.data import Run
 from rovval.diagnose import diagnose, lanes
 from rovval.diagnose.admissible import _beyond_the_library, simplest
 from rovval.diagnose.breaks import FEWEST, _split
+from rovval.diagnose.caught import Missing
+from rovval.diagnose.caught import _settled as settled_spring
 from rovval.diagnose.confirm import Confirmed, confirm, errors
 from rovval.diagnose.excited import LARGE, LEAST_SIGMA, excited
 from rovval.diagnose.finalists import _half_a_turn_later, finalists, prior_of
@@ -27,9 +29,10 @@ from rovval.diagnose.problem import Problem, columns_of, pose
 from rovval.diagnose.select import select
 from rovval.diagnose.separate import Rival
 from rovval.diagnose.settle import healthy_point, resettled, settle
-from rovval.diagnose.starts import LEVER, MOST_STARTS
+from rovval.diagnose.starts import LEVER
 from rovval.diagnose.stretches import cut_all
 from rovval.diagnose.swings import lines, waves
+from rovval.frames import rotation_from_euler
 from rovval.store import open_run
 from rovval.vehicle import load
 
@@ -315,17 +318,43 @@ def test_a_break_is_where_the_level_steps(at):
     assert _split(noise[: 2 * FEWEST - 1], 0, 2) == []
 
 
-def test_what_is_caught_on_the_way_begins_where_the_vehicle_was():
+def test_what_holds_the_vehicle_begins_where_it_is_said_to():
+    """Until then where the vehicle was in the middle of the log; beyond its bounds nothing begins."""
     parts, _ = cut_all([own((), 5, 200.0)], merlin(), "fossen", 10.0)
-    library, _ = hypotheses(parts, breaks_s=[120.0])
     names = {i: s.parameter.name for i, s in enumerate(parts[0].plant.slots)}
-    starts = [{names[s]: value for s, value in h.at} for h in library if h.name == "tether_snag"]
-    assert {120.0, 115.0, 110.0, 105.0} <= {round(at["onset"], 6) for at in starts} and len(starts) <= 3 * MOST_STARTS
-    run = parts[0].run
-    for at in starts:
-        for place, channel in {"north": "x", "east": "y", "down": "z"}.items():
-            assert at[place] == pytest.approx(float(np.interp(at["onset"] / run.dt, np.arange(len(run)), run.get(channel))))
-    assert 120.0 in {dict(h.at)[h.slots[1]] for h in library if h.name == "thruster_fault_onset[VAC]"}
+
+    def snags(held: list[dict[str, float]]) -> list[dict[str, float]]:
+        library, _ = hypotheses(parts, breaks_s=[120.0], held=held)
+        assert 120.0 in {dict(h.at)[h.slots[1]] for h in library if h.name == "thruster_fault_onset[VAC]"}
+        return [{names[s]: value for s, value in h.at} for h in library if h.name == "tether_snag"]
+
+    run, (somewhere,) = parts[0].run, snags([])
+    assert 60.0 < somewhere["onset"] < 140.0
+    for place, channel in {"north": "x", "east": "y", "down": "z"}.items():
+        assert somewhere[place] == pytest.approx(float(np.interp(somewhere["onset"] / run.dt, np.arange(len(run)), run.get(channel))))
+    spring = {"stiffness": 300.0, "north": 3.0, "east": -2.0, "down": 9.0, "radius": 1.5, "onset": 80.0, "x": -0.5, "z": 0.0}
+    assert snags([spring, spring | {"x": -9.0}]) == [spring, spring | {"x": -2.0}]
+
+
+def test_a_spring_is_found_in_the_forces_that_are_missing():
+    """Forces of a known spring from 60 s on, tied 0.6 m astern, on a vehicle that circles and turns; and none that would have to push."""
+    rng, onset, point, radius, stiffness, tie = np.random.default_rng(3), 60.0, np.array([2.0, -1.0, 6.0]), 1.2, 40.0, np.array([-0.6, 0.0, -0.1])
+    t = np.arange(0.25, 200.0, 0.5).reshape(20, 2, 10)
+    place = np.stack([4.0 * np.sin(t / 17.0), 3.0 * np.cos(t / 11.0), 6.0 + np.sin(t / 29.0)], axis=-1)
+    rotation = rotation_from_euler(np.stack([0.05 * np.sin(t), 0.05 * np.cos(t), t / 23.0], axis=-1))
+    to = point - (place + rotation @ tie)
+    away = np.linalg.norm(to, axis=-1, keepdims=True)
+    pull = np.where(t[..., None] >= onset, stiffness * np.maximum(away - radius, 0.0) * to / away, 0.0)
+    force = np.einsum("whtij,whti->whj", rotation, pull) / t.shape[-1]
+    wrench = np.concatenate([force, np.cross(tie, force)], axis=-1).reshape(20, 12)
+    shape = rng.normal(size=(20, 12, 12))
+    A = shape @ shape.swapaxes(1, 2)
+    lack = Missing(A, np.einsum("wij,wj->wi", A, wrench), t, place, rotation)
+    worth, found = settled_spring(lack, onset, place[6, 0, 0], 1.0)
+    assert worth == pytest.approx(float(np.einsum("wi,wij,wj->", wrench, A, wrench)), rel=0.01)
+    want = {"north": 2.0, "east": -1.0, "down": 6.0, "radius": radius, "stiffness": stiffness, "x": -0.6, "z": -0.1, "onset": onset}
+    assert found == pytest.approx(want, rel=0.1, abs=0.15)
+    assert replace(lack, b=-lack.b).worth(onset, point, radius)[0] == 0.0
 
 
 @pytest.mark.parametrize(("effect", "seed"), [("tether_snag", 8), ("compass_deviation", 6)])

@@ -88,10 +88,10 @@ def pushes(part: Stretches) -> list[tuple[str, Array]]:
     return [(axis, on) for axis in AXES for on in pieces(part)]
 
 
-def pieces(part: Stretches) -> list[Array]:
+def pieces(part: Stretches, count: int = PIECES) -> list[Array]:
     """One in a piece of every window and nothing elsewhere, piece by piece, on the run's grid."""
-    edges = np.linspace(0, part.steps + 1, PIECES + 1).round().astype(int)
-    found = [np.zeros(len(part.run)) for _ in range(PIECES)]
+    edges = np.linspace(0, part.steps + 1, count + 1).round().astype(int)
+    found = [np.zeros(len(part.run)) for _ in range(count)]
     for on, (low, high) in zip(found, pairwise(edges), strict=True):
         on[(part.start[:, None] + np.arange(low, high)).reshape(-1)] = 1.0
     return found

@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 from rovval import effects
 from rovval.diagnose.breaks import breaks
+from rovval.diagnose.caught import caught
 from rovval.diagnose.hypothesis import Hypothesis
 from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem
@@ -18,13 +19,14 @@ NO_PERIODS: Mapping[float | None, Sequence[float]] = MappingProxyType({})
 
 
 def hypotheses(
-    parts: Sequence[Stretches], without: Sequence[str] = (), periods: Mapping[float | None, Sequence[float]] = NO_PERIODS, breaks_s: Sequence[float] = ()
+    parts: Sequence[Stretches], without: Sequence[str] = (), periods: Mapping[float | None, Sequence[float]] = NO_PERIODS, breaks_s: Sequence[float] = (),
+    held: Sequence[Mapping[str, float]] = (),
 ) -> tuple[list[Hypothesis], dict[str, str]]:
     """The competing hypotheses, and those that this log cannot test with the reason.
 
     ``without`` names effects (``inflow_loss``) or hypotheses (``thruster_degraded[HFP]``) to leave out; ``periods`` (s; of waves by the direction
     towards which they run, None for what does not travel) and ``breaks_s`` (s since the first run's start), the most promising first, are where
-    those that swing and those that begin during the log begin.
+    those that swing and those that begin during the log begin; ``held`` where that which holds the vehicle does, by parameter.
     """
     plant, found, untestable = parts[0].plant, list[Hypothesis](), dict[str, str]()
 
@@ -44,13 +46,13 @@ def hypotheses(
                 untestable[slot.key] = f"needs {c}, which this log does not hold"
         slots = tuple(s for s in slots if plant.slots[s].key not in untestable)
         next_id = len(plant.slots) + sum(len(h.directions) for h in found)
-        found.extend(starts(plant, name, effect, slots, parts, next_id, periods, breaks_s))
+        found.extend(starts(plant, name, effect, slots, parts, next_id, periods, breaks_s, held))
     return found, untestable
 
 
 def retuned(problem: Problem, library: list[Hypothesis], point: Point) -> list[Hypothesis]:
     """The library with what swings begun at the periods at which the residual about ``point`` swings most, and what begins during the log
-    where the log begins to err."""
+    where the log begins to err; what holds the vehicle where the forces that are missing lead."""
     kept = {h.name for h in library}
     met = [period for period, _ in lines(problem, point)]
     periods: dict[float | None, Sequence[float]] = {None: met}
@@ -58,5 +60,6 @@ def retuned(problem: Problem, library: list[Hypothesis], point: Point) -> list[H
         p, towards = slot.parameter, effects.load(slot.effect).grid.get("direction", ())
         if p.name == "period" and towards and slot.hypothesis in kept:
             periods |= waves(problem, point, met, (p.low, p.high), towards)
-    fresh, _ = hypotheses(problem.parts, periods=periods, breaks_s=breaks(problem))
+    held = caught(problem) if any(h.effect.where for h in library) else []
+    fresh, _ = hypotheses(problem.parts, periods=periods, breaks_s=breaks(problem), held=held)
     return [h for h in fresh if h.name in kept]

@@ -25,28 +25,40 @@ LEVER = 0.7  # of the furthest thruster's distance: where a force may act (chose
 DEPTHS = (0.25, 0.5, 0.75)  # quantiles of a log's depth where what changes with depth may have its datum (chosen)
 LINES = 3  # periods that an effect begins from
 MOST_STARTS = 12  # of a hypothesis with several such parameters; thrice as many of one whose starts cost a single simulation each
-CAUGHT = (1.0, 5.0)  # typical sizes from which what holds the vehicle begins: no slope leads from nothing to a standstill (chosen)
-BREAKS, SOONER_S = 2, (0.0, 5.0, 10.0, 15.0)  # breaks that an onset begins from, and how long before one what must first be moved away from began
+BREAKS = 2  # that an onset begins from
 
 
 def starts(
     plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], parts: Sequence[Stretches], next_id: int,
-    periods: Mapping[float | None, Sequence[float]], breaks_s: Sequence[float],
+    periods: Mapping[float | None, Sequence[float]], breaks_s: Sequence[float], held: Sequence[Mapping[str, float]],
 ) -> list[Hypothesis]:  # fmt: skip
     """One hypothesis, or one for each starting point of the parameters that linearisation at the null value cannot see."""
+    if effect.where:
+        return _held(plant, name, slots, held or [_somewhere(parts, plant, slots)], next_id)
     grids = _grids(plant, effect, slots, parts, periods.get(None, ()), breaks_s)
     if not grids:
         far = _far(plant, name, effect, slots, next_id)
         return [*_near(plant, name, effect, slots), *_alone(plant, name, effect, slots), *far, *_levers(plant, name, effect, slots, next_id + len(far))]
     named = {plant.slots[s].parameter.name: s for s in slots}
     own = tuple(s for s in slots if s not in grids and plant.slots[s].parameter.name not in effect.refines) or (-1,)
-    if effect.where:
-        own, grids = (-1,), grids | {slots[0]: tuple(size * plant.slots[slots[0]].parameter.typical for size in CAUGHT)}
     points, most = [dict(zip(grids, point, strict=True)) for point in product(*grids.values())], MOST_STARTS * (3 if own == (-1,) else 1)
     chosen = points if len(points) <= most else [points[i] for i in np.linspace(0, len(points) - 1, most).astype(int)]
     chosen = [point | _met(named, point, periods) for point in chosen]
-    begun = [point | (placed(parts, plant, slots, point[named["onset"]]) if effect.where else {}) for point in chosen]
-    return [_begun(plant, f"{name}@{i}", slots, own, tuple(at.items()), next_id + i * len(own)) for i, at in enumerate(begun)]
+    return [_begun(plant, f"{name}@{i}", slots, own, tuple(at.items()), next_id + i * len(own)) for i, at in enumerate(chosen)]
+
+
+def _held(plant: Plant, name: str, slots: tuple[int, ...], springs: Sequence[Mapping[str, float]], next_id: int) -> list[Hypothesis]:
+    """What holds the vehicle from where it seems to, all of it at once: no slope leads from nothing to a standstill."""
+    own = [(slot, plant.slots[slot].parameter) for slot in slots]
+    at = [tuple((slot, float(np.clip(spring[p.name], p.low, p.high))) for slot, p in own if p.name in spring) for spring in springs]
+    return [_begun(plant, f"{name}@{i}", slots, (-1,), one, next_id + i) for i, one in enumerate(at)]
+
+
+def _somewhere(parts: Sequence[Stretches], plant: Plant, slots: tuple[int, ...]) -> dict[str, float]:
+    """Caught where the vehicle was in the middle of the log: it competes, until it is known where something seems to hold it."""
+    first = plant.slots[slots[0]].parameter
+    at = placed(parts, plant, slots, float(parts[0].start[len(parts[0].start) // 2]) * parts[0].run.dt)
+    return {first.name: first.typical} | {plant.slots[slot].parameter.name: value for slot, value in at.items()}
 
 
 def _met(named: Mapping[str, int], point: Mapping[int, float], periods: Mapping[float | None, Sequence[float]]) -> dict[int, float]:
@@ -120,11 +132,11 @@ def _depths(parts: Sequence[Stretches]) -> tuple[float, ...]:
     return tuple(dict.fromkeys(float(d) for d in np.quantile(z, DEPTHS)))
 
 
-def _onsets(parts: Sequence[Stretches], breaks_s: Sequence[float], sooner: Sequence[float]) -> tuple[float, ...]:
-    """Onsets (s) at the first breaks of the first log, or so much sooner, and others spread over it, `MOST_STARTS` in all."""
+def _onsets(parts: Sequence[Stretches], breaks_s: Sequence[float]) -> tuple[float, ...]:
+    """Onsets (s) at the first breaks of the first log, and others spread over it, `MOST_STARTS` in all."""
     first, last = float(parts[0].start[0]), float(parts[0].start[-1])
-    near = [t - s for t in breaks_s[:BREAKS] for s in sooner if t - s > first * parts[0].run.dt]
-    spread = min(ONSETS, (MOST_STARTS if len(sooner) == 1 else BREAKS * len(sooner)) - len(near))
+    near = [t for t in breaks_s[:BREAKS] if t > first * parts[0].run.dt]
+    spread = min(ONSETS, MOST_STARTS - len(near))
     share = np.arange(1, spread + 1) / (spread + 1)
     return (*near, *(float((first + (last - first) * s) * parts[0].run.dt) for s in share))
 
@@ -138,7 +150,7 @@ def _grids(
     for slot in slots:
         parameter = plant.slots[slot].parameter
         if parameter.name == "onset":
-            found[slot] = _onsets(parts, breaks_s, SOONER_S if effect.where else SOONER_S[:1])
+            found[slot] = _onsets(parts, breaks_s)
         elif parameter.name == "depth":
             found[slot] = _depths(parts)
         elif parameter.name in effect.grid:

@@ -84,13 +84,13 @@ def _windows(part: Stretches, linear: Linear) -> _Swung:
     at, every = [part.channels.index(c) for c in VELOCITY], max(round(SHORTEST_S / 10.0 / part.run.dt), 1)
     ok: Flags = np.asarray(part.ok[:, ::every, at].all(axis=-1) & linear.valid[:, None])
     t = part.time()[:, ::every]
-    psi, x, y, z = (_known(part, c, t) for c in ("psi", "x", "y", "z"))
+    psi, x, y, z = (known(part, c, t) for c in ("psi", "x", "y", "z"))
     u, v, w = np.moveaxis(np.where(ok[..., None], linear.r[:, ::every, at], 0.0), -1, 0)
     world = np.stack([np.cos(psi) * u - np.sin(psi) * v, np.sin(psi) * u + np.cos(psi) * v, w], axis=-1)
     return _Swung(t, _started(t, ok, world), ok, np.stack([x, y, z], axis=-1))
 
 
-def _known(part: Stretches, channel: str, t: Array) -> Array:
+def known(part: Stretches, channel: str, t: Array) -> Array:
     """A channel at times ``t``, gaps bridged; nothing where it was not measured."""
     good = np.flatnonzero(part.run.ok(channel)) if part.run.measured(channel) else np.zeros(0, dtype=int)
     if not len(good):

@@ -18,10 +18,10 @@ EFFECT = Effect(
     "the attachment to it (diagnosis.md T3; EA (1 - l0/L) when taut).",
     parameters=(
         Parameter("stiffness", "N/m", 0.0, 200.0, 0.0, 10.0, "chosen: a few metres of stretch stop the vehicle", "drag"),
-        Parameter("north", "m", -1000.0, 1000.0, 0.0, 3.0, "where it is caught, in the log's x: the search begins where the vehicle was at the onset"),
+        Parameter("north", "m", -1000.0, 1000.0, 0.0, 3.0, "where it is caught, in the log's x: the search begins where the missing force leads"),
         Parameter("east", "m", -1000.0, 1000.0, 0.0, 3.0, "where it is caught, in the log's y"),
         Parameter("down", "m", -1000.0, 1000.0, 0.0, 3.0, "where it is caught, depth"),
-        Parameter("radius", "m", 0.0, 1000.0, 5.0, 2.0, "slack"),
+        Parameter("radius", "m", 0.0, 1000.0, 0.0, 2.0, "slack"),
         Parameter("onset", "s", 0.0, 1e6, 0.0, 60.0, "any time of the log"),
         Parameter("x", "m", -2.0, 2.0, 0.0, 0.3, "attachment, ahead of the origin"),
         Parameter("z", "m", -2.0, 2.0, 0.0, 0.2, "attachment, below the origin"),
@@ -29,8 +29,7 @@ EFFECT = Effect(
     signature="a sudden pull that comes back at the same place and always points the same way there",
     confused_with=("tether_tension", "current_varying"),
     separates="come back to the place from another side",
-    needs=("x", "y", "z"),
-    grid={"onset": (0.1, 0.3, 0.5, 0.7, 0.9), "radius": (1.5, 3.0)},
+    needs=("x", "y", "z", "psi"),
     where={"north": "x", "east": "y", "down": "z"},
 )
 ROWS = ("stiffness", "north", "east", "down", "radius", "onset", "ax", "az")
