@@ -16,7 +16,7 @@ from rovval.blind.spec import Planted
 from rovval.data import Run
 from rovval.diagnose import diagnose
 from rovval.diagnose.contest import Prior
-from rovval.diagnose.finding import find
+from rovval.diagnose.finding import Finding, find
 from rovval.diagnose.products import Products
 from rovval.diagnose.since import Beginning, _explained, _Part, _worth
 from rovval.diagnose.stretches import Stretches, cut_all
@@ -82,3 +82,31 @@ def test_a_part_that_cannot_be_simulated_leaves_the_answer_of_the_whole(monkeypa
     monkeypatch.setattr("rovval.diagnose.finding._searched", searched)
     assert find(parts, (), 0.05, 0, lambda *_: None) is whole
     assert asked == [parts[0].count, int((parts[0].start * parts[0].run.dt >= 40.0).sum())]
+
+
+@pytest.mark.parametrize(
+    ("named", "after", "evidence", "told"),
+    [
+        ((), "waves", 325.0, True),  # what came first on the whole log, which it did not name
+        ((), "waves", 315.0, False),
+        ((), "current_shear", 325.0, False),  # something else has to be clearly more
+        ((), "current_shear", 365.0, True),
+        (("waves",), "waves", 325.0, False),  # the whole log names it
+    ],
+)
+def test_what_follows_a_change_has_to_outdo_what_the_whole_log_shows(
+    monkeypatch: pytest.MonkeyPatch, named: tuple[str, ...], after: str, evidence: float, told: bool
+):
+    parts, _ = cut_all([own((), 5, 100.0)], merlin(), "fossen", 10.0)
+
+    def finding(names: tuple[str, ...], causes: float, began: Beginning | None) -> Finding:
+        all_of = tuple(SimpleNamespace(hypothesis=SimpleNamespace(name=name, effect=SimpleNamespace(begins=False))) for name in names)
+        selection: Any = SimpleNamespace(began=began, rounds=((("waves", 300.0, 0.3), ("linear_drag[yaw]", 40.0, 0.1)),))
+        problem: Any = None
+        judgement: Any = SimpleNamespace(named=all_of, causes=causes)
+        return Finding(problem, {}, selection, [], judgement)
+
+    found = iter((finding(named, 300.0, Beginning(40.0, 500.0)), finding((after,), evidence, None)))
+    monkeypatch.setattr("rovval.diagnose.finding._searched", lambda *_: next(found))
+    one = find(parts, (), 0.05, 0, lambda *_: None)
+    assert one.since == (40.0 if told else None) and [n.hypothesis.name for n in one.judgement.named] == ([after] if told else list(named))

@@ -189,6 +189,19 @@ def test_one_force_alone_is_worth_what_it_is_with_the_others_held():
     assert beside.alone() > beside.evidence(), "many that gain nothing cost more than the one gains"
 
 
+@pytest.mark.parametrize(("own", "counts"), [(0.95, True), (0.995, False)])
+def test_a_force_that_a_coefficient_undoes_is_no_force_of_its_own(own: float, counts: bool):
+    """As drag undoes a force that varies with speed: whatever little the two do against each other, however well it fits."""
+    rng = np.random.default_rng(1)
+    X = rng.normal(size=(30, 12, 2))
+    X[..., 1] = own * X[..., 0] + np.sqrt(1.0 - own**2) * X[..., 1]
+    r = rng.normal(size=(30, 12)) + 20.0 * (X[..., 1] - own * X[..., 0])
+    data = Products(np.einsum("wni,wnj->wij", X, X), np.einsum("wni,wn->wi", X, r), (r**2).sum(axis=1), (0, 1))
+    beside = Forces((("surge", "u"),), data, np.full(1, 1e-3), np.zeros(1), 1.0)
+    assert beside.evidence() > 100.0
+    assert beside.alone() == (pytest.approx(beside.evidence()) if counts else 0.0)
+
+
 @pytest.mark.parametrize(("strain", "stands"), [(4.1, True), (5.7, False)])
 def test_what_stands_without_an_unsteady_cause_leaves_the_file_within_its_tolerance(monkeypatch: pytest.MonkeyPatch, strain: float, stands: bool):
     """Else what went had taken up the strain, and something else is there."""

@@ -1,8 +1,8 @@
 """Where a log looks as if its tether had caught: there the search for a snag begins.
 
-No slope leads from nothing to what holds a vehicle to a point, and every point is a valley of its own. So the force that each half of a window
-lacks is worked out first, and a spring towards a point, slack within a radius, is laid through these forces from every half on (its stiffness is
-linear: variable projection, Golub and Pereyra 1973). The best few are where the settling by simulation begins, and no more than that.
+No slope leads from nothing to what holds a vehicle to a point, and every point is a valley of its own. So the force and moment that each half of a
+window lacks are worked out first, and a spring towards a point, slack within a radius, is laid through them from every half on (its stiffness and
+where it is tied are linear: variable projection, Golub and Pereyra 1973). The best few are where the settling by simulation begins, and no more.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from rovval.diagnose.stretches import Stretches
 from rovval.diagnose.swings import known
 from rovval.frames import rotation_from_euler
 
-HALVES = 2
+HALVES = 2  # of a window, in each of which what is missing is one force and one moment
 EVERY_S = 0.5  # between the places along a half at which the spring pulls
 SHARES = (0.2, 0.5, 0.8)  # of how far the vehicle gets from where it was caught: slack tried
 BEST, APART_S = 4, 10.0  # springs that the search begins from, and how far apart their onsets are (chosen)
@@ -110,7 +110,7 @@ def _settled(lack: Missing, onset: float, point: Array, radius: float) -> tuple[
         at[3] = abs(at[3])
         worth, best = tied.worth(onset, at[:3], float(at[3]))
         tie = np.array([best[1], 0.0, best[2]]) / best[0] if worth > 0 else np.zeros(3)
-    names = ("north", "east", "down", "radius", "stiffness", "x", "z", "onset")
+    names = ("north", "east", "down", "radius", "stiffness", "x", "z", "onset")  # of tether_snag
     return worth, dict(zip(names, (*at.tolist(), float(best[0]), float(tie[0]), float(tie[2]), onset), strict=True))
 
 

@@ -42,7 +42,8 @@ def find(parts: tuple[Stretches, ...], without: Sequence[str], slop: float, seed
         late = _searched((after(parts[0], began.since),), without, slop, seed, lambda text, share: None)
     except BadInput:  # too few of its windows can be simulated: the log as a whole was
         return whole
-    return replace(late, since=began.since) if late.judgement.causes > _asked(whole) and late.judgement.named and not _event(late) else whole
+    told = late.judgement.causes > _asked(whole, late) and late.judgement.named and not _event(late)
+    return replace(late, since=began.since) if told else whole
 
 
 def _searched(parts: tuple[Stretches, ...], without: Sequence[str], slop: float, seed: int, say: Callable[[str, float], None]) -> Finding:
@@ -61,8 +62,10 @@ def _event(one: Finding) -> bool:
     return any(n.hypothesis.effect.begins for n in one.judgement.named)
 
 
-def _asked(whole: Finding) -> float:
-    """Evidence from which what follows a change is clearer than anything that the whole log shows, named or not."""
-    tried = [evidence for _, evidence, _ in (whole.selection.rounds[0] if whole.selection.rounds else ())]
-    known = max([0.0, *tried, *([whole.judgement.causes] if whole.judgement.named else [])])
-    return max(MORE * known, known + CLEARER)
+def _asked(whole: Finding, late: Finding | None = None) -> float:
+    """Evidence from which what follows a change is clearer than anything that the whole log shows, named or not. Where the whole log names nothing and
+    what was found after the change is what comes first there, too, there is nothing else to outdo."""
+    tried = whole.selection.rounds[0] if whole.selection.rounds else ()
+    known = max([0.0, *(evidence for _, evidence, _ in tried), *([whole.judgement.causes] if whole.judgement.named else [])])
+    same = late is not None and not whole.judgement.named and [n.hypothesis.name for n in late.judgement.named] == [name for name, _, _ in tried[:1]]
+    return known + CLEARER if same else max(MORE * known, known + CLEARER)
