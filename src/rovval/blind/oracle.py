@@ -17,6 +17,7 @@ from rovval.blind.spec import Array
 from rovval.data import Run
 from rovval.diagnose.confirm import confirm
 from rovval.diagnose.finalists import begun
+from rovval.diagnose.holding import placed
 from rovval.diagnose.hypothesis import Hypothesis
 from rovval.diagnose.library import hypotheses, retuned
 from rovval.diagnose.point import Point
@@ -24,7 +25,6 @@ from rovval.diagnose.problem import Problem, at, gap_at, pose
 from rovval.diagnose.products import Products
 from rovval.diagnose.settle import healthy_point
 from rovval.diagnose.since import after
-from rovval.diagnose.starts import placed
 from rovval.diagnose.stretches import cut
 from rovval.vehicle.model import Vehicle
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from rovval.diagnose.lanes import Direction
 from rovval.effects import Effect, load
+from rovval.plant import Plant
 
 PRIOR_WIDTH = 4.0  # wide prior, in typical sizes: keeps a parameter that the log does not see from running away
 
@@ -32,3 +33,10 @@ class Hypothesis:
     def whole(self) -> bool:
         """Whether it begins with its full size, well away from nothing, and not with a slope."""
         return any(d.slot < 0 for d in self.directions)
+
+
+def beginning(plant: Plant, label: str, slots: tuple[int, ...], own: tuple[int, ...], at: tuple[tuple[int, float], ...], next_id: int) -> Hypothesis:
+    """A hypothesis whose slots ``own`` are free (-1: the whole change) where the others are moved to ``at``."""
+    directions = tuple(Direction(next_id + i, at, slot) for i, slot in enumerate(own))
+    sd = tuple(PRIOR_WIDTH * (plant.slots[s].parameter.typical if s >= 0 else 0.5) for s in own)
+    return Hypothesis(label.partition("@")[0], label, slots, tuple(d.id for d in directions), sd, at, directions)

@@ -12,8 +12,8 @@ from itertools import product
 import numpy as np
 
 from rovval import effects
-from rovval.diagnose.hypothesis import PRIOR_WIDTH, Hypothesis
-from rovval.diagnose.lanes import Direction
+from rovval.diagnose.holding import holding, somewhere
+from rovval.diagnose.hypothesis import PRIOR_WIDTH, Hypothesis, beginning
 from rovval.diagnose.stretches import Stretches
 from rovval.plant import Plant
 
@@ -34,7 +34,7 @@ def starts(
 ) -> list[Hypothesis]:  # fmt: skip
     """One hypothesis, or one for each starting point of the parameters that linearisation at the null value cannot see."""
     if effect.where:
-        return _held(plant, name, slots, held or [_somewhere(parts, plant, slots)], next_id)
+        return holding(plant, name, slots, held or [somewhere(parts, plant, slots)], next_id)
     grids = _grids(plant, effect, slots, parts, periods.get(None, ()), breaks_s)
     if not grids:
         far = _far(plant, name, effect, slots, next_id)
@@ -44,48 +44,13 @@ def starts(
     points, most = [dict(zip(grids, point, strict=True)) for point in product(*grids.values())], MOST_STARTS * (3 if own == (-1,) else 1)
     chosen = points if len(points) <= most else [points[i] for i in np.linspace(0, len(points) - 1, most).astype(int)]
     chosen = [point | _met(named, point, periods) for point in chosen]
-    return [_begun(plant, f"{name}@{i}", slots, own, tuple(at.items()), next_id + i * len(own)) for i, at in enumerate(chosen)]
-
-
-def _held(plant: Plant, name: str, slots: tuple[int, ...], springs: Sequence[Mapping[str, float]], next_id: int) -> list[Hypothesis]:
-    """What holds the vehicle from where it seems to, all of it at once: no slope leads from nothing to a standstill."""
-    own = [(slot, plant.slots[slot].parameter) for slot in slots]
-    at = [tuple((slot, float(np.clip(spring[p.name], p.low, p.high))) for slot, p in own if p.name in spring) for spring in springs]
-    return [_begun(plant, f"{name}@{i}", slots, (-1,), one, next_id + i) for i, one in enumerate(at)]
-
-
-def _somewhere(parts: Sequence[Stretches], plant: Plant, slots: tuple[int, ...]) -> dict[str, float]:
-    """Caught where the vehicle was in the middle of the log: it competes, until it is known where something seems to hold it."""
-    first = plant.slots[slots[0]].parameter
-    at = placed(parts, plant, slots, float(parts[0].start[len(parts[0].start) // 2]) * parts[0].run.dt)
-    return {first.name: first.typical} | {plant.slots[slot].parameter.name: value for slot, value in at.items()}
+    return [beginning(plant, f"{name}@{i}", slots, own, tuple(at.items()), next_id + i * len(own)) for i, at in enumerate(chosen)]
 
 
 def _met(named: Mapping[str, int], point: Mapping[int, float], periods: Mapping[float | None, Sequence[float]]) -> dict[int, float]:
     """The period that waves have which run where those of a starting point do: a vehicle under way meets them at another one."""
     of_waves = periods.get(point.get(named.get("direction", -1)), ()) if "period" in named and "direction" in named else ()
     return {named["period"]: of_waves[0]} if of_waves else {}
-
-
-def placed(parts: Sequence[Stretches], plant: Plant, slots: tuple[int, ...], t: float) -> dict[int, float]:
-    """Values of the slots that an onset at ``t`` s since the first run's start places: itself, and where the vehicle was then."""
-    run, found = parts[0].run, dict[int, float]()
-    for slot in slots:
-        name = plant.slots[slot].parameter.name
-        channel = effects.load(plant.slots[slot].effect).where.get(name)
-        if name == "onset":
-            found[slot] = t
-        elif channel:
-            known = np.flatnonzero(run.ok(channel))
-            found[slot] = float(np.interp(t / run.dt, known, run.get(channel)[known]))
-    return found
-
-
-def _begun(plant: Plant, label: str, slots: tuple[int, ...], own: tuple[int, ...], at: tuple[tuple[int, float], ...], next_id: int) -> Hypothesis:
-    """A hypothesis whose slots ``own`` are free (-1: the whole change) where the others are moved to ``at``."""
-    directions = tuple(Direction(next_id + i, at, slot) for i, slot in enumerate(own))
-    sd = tuple(PRIOR_WIDTH * (plant.slots[s].parameter.typical if s >= 0 else 0.5) for s in own)
-    return Hypothesis(label.partition("@")[0], label, slots, tuple(d.id for d in directions), sd, at, directions)
 
 
 def _near(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...]) -> list[Hypothesis]:
@@ -110,7 +75,7 @@ def _far(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...]
         p = plant.slots[slot].parameter
         for value in (p.null + size * p.typical for size in FAR.get(effect.name, ())):
             if p.low <= value <= p.high:
-                found.append(_begun(plant, f"{name}@far{len(found)}", slots, (-1,), ((slot, value),), next_id + len(found)))
+                found.append(beginning(plant, f"{name}@far{len(found)}", slots, (-1,), ((slot, value),), next_id + len(found)))
     return found
 
 
@@ -123,7 +88,7 @@ def _levers(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, .
     own, p = tuple(s for s in slots if s not in levers), plant.slots[levers[0]].parameter
     reach = LEVER * max(float(np.linalg.norm(t.position)) for t in plant.vehicle.thruster)
     ends = [((levers[0], float(np.clip(x, p.low, p.high))),) for x in (-reach, reach)]
-    return [_begun(plant, f"{name}@lever{i}", slots, own, at, next_id + i * len(own)) for i, at in enumerate(ends)]
+    return [beginning(plant, f"{name}@lever{i}", slots, own, at, next_id + i * len(own)) for i, at in enumerate(ends)]
 
 
 def _depths(parts: Sequence[Stretches]) -> tuple[float, ...]:
