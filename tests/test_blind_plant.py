@@ -7,6 +7,7 @@ import json
 import math
 import re
 from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -338,12 +339,12 @@ def test_thrust_under_way_is_the_file_s_open_water_curve():
 
 
 @pytest.mark.parametrize("name", ["merlin", "bluerov2_heavy"])
-def test_what_is_scaled_by_force_stays_what_there_is(name):
+def test_what_is_scaled_by_force_stays_what_there_is(name: str):
     """Of a large severity: the step of density is no brine's, and the nodes of a tether weigh what a line of ordinary thickness weighs."""
     hull = read_hull(vehicle(name))
     scale = scales(hull)
     setting = draw_setting(hull, scale, 5, DURATION_S)
-    layer, line = (build(Planted(effect, severity=2.4), hull, scale, setting) for effect in ("density_gradient", "tether_drag"))
+    layer, line = cast(Any, [build(Planted(effect, severity=2.4), hull, scale, setting) for effect in ("density_gradient", "tether_drag")])
     assert 0.0 < layer.values["half_step_density"] <= 14.0 + 1e-9
     thick, length = line.values["diameter_m"], line.values["length_m"]
     assert thick in (0.0076, 0.03) and 50.0 < length < 1000.0
