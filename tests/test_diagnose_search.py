@@ -32,6 +32,7 @@ from rovval.diagnose.settle import healthy_point, resettled, settle
 from rovval.diagnose.starts import LEVER
 from rovval.diagnose.stretches import cut_all
 from rovval.diagnose.swings import lines, waves
+from rovval.diagnose.tolerance import slop_prior
 from rovval.frames import rotation_from_euler
 from rovval.store import open_run
 from rovval.vehicle import load
@@ -381,3 +382,13 @@ def test_where_nothing_is_there_yet_the_nominal_simulation_serves(monkeypatch: p
     whole, all_of_them = linearise(part, beta, columns, directions), len(lanes_of(part, beta, [], columns, directions))
     np.testing.assert_array_equal(lean.S, whole.S)
     assert few < 0.9 * all_of_them
+
+
+def test_a_depth_sensor_that_is_late_is_named_and_has_no_tolerance(tmp_path: Path):
+    """Half a sample of delay is nothing that a check of the depth is held to see, so it is no slop; a longer one is told by that check alone."""
+    run = foreign(tmp_path, (("time_offset", "depth", 1.5),), 12, 200.0, 0.02)
+    parts, _ = cut_all([run], merlin(), "fossen", 10.0)
+    late = {parts[0].plant.slots[s].key for s in slop_prior(parts[0].plant, 0.05).sd if parts[0].plant.slots[s].effect == "time_offset"}
+    assert late == {"time_offset.tau", "time_offset[velocity].delay", "time_offset[attitude].delay"}
+    (cause,) = diagnose([run], merlin()).document["causes"]
+    assert cause["effect"] == "time_offset[depth]" and cause["parameters"]["delay"]["low"] < 0.6 < cause["parameters"]["delay"]["high"]
