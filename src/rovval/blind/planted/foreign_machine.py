@@ -13,7 +13,10 @@ from rovval.blind.spec import STEP_S, Array
 
 
 class StickyThruster(_Foreign):
-    """A vane that sticks: the thrust of one unit stays at that of an old speed until the speed has moved enough."""
+    """A vane that sticks: the thrust of one unit stays at that of an old speed until the speed has moved enough.
+
+    It begins with the speed of some time before the log, never with rest: where it never lets go it would be a dead thruster, which the library knows.
+    """
 
     name = "sticky_thruster"
     place = "input"
@@ -21,9 +24,10 @@ class StickyThruster(_Foreign):
     unit = "it lets go after a change of 0.8 of the working speed"
 
     def setup(self, plan: Planting) -> None:
-        """Band (rpm) and memory."""
-        self.at, self.band, self.held = self.unit_index, 0.8 * self.s * plan.scale.rpm, 0.0
-        self.values = {"band_rpm": self.band}
+        """Band (rpm) and memory: half to all of the working speed, ahead or astern (chosen)."""
+        self.at, self.band = self.unit_index, 0.8 * self.s * plan.scale.rpm
+        self.held = float(plan.rng.choice((-1.0, 1.0)) * plan.rng.uniform(0.5, 1.0)) * plan.scale.rpm
+        self.values = {"band_rpm": self.band, "first_rpm": self.held}
 
     def tick(self, k: Kin) -> None:
         """Slip when the pull exceeds the band."""
