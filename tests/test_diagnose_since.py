@@ -15,11 +15,19 @@ from rovval.blind.plant import fly
 from rovval.blind.spec import Planted
 from rovval.data import Run
 from rovval.diagnose import diagnose
+from rovval.diagnose.confirm import confirm
 from rovval.diagnose.contest import Prior
 from rovval.diagnose.finding import Finding, find
+from rovval.diagnose.ground import bare, rival
+from rovval.diagnose.library import hypotheses
+from rovval.diagnose.point import whole_evidence
+from rovval.diagnose.problem import pose
 from rovval.diagnose.products import Products
-from rovval.diagnose.since import Beginning, _explained, _Part, _worth
+from rovval.diagnose.separate import closed
+from rovval.diagnose.settle import healthy_point
+from rovval.diagnose.since import CLEARER, Beginning, _explained, _Part, _worth, after
 from rovval.diagnose.stretches import Stretches, cut_all
+from rovval.diagnose.switched import switched
 from rovval.diagnose.words import since
 from rovval.errors import BadInput
 
@@ -69,7 +77,7 @@ def test_the_windows_before_deny_what_they_do_not_hold() -> None:
 def test_a_part_that_cannot_be_simulated_leaves_the_answer_of_the_whole(monkeypatch: pytest.MonkeyPatch):
     parts, _ = cut_all([own((), 5, 100.0)], merlin(), "fossen", 10.0)
     whole: Any = SimpleNamespace(
-        selection=SimpleNamespace(began=Beginning(40.0, 500.0), rounds=()), judgement=SimpleNamespace(named=(), causes=0.0)
+        selection=SimpleNamespace(began=Beginning(40.0, 500.0), rounds=()), judgement=SimpleNamespace(named=())
     )
     asked = list[int]()
 
@@ -85,28 +93,61 @@ def test_a_part_that_cannot_be_simulated_leaves_the_answer_of_the_whole(monkeypa
 
 
 @pytest.mark.parametrize(
-    ("named", "after", "evidence", "told"),
+    ("first", "causes", "evidence", "told"),
     [
-        ((), "waves", 325.0, True),  # what came first on the whole log, which it did not name
-        ((), "waves", 315.0, False),
-        ((), "current_shear", 325.0, False),  # something else has to be clearly more
-        ((), "current_shear", 365.0, True),
-        (("waves",), "waves", 325.0, False),  # the whole log names it
+        ((("waves", 300.0, 0.3),), 0.0, 1325.0, True),  # of a healthy vehicle 1000: the whole log shows 300 more, named or not
+        ((("waves", 300.0, 0.3),), 0.0, 1315.0, False),
+        ((("waves", 100.0, 0.3),), 300.0, 1325.0, True),
+        ((("waves", 100.0, 0.3),), 300.0, 1315.0, False),
+        ((), 0.0, 1025.0, True),
     ],
 )
 def test_what_follows_a_change_has_to_outdo_what_the_whole_log_shows(
-    monkeypatch: pytest.MonkeyPatch, named: tuple[str, ...], after: str, evidence: float, told: bool
+    monkeypatch: pytest.MonkeyPatch, first: tuple[tuple[str, float, float], ...], causes: float, evidence: float, told: bool
 ):
     parts, _ = cut_all([own((), 5, 100.0)], merlin(), "fossen", 10.0)
 
-    def finding(names: tuple[str, ...], causes: float, began: Beginning | None) -> Finding:
-        all_of = tuple(SimpleNamespace(hypothesis=SimpleNamespace(name=name, effect=SimpleNamespace(begins=False))) for name in names)
-        selection: Any = SimpleNamespace(began=began, rounds=((("waves", 300.0, 0.3), ("linear_drag[yaw]", 40.0, 0.1)),))
+    def finding(name: str, causes: float, began: Beginning | None) -> Finding:
+        named = (SimpleNamespace(hypothesis=SimpleNamespace(name=name, effect=SimpleNamespace(begins=False))),) if causes else ()
+        selection: Any = SimpleNamespace(began=began, rounds=(first,), healthy=None)
         problem: Any = None
-        judgement: Any = SimpleNamespace(named=all_of, causes=causes)
+        judgement: Any = SimpleNamespace(named=named, causes=causes, final=object())
         return Finding(problem, {}, selection, [], judgement)
 
-    found = iter((finding(named, 300.0, Beginning(40.0, 500.0)), finding((after,), evidence, None)))
+    found = iter((finding("voltage_sag", causes, Beginning(40.0, 50.0)), finding("reverse_asymmetry", 80.0, None)))
     monkeypatch.setattr("rovval.diagnose.finding._searched", lambda *_: next(found))
+    monkeypatch.setattr("rovval.diagnose.finding.whole_evidence", lambda *_: 1000.0)
+    monkeypatch.setattr("rovval.diagnose.finding.switched", lambda problem, late, since, healthy: evidence if since == 40.0 else 0.0)
     one = find(parts, (), 0.05, 0, lambda *_: None)
-    assert one.since == (40.0 if told else None) and [n.hypothesis.name for n in one.judgement.named] == ([after] if told else list(named))
+    assert one.since == (40.0 if told else None)
+    assert [n.hypothesis.name for n in one.judgement.named] == (["reverse_asymmetry"] if told else ["voltage_sag"] if causes else [])
+
+
+def test_a_cause_from_some_moment_on_is_weighed_on_every_window(logs: tuple[Run, Run]) -> None:
+    """From before the log on it is the cause itself; from after its end on, a healthy vehicle; at its own beginning it is worth more than all through."""
+    parts, _ = cut_all([logs[0]], merlin(), "fossen", 10.0)
+    library, _ = hypotheses(parts)
+    problem = pose(parts, library, 0.05)
+    slots = next(h.slots for h in library if h.name == "inflow_loss")
+    always = confirm(problem, problem.origin, slots)
+    alone = healthy_point(problem)
+    assert switched(problem, always, 0.0, alone) == pytest.approx(always.evidence, rel=1e-3)
+    late = confirm(pose((after(parts[0], BEGINS),), library, 0.05), always.beta, slots)
+    assert switched(problem, late, BEGINS, alone) > always.evidence + CLEARER
+    assert switched(problem, always, 1e6, alone) == pytest.approx(whole_evidence(problem, alone), abs=1.0)
+
+
+def test_what_begins_late_is_asked_what_it_closes_from_there_on() -> None:
+    """A fault of a thruster in the last third, in a log whose drag is wrong all through."""
+    effects = ("quadratic_drag[surge]:scale=2.0", f"thruster_fault_onset[HFP]:loss=1.0,onset={BEGINS}")
+    parts, _ = cut_all([own(effects, 5, 200.0)], merlin(), "fossen", 10.0)
+    problem = pose(parts, hypotheses(parts)[0], 0.05)
+    fault = next(h for h in hypotheses(parts)[0] if h.name == "thruster_fault_onset[HFP]")
+    start = problem.origin.copy()
+    start[list(fault.slots)] = [{"loss": 1.0, "onset": BEGINS}[problem.plant.slots[s].parameter.name] for s in fault.slots]
+    fitted, ground = confirm(problem, start, fault.slots), bare(problem, healthy_point(problem))
+    one = rival(problem, fault, fitted, ground)
+    everywhere, _ = closed(ground.loss, (fitted.loss, fitted.dynamic_loss))
+    acts = np.concatenate([(part.start + part.steps) * part.run.dt > fitted.beta[list(fault.slots)].max() for part in problem.parts])
+    there, _ = closed((ground.loss[0][acts], ground.loss[1][acts]), (fitted.loss[acts], fitted.dynamic_loss[acts]))
+    assert one.gain == pytest.approx(there) and there > everywhere + 0.03

@@ -110,6 +110,15 @@ def free_of(data: Products, prior: Prior, inflation: float) -> tuple[np.ndarray,
     return free, np.diag(inflation / sd**2), np.zeros(len(free)) if data.offset is None else data.offset[free]
 
 
+def settled(A: Array, b: Array, free: np.ndarray, ridge: Array, pull: Array) -> tuple[Array, Array]:
+    """Curvature (k, k) and descent (k,) of what is left to all columns once those that are ``free``, with priors of curvature ``ridge`` and gradient
+    ``pull``, have settled beside each of them (Schur complement)."""
+    if not len(free):
+        return A, b
+    toward = np.linalg.solve(A[np.ix_(free, free)] + ridge, np.concatenate([A[free], (b[free] - pull)[:, None]], axis=1))
+    return A - A[:, free] @ toward[:, :-1], b - A[:, free] @ toward[:, -1]
+
+
 def contest(ring: Ring, base: Prior, hypotheses: Mapping[str, Prior], inflation: float) -> tuple[Fit, dict[str, Fit]]:
     """Fits of the base and of the base with each hypothesis set free."""
     return fit(ring, base, inflation), {name: fit(ring, base.widened(prior), inflation) for name, prior in hypotheses.items()}

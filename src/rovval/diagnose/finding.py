@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 from rovval.data import Array
 from rovval.diagnose.excited import excited
 from rovval.diagnose.library import hypotheses
+from rovval.diagnose.point import whole_evidence
 from rovval.diagnose.problem import Problem, corrected_residuals, pose
 from rovval.diagnose.select import Selection, select
-from rovval.diagnose.since import CLEARER, MORE, after
+from rovval.diagnose.since import CLEARER, after
 from rovval.diagnose.stretches import Stretches
+from rovval.diagnose.switched import switched
 from rovval.diagnose.verdict import Judgement, judge
 from rovval.errors import BadInput
-
-WORTH = 0.5  # of the evidence asked for, linearised: with less, what follows a change is not searched (opened logs: 0.54 of one that was there)
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,18 +32,21 @@ class Finding:
 
 
 def find(parts: tuple[Stretches, ...], without: Sequence[str], slop: float, seed: int, say: Callable[[str, float], None]) -> Finding:
-    """Search all windows; where the log changes, those after the change as well, which are told if they explain clearly more."""
+    """Search all windows; where the log changes, those after the change as well: what they show is told if, at work from then on, it explains the
+    whole log clearly better than anything that was found in all of it."""
     whole = _searched(parts, without, slop, seed, say)
     began = whole.selection.began
-    if began is None or _event(whole) or began.evidence < WORTH * _asked(whole):
+    if began is None or _event(whole):
         return whole
     say(f"searching the part from {began.since:.0f} s on", 0.85)
     try:
         late = _searched((after(parts[0], began.since),), without, slop, seed, lambda text, share: None)
     except BadInput:  # too few of its windows can be simulated: the log as a whole was
         return whole
-    told = late.judgement.causes > _asked(whole, late) and late.judgement.named and not _event(late)
-    return replace(late, since=began.since) if told else whole
+    if not late.judgement.named or not late.judgement.final or _event(late):
+        return whole
+    clearer = switched(whole.problem, late.judgement.final, began.since, whole.selection.healthy) > _known(whole) + CLEARER
+    return replace(late, since=began.since) if clearer else whole
 
 
 def _searched(parts: tuple[Stretches, ...], without: Sequence[str], slop: float, seed: int, say: Callable[[str, float], None]) -> Finding:
@@ -62,10 +65,8 @@ def _event(one: Finding) -> bool:
     return any(n.hypothesis.effect.begins for n in one.judgement.named)
 
 
-def _asked(whole: Finding, late: Finding | None = None) -> float:
-    """Evidence from which what follows a change is clearer than anything that the whole log shows, named or not. Where the whole log names nothing and
-    what was found after the change is what comes first there, too, there is nothing else to outdo."""
+def _known(whole: Finding) -> float:
+    """Evidence of the best that the whole log shows, named or not, over the vehicle as it is."""
     tried = whole.selection.rounds[0] if whole.selection.rounds else ()
-    known = max([0.0, *(evidence for _, evidence, _ in tried), *([whole.judgement.causes] if whole.judgement.named else [])])
-    same = late is not None and not whole.judgement.named and [n.hypothesis.name for n in late.judgement.named] == [name for name, _, _ in tried[:1]]
-    return known + CLEARER if same else max(MORE * known, known + CLEARER)
+    best = max([0.0, *(evidence for _, evidence, _ in tried), *([whole.judgement.causes] if whole.judgement.named else [])])
+    return whole_evidence(whole.problem, whole.selection.healthy) + best

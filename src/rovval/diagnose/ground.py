@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from rovval.diagnose.confirm import Confirmed
 from rovval.diagnose.contest import Prior
 from rovval.diagnose.hypothesis import Hypothesis
@@ -17,6 +19,8 @@ from rovval.diagnose.problem import Problem, gap_at
 from rovval.diagnose.separate import RELIEF, STRONG, Losses, Rival, closed, interval
 from rovval.diagnose.settle import FEW, settle
 from rovval.diagnose.tolerance import STRAINED, WITHIN
+
+FEWEST = 6  # windows in which something acts, from which it is asked what it closes there (chosen: fewer may be any event)
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,12 +46,23 @@ def rival(problem: Problem, h: Hypothesis, fitted: Confirmed, ground: Ground) ->
     """What a hypothesis adds to what stands; beside slop where its evidence is strong."""
     evidence = fitted.evidence - ground.evidence
     gain, kinematic = closed(ground.loss, (fitted.loss, fitted.dynamic_loss))
+    acts = _acts(problem, h, fitted)
+    if evidence >= STRONG and len(acts) >= FEWEST:
+        (was, moved), (left, still) = ground.loss, (fitted.loss, fitted.dynamic_loss)
+        gain = max(gain, closed((was[acts], moved[acts]), (left[acts], still[acts]))[0])
     beside = 0.0
     if evidence >= STRONG and gain < RELIEF:
         others = without_own(problem, ground.point, h.slots)
         beside = closed(_settled(problem, others), _settled(problem, fitted.point))[0]
     mends = evidence >= STRONG and gain > 0.0 and ground.point.strain() > STRAINED and fitted.point.strain() <= WITHIN
     return Rival(h, fitted, evidence, gain, kinematic, beside, mends)
+
+
+def _acts(problem: Problem, h: Hypothesis, fitted: Confirmed) -> np.ndarray:
+    """Numbers of the windows in which what begins in mid-log acts: those before say nothing of how much it closes. None of another hypothesis."""
+    onset = [float(fitted.beta[s]) for s in h.slots if problem.plant.slots[s].parameter.name == "onset"]
+    ends = np.concatenate([(part.start + part.steps) * part.run.dt for part in problem.parts])
+    return np.flatnonzero(ends > min(onset)) if onset else np.zeros(0, dtype=int)
 
 
 def without_own(problem: Problem, stands: Point, slots: Sequence[int]) -> Point:

@@ -34,13 +34,13 @@ def settle(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[S
     made anew, `ANEW` times at most, where the fit ends far from it. Slop moves in the simulation all the same.
     """
     if near is not None:
-        return _descended(problem, _about(problem, start, _columns(problem, slots), len(slots), near), near, rounds)
-    point = _about(problem, start, _columns(problem, slots), len(slots), None)
+        return _descended(problem, about(problem, start, _columns(problem, slots), len(slots), near), near, rounds)
+    point = about(problem, start, _columns(problem, slots), len(slots))
     for _ in range(ANEW):
         reached = _descended(problem, point, point.scaled, rounds)
         if point.cost() - reached.cost() < FAR * problem.inflation:
             return reached
-        point = _about(problem, reached.beta, point.columns, point.own, None)
+        point = about(problem, reached.beta, point.columns, point.own)
     return _descended(problem, point, point.scaled, rounds)
 
 
@@ -94,7 +94,7 @@ def moved(problem: Problem, point: Point, slot: int, value: float) -> Point:
     """The point with one slot elsewhere, slop's slopes kept."""
     beta = point.beta.copy()
     beta[slot] = value
-    return _about(problem, beta, point.columns, point.own, point.scaled)
+    return about(problem, beta, point.columns, point.own, point.scaled)
 
 
 def stays(plant: Plant) -> frozenset[int]:
@@ -102,7 +102,7 @@ def stays(plant: Plant) -> frozenset[int]:
     return frozenset(i for i, slot in enumerate(plant.slots) if effects.load(slot.effect).place == "sensor")
 
 
-def _about(problem: Problem, beta: Array, columns: tuple[int, ...], own: int, near: tuple[Scaled, ...] | None) -> Point:
+def about(problem: Problem, beta: Array, columns: tuple[int, ...], own: int, near: tuple[Scaled, ...] | None = None) -> Point:
     """Linearise about ``beta``: all columns, or the own ones with the slopes of slop and of the windows' starts from ``near``."""
     if near is None:
         there = in_metric(problem, [linearise(part, beta, columns[:own], coarse=columns[own:]) for part in problem.parts])
@@ -134,7 +134,7 @@ def _better(problem: Problem, point: Point, near: tuple[Scaled, ...]) -> Point |
             continue
         trial = replace(point, beta=beta, data=data, offset=point.offset + (beta - point.beta)[list(point.columns)])
         if trial.cost() < point.cost() - LITTLE * problem.inflation:
-            return _about(problem, beta, point.columns, point.own, near)
+            return about(problem, beta, point.columns, point.own, near)
     return None
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rovval.data import Array
-from rovval.diagnose.contest import Prior, free_of
+from rovval.diagnose.contest import Prior, free_of, settled
 from rovval.diagnose.finalists import prior_of
 from rovval.diagnose.hypothesis import Hypothesis
 from rovval.diagnose.problem import Problem
@@ -22,7 +22,7 @@ from rovval.diagnose.stretches import Stretches
 
 BEFORE, AFTER = 3, 6  # windows without and with it, at least (chosen)
 HINTED, AGAINST = 10.0, 20.0  # twice the log Bayes factor, linearised: of the part over the whole, and of the windows before against it (chosen)
-CLEARER, MORE = 20.0, 1.2  # the same of what was found in the part over what was found in the whole, and its least ratio to that (chosen)
+CLEARER = 20.0  # the same of what was found in the part, at work from then on, over what was found in the whole: on the same windows (chosen)
 TRIED = 12  # first windows with it that are tried, evenly spread, before those about the best of them (chosen)
 
 
@@ -36,13 +36,8 @@ class _Part:
     @classmethod
     def of(cls, data: Products, windows: slice, slop: Prior, inflation: float) -> _Part:
         """Slop settles on these windows alone."""
-        A, b = data.A[windows].sum(axis=0), data.b[windows].sum(axis=0)
         free, ridge, offset = free_of(data, slop, inflation)
-        if not len(free):
-            return cls(A, b)
-        slope = b[free] - ridge @ offset
-        toward = np.linalg.solve(A[np.ix_(free, free)] + ridge, np.concatenate([A[free], slope[:, None]], axis=1))
-        return cls(A - A[:, free] @ toward[:, :-1], b - A[:, free] @ toward[:, -1])
+        return cls(*settled(data.A[windows].sum(axis=0), data.b[windows].sum(axis=0), free, ridge, ridge @ offset))
 
 
 @dataclass(frozen=True, slots=True)

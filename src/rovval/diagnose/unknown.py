@@ -14,7 +14,7 @@ import numpy as np
 
 from rovval.channels import AXES
 from rovval.data import Array
-from rovval.diagnose.contest import Fold, Prior, heldout
+from rovval.diagnose.contest import Fold, Prior, heldout, settled
 from rovval.diagnose.forced import generic
 from rovval.diagnose.linearise import Linear, spread
 from rovval.diagnose.point import Point
@@ -45,14 +45,11 @@ class Forces:
         """The same of the one force, one feature on one of ``axes``, that has most: where few are at work, all together cost more than they gain. One
         that the point's columns can undo all but a little of (`OWN`), as drag undoes a force that varies with speed, is none: the two against each
         other hold the simulation to the measured speed, whatever it is that is missing."""
-        own = np.arange(len(self.precision))
-        chosen = np.array([len(own) + i for i, (axis, _) in enumerate(self.names) if axis in axes], dtype=int)
-        A = self.data.A.sum(axis=0)
-        b = self.data.b.sum(axis=0) - np.concatenate([self.pull, np.zeros(len(self.names))])
-        H, cross = A[np.ix_(own, own)] + np.diag(self.precision), A[np.ix_(own, chosen)]
-        shown = np.diag(A)[chosen] - (cross * np.linalg.solve(H, cross)).sum(axis=0)  # beside the point's columns, which give way
-        slope = b[chosen] - cross.T @ np.linalg.solve(H, b[own])
-        shown, slope = (x[shown > OWN * np.diag(A)[chosen]] for x in (shown, slope))
+        k = len(self.precision)
+        A, b = settled(self.data.A.sum(axis=0), self.data.b.sum(axis=0), np.arange(k), np.diag(self.precision), self.pull)
+        chosen = np.array([k + i for i, (axis, _) in enumerate(self.names) if axis in axes], dtype=int)
+        shown, slope, at_first = np.diag(A)[chosen], b[chosen], np.einsum("wii->i", self.data.A)[chosen]
+        shown, slope = (x[shown > OWN * at_first] for x in (shown, slope))
         ridge = self.inflation / np.array(SHARES)[:, None] ** 2
         return float((slope**2 / (shown + ridge) / self.inflation - np.log1p(shown / ridge)).max(initial=0.0))
 
