@@ -21,14 +21,12 @@ from rovval.diagnose.library import hypotheses
 from rovval.diagnose.point import evidence
 from rovval.diagnose.problem import Problem, corrected_residuals, pose
 from rovval.diagnose.products import Products
-from rovval.diagnose.select import Selection
 from rovval.diagnose.separate import FORM, MOST_FORM, form_share
 from rovval.diagnose.settle import healthy_point, settle
 from rovval.diagnose.shown import UNMOVED, Way, as_filed, beside_slop, harms, skilled, stand
 from rovval.diagnose.shrinkage import shrinkage
 from rovval.diagnose.steadied import discount, gains, loop_gain, loosened
 from rovval.diagnose.stretches import cut, cut_all
-from rovval.diagnose.together import Named
 from rovval.diagnose.tolerance import slop_prior
 from rovval.diagnose.unknown import Forces, forces
 from rovval.diagnose.weigh import Weighed
@@ -214,36 +212,6 @@ def test_what_stands_without_an_unsteady_cause_leaves_the_file_within_its_tolera
     monkeypatch.setattr("rovval.diagnose.verdict.weigh", lambda *_: replace(asked, strain=strain, unsteady=()))
     _, again = verdict._steady(None, selection, asked, None, [])  # type: ignore[arg-type]
     assert again.least_bad is not stands and again.remains and again.unsteady == ("voltage_sag",)
-
-
-@pytest.mark.parametrize("holds", [True, False])
-def test_what_does_not_hold_still_is_told_as_what_begins_in_mid_log(monkeypatch: pytest.MonkeyPatch, holds: bool):
-    """Of its own group, and only where that one holds still; else nothing is named."""
-
-    def cause(name: str, begins: bool) -> Any:
-        return SimpleNamespace(name=name, effect=SimpleNamespace(begins=begins, place="thruster"))
-
-    steady, begun = cause("thruster_degraded[T8]", False), cause("thruster_fault_onset[T8]", True)
-    other = cause("thruster_fault_onset[T7]", True)  # not in the group
-    rivals = tuple(SimpleNamespace(hypothesis=h, evidence=e) for h, e in ((other, 450.0), (begun, 430.0), (steady, 320.0)))
-    named: Any = Named(steady, ((steady.name, 0.3), (begun.name, 0.7)), None, 0.0, 320.0, rivals)  # type: ignore[arg-type]
-    selection: Any = Selection((named,), SimpleNamespace(), None, (), ((),), 0.0, None, 0.0, 0.0)  # type: ignore[arg-type]
-    asked = Weighed(320.0, 0.0, 0.0, 2.0, True, False, False, False, (steady.name,), None)  # type: ignore[arg-type]
-
-    def weigh(problem: Any, selection: Selection, *_: Any) -> Weighed:
-        later = selection.named[0].hypothesis is begun
-        return asked if not later else replace(asked, total=430.0, unsteady=() if holds else (begun.name,))
-
-    monkeypatch.setattr(verdict, "weigh", weigh)
-    monkeypatch.setattr(verdict, "jointly", lambda problem, final, kept, late: SimpleNamespace(point=SimpleNamespace(beta=late), slots=()))
-    monkeypatch.setattr(verdict, "confirm", lambda problem, beta, slots: SimpleNamespace(beta=beta, point=SimpleNamespace(strain=lambda: 0.0)))
-    monkeypatch.setattr(verdict, "forces", lambda *_: SimpleNamespace(evidence=lambda: 0.0, share=lambda folds: 0.0))
-    monkeypatch.setattr(verdict, "_nameless", lambda *_: SimpleNamespace(named=()))
-    selection = replace(selection, healthy=SimpleNamespace())
-    judged = verdict.judge(SimpleNamespace(folds=()), selection, [])  # type: ignore[arg-type]
-    assert [n.hypothesis.name for n in judged.named] == ([begun.name] if holds else [])
-    if holds:
-        assert judged.named[0].group == ((begun.name, 0.7), (steady.name, 0.3)) and judged.causes == 430.0
 
 
 def test_a_coefficient_does_not_hide_behind_its_own_tolerance():

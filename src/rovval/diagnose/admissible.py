@@ -16,6 +16,7 @@ SERIOUS = 0.5  # share of the best evidence from which a rival's gain counts
 NEARLY = 0.9  # of the best's gain
 LEAST_OF_BEST = 0.5  # of the gain of the best serious rival
 REVERSED, DEGRADED = "thruster_reversed", "thruster_degraded"  # one imitates the other up to a dead thruster, and no further
+BEGUN, CLEARLY = "thruster_fault_onset", 20.0  # the same loss with an onset, and its evidence over that without (opened logs: false < 0, true > 100)
 
 
 def admissible(problem: Problem, weighed: list[Rival]) -> list[Rival]:
@@ -39,12 +40,17 @@ def simplest(problem: Problem, rivals: list[Rival]) -> Rival:
     one that rests on a bound of its search comes last."""
     most, least = _parameters(problem, rivals[0]), (1.0 - form_share(problem.blocks)) * rivals[0].evidence
     tied = [
-        r for r in rivals
+        r for r in rivals if not _began(rivals[0], r)
         if r is rivals[0]
         or alike(problem, r, rivals[0])
         or (r.evidence >= least and r.closes >= (NEARLY - PER_PARAMETER * max(most - _parameters(problem, r), 0)) * rivals[0].closes)
     ]  # fmt: skip
     return min(tied, key=lambda r: (_beyond_the_library(problem, r), _parameters(problem, r), -r.evidence))
+
+
+def _began(best: Rival, other: Rival) -> bool:
+    """Whether the best is the other but for an onset: no form of an equation lies between them, and evidence decides."""
+    return other.hypothesis.name == best.hypothesis.name.replace(BEGUN, DEGRADED) != best.hypothesis.name and best.evidence > other.evidence + CLEARLY
 
 
 def _parameters(problem: Problem, rival: Rival) -> int:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from rovval.data import Array
-from rovval.diagnose.confirm import Confirmed, confirm
+from rovval.diagnose.confirm import Confirmed
 from rovval.diagnose.left import left
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.round import FALSE_ALARM
@@ -42,12 +42,7 @@ def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgem
     general = forces(problem, selection.healthy)
     weighed = weigh(problem, selection, selection.final, general, before) if selection.final else None
     if weighed and weighed.unsteady and not weighed.least_bad:
-        later = _begun(problem, selection, weighed.unsteady)
-        again = weigh(problem, later, later.final, general, before) if later and later.final else None
-        if later and again and not again.unsteady and not again.least_bad:
-            selection, weighed = later, again
-        else:
-            selection, weighed = _steady(problem, selection, weighed, general, before)
+        selection, weighed = _steady(problem, selection, weighed, general, before)
     if selection.final and weighed and weighed.parity_led and weighed.least_bad:
         selection = _only(problem, selection, tuple(n for n in selection.named if of_sensor(n)))
         weighed = replace(weighed, remains=True)
@@ -76,21 +71,6 @@ def _nameless(problem: Problem, selection: Selection, weighed: Weighed | None, g
     real = nearly or (anything > REAL and general.share(problem.folds) > HOLDS) or strained > BROKEN
     rest = left(problem, bare_forces(problem), selection.healthy, unsteady) if real else None
     return Judgement("unknown" if real else "no_gap", (), None, {}, {}, total, anything, anything, strained, rest)
-
-
-def _begun(problem: Problem, selection: Selection, unsteady: tuple[str, ...]) -> Selection | None:
-    """The selection with a cause that does not hold still under the name of the one in its group that begins in mid-log; None: there is none."""
-    final = selection.final
-    for i, one in enumerate(selection.named if final else ()):
-        later = [r for r in one.rivals if r.hypothesis.effect.begins and r.hypothesis.name in dict(one.group) and one.hypothesis.name in unsteady]
-        if final and later:
-            members = tuple(sorted(one.group, key=lambda member: member[0] != later[0].hypothesis.name))
-            renamed = replace(one, hypothesis=later[0].hypothesis, group=members, evidence=later[0].evidence)
-            rest = [n for n in selection.named if n is not one]
-            fitted = jointly(problem, final, [n.hypothesis for n in rest], later[0])
-            named = (*selection.named[:i], renamed, *selection.named[i + 1 :])
-            return replace(selection, named=named, final=confirm(problem, fitted.point.beta, fitted.slots))
-    return None
 
 
 def _steady(problem: Problem, selection: Selection, weighed: Weighed, general: Forces, before: list[Array]) -> tuple[Selection, Weighed]:
