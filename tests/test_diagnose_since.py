@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -28,6 +29,7 @@ from rovval.diagnose.settle import healthy_point
 from rovval.diagnose.since import CLEARER, Beginning, _explained, _Part, _worth, after
 from rovval.diagnose.stretches import Stretches, cut_all
 from rovval.diagnose.switched import switched
+from rovval.diagnose.together import worthy
 from rovval.diagnose.words import since
 from rovval.errors import BadInput
 
@@ -150,4 +152,6 @@ def test_what_begins_late_is_asked_what_it_closes_from_there_on() -> None:
     everywhere, _ = closed(ground.loss, (fitted.loss, fitted.dynamic_loss))
     acts = np.concatenate([(part.start + part.steps) * part.run.dt > fitted.beta[list(fault.slots)].max() for part in problem.parts])
     there, _ = closed((ground.loss[0][acts], ground.loss[1][acts]), (fitted.loss[acts], fitted.dynamic_loss[acts]))
-    assert one.gain == pytest.approx(there) and there > everywhere + 0.03
+    assert one.begun == pytest.approx(there) and there > everywhere + 0.03 and one.gain == pytest.approx(everywhere)
+    little = replace(one, gain=0.05, beside=0.0, mends=False)
+    assert worthy(little, alone=True) and not worthy(replace(little, begun=0.0), alone=True)

@@ -46,23 +46,22 @@ def rival(problem: Problem, h: Hypothesis, fitted: Confirmed, ground: Ground) ->
     """What a hypothesis adds to what stands; beside slop where its evidence is strong."""
     evidence = fitted.evidence - ground.evidence
     gain, kinematic = closed(ground.loss, (fitted.loss, fitted.dynamic_loss))
-    acts = _acts(problem, h, fitted)
-    if evidence >= STRONG and len(acts) >= FEWEST:
-        (was, moved), (left, still) = ground.loss, (fitted.loss, fitted.dynamic_loss)
-        gain = max(gain, closed((was[acts], moved[acts]), (left[acts], still[acts]))[0])
+    begun = _from_there_on(problem, h, fitted, ground) if evidence >= STRONG else 0.0
     beside = 0.0
     if evidence >= STRONG and gain < RELIEF:
         others = without_own(problem, ground.point, h.slots)
         beside = closed(_settled(problem, others), _settled(problem, fitted.point))[0]
     mends = evidence >= STRONG and gain > 0.0 and ground.point.strain() > STRAINED and fitted.point.strain() <= WITHIN
-    return Rival(h, fitted, evidence, gain, kinematic, beside, mends)
+    return Rival(h, fitted, evidence, gain, kinematic, beside, mends, begun)
 
 
-def _acts(problem: Problem, h: Hypothesis, fitted: Confirmed) -> np.ndarray:
-    """Numbers of the windows in which what begins in mid-log acts: those before say nothing of how much it closes. None of another hypothesis."""
+def _from_there_on(problem: Problem, h: Hypothesis, fitted: Confirmed, ground: Ground) -> float:
+    """Share that what begins in mid-log closes of the windows in which it acts: those before say nothing of it. 0 for another hypothesis."""
     onset = [float(fitted.beta[s]) for s in h.slots if problem.plant.slots[s].parameter.name == "onset"]
     ends = np.concatenate([(part.start + part.steps) * part.run.dt for part in problem.parts])
-    return np.flatnonzero(ends > min(onset)) if onset else np.zeros(0, dtype=int)
+    acts = np.flatnonzero(ends > onset[0]) if onset else ()
+    (was, moved), (left, still) = ground.loss, (fitted.loss, fitted.dynamic_loss)
+    return closed((was[acts], moved[acts]), (left[acts], still[acts]))[0] if len(acts) >= FEWEST else 0.0
 
 
 def without_own(problem: Problem, stands: Point, slots: Sequence[int]) -> Point:

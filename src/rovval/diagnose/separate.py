@@ -29,7 +29,8 @@ LEVEL = 0.05  # one-sided: a member of the group must be this plausible to be as
 class Rival:
     """A finalist: its re-simulated fit, its evidence over what stood before, and the share of the gap it closes by itself, held out; the same
     of what the kinematic checks alone show (`closed`), and of what slop leaves, slop settled beside it (`ground`). ``mends``: with much evidence,
-    and without it a coefficient is beyond its tolerance, with it none: a drag may be surely wrong and yet be little of a gap that is heave's."""
+    and without it a coefficient is beyond its tolerance, with it none: a drag may be surely wrong and yet be little of a gap that is heave's. ``begun``: of
+    what begins in mid-log, the share that it closes from there on."""
 
     hypothesis: Hypothesis
     fitted: Confirmed
@@ -38,6 +39,7 @@ class Rival:
     kinematic: float
     beside: float = 0.0
     mends: bool = False
+    begun: float = 0.0
 
     @property
     def closes(self) -> float:

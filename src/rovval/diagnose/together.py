@@ -39,9 +39,9 @@ class Named:
 
 
 def worthy(one: Rival, alone: bool) -> bool:
-    """Whether a rival closes enough of the gap, or of what kinematics show, with enough evidence, or mends the file; ``alone``: nothing was found
-    before it."""
-    gain = max(one.closes, one.kinematic)
+    """Whether a rival closes enough of the gap, of what kinematics show, or from where it begins on, with enough evidence, or mends the file;
+    ``alone``: nothing was found before it."""
+    gain = max(one.closes, one.kinematic, one.begun)
     if denied(one):
         return False
     if one.mends:
