@@ -116,7 +116,7 @@ def test_what_follows_a_change_has_to_outdo_what_the_whole_log_shows(
         judgement: Any = SimpleNamespace(named=named, causes=causes, final=object())
         return Finding(problem, {}, selection, [], judgement)
 
-    found = iter((finding("voltage_sag", causes, Beginning(40.0, 50.0)), finding("reverse_asymmetry", 80.0, None)))
+    found = iter((finding("voltage_sag", causes, Beginning(40.0, 70.0)), finding("reverse_asymmetry", 80.0, None)))
     monkeypatch.setattr("rovval.diagnose.finding._searched", lambda *_: next(found))
     monkeypatch.setattr("rovval.diagnose.finding.whole_evidence", lambda *_: 1000.0)
     monkeypatch.setattr("rovval.diagnose.finding.switched", lambda problem, late, since, healthy: evidence if since == 40.0 else 0.0)
@@ -155,3 +155,19 @@ def test_what_begins_late_is_asked_what_it_closes_from_there_on() -> None:
     assert one.begun == pytest.approx(there) and there > everywhere + 0.03 and one.gain == pytest.approx(everywhere)
     little = replace(one, gain=0.05, beside=0.0, mends=False)
     assert worthy(little, alone=True) and not worthy(replace(little, begun=0.0), alone=True)
+
+
+@pytest.mark.parametrize(("hinted", "searched"), [(59.0, False), (61.0, True)])
+def test_what_promises_little_beside_the_whole_log_is_not_searched(monkeypatch: pytest.MonkeyPatch, hinted: float, searched: bool) -> None:
+    selection: Any = SimpleNamespace(began=Beginning(40.0, hinted), rounds=((("waves", 300.0, 0.3),),), healthy=None)
+    judgement: Any = SimpleNamespace(named=(), causes=0.0, final=None)
+    problem: Any = None
+    asked, parts = list[int](), cut_all([own((), 5, 100.0)], merlin(), "fossen", 10.0)[0]
+
+    def once(*_: Any) -> Finding:
+        asked.append(1)
+        return Finding(problem, {}, selection, [], judgement)
+
+    monkeypatch.setattr("rovval.diagnose.finding._searched", once)
+    assert find(parts, (), 0.05, 0, lambda *_: None).since is None
+    assert len(asked) == (2 if searched else 1)

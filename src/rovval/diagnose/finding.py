@@ -17,6 +17,8 @@ from rovval.diagnose.switched import switched
 from rovval.diagnose.verdict import Judgement, judge
 from rovval.errors import BadInput
 
+WORTH = 0.2  # of the evidence of the best on the whole log: with less, linearised, what follows a change is not searched (opened logs: 0.25 of a true one)
+
 
 @dataclass(frozen=True, slots=True)
 class Finding:
@@ -36,7 +38,7 @@ def find(parts: tuple[Stretches, ...], without: Sequence[str], slop: float, seed
     whole log clearly better than anything that was found in all of it."""
     whole = _searched(parts, without, slop, seed, say)
     began = whole.selection.began
-    if began is None or _event(whole):
+    if began is None or _event(whole) or began.evidence < WORTH * _known(whole):
         return whole
     say(f"searching the part from {began.since:.0f} s on", 0.85)
     try:
@@ -45,7 +47,9 @@ def find(parts: tuple[Stretches, ...], without: Sequence[str], slop: float, seed
         return whole
     if not late.judgement.named or not late.judgement.final or _event(late):
         return whole
-    clearer = switched(whole.problem, late.judgement.final, began.since, whole.selection.healthy) > _known(whole) + CLEARER
+    healthy = whole.selection.healthy
+    beyond = switched(whole.problem, late.judgement.final, began.since, healthy) - whole_evidence(whole.problem, healthy)
+    clearer = beyond > _known(whole) + CLEARER
     return replace(late, since=began.since) if clearer else whole
 
 
@@ -66,7 +70,6 @@ def _event(one: Finding) -> bool:
 
 
 def _known(whole: Finding) -> float:
-    """Evidence of the best that the whole log shows, named or not, over the vehicle as it is."""
+    """Evidence of the best that the whole log shows, named or not, over a healthy vehicle."""
     tried = whole.selection.rounds[0] if whole.selection.rounds else ()
-    best = max([0.0, *(evidence for _, evidence, _ in tried), *([whole.judgement.causes] if whole.judgement.named else [])])
-    return whole_evidence(whole.problem, whole.selection.healthy) + best
+    return max([0.0, *(evidence for _, evidence, _ in tried), *([whole.judgement.causes] if whole.judgement.named else [])])
