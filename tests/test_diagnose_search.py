@@ -297,6 +297,13 @@ def test_a_parameter_whose_channel_is_not_in_the_log_does_not_compete():
     assert "voltage" in untestable["voltage_sag.gain"]
 
 
+def test_a_late_depth_needs_a_velocity_to_be_late_against():
+    """Where depth is all that is known of heave, a late one is any force that lifts."""
+    parts, _ = cut_all([without(own((), 5, 120.0), "w")], merlin(), "fossen", 10.0)
+    library, untestable = hypotheses(parts)
+    assert "time_offset[depth]" not in {h.name for h in library} and "needs w" in untestable["time_offset[depth].delay"]
+
+
 def test_what_is_named_is_not_called_untestable(tmp_path: Path):
     """A thruster that is turned far round shows, though a turn of typical size would not."""
     document = diagnose([bluerov2(tmp_path, "turned.csv", 12, 200.0, 0.03, ("thruster_misaligned", "T1", -2.0))], load("bluerov2_heavy")).document

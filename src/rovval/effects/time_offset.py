@@ -27,12 +27,13 @@ EFFECT = Effect(
         Parameter("tau", "s", -2.0, 2.0, 0.0, 0.1, "+-0.5 s (diagnosis.md S1)"),
         Parameter("delay", "s", -1.5, 1.5, 0.0, 0.2, "+-0.5 s (diagnosis.md S1)", target="velocity"),
         Parameter("delay", "s", -1.5, 1.5, 0.0, 0.2, "+-0.5 s (diagnosis.md S1)", target="attitude"),
-        Parameter("delay", "s", -1.5, 1.5, 0.0, 0.2, "+-0.5 s (diagnosis.md S1)", target="depth", needs="z"),
+        Parameter("delay", "s", -1.5, 1.5, 0.0, 0.2, "+-0.5 s (diagnosis.md S1)", target="depth", needs="w"),
     ),
     signature="the answer comes early or late by the same time on every axis; [velocity]: u v w late, p q r and attitude not; "
     "[attitude]: the reverse; [depth]: depth late in a dive",
     confused_with=("thrust_lag", "clock_drift", "velocity_filter_lag", "added_mass"),
-    separates="an offset delays without smoothing; it can be negative; position and depth show a delay of velocities or attitude alone",
+    separates="an offset delays without smoothing; it can be negative; position and depth show a delay of velocities or attitude alone, a measured "
+    "heave velocity one of depth: without it a late depth is any force that lifts",
 )
 # The plant adds each delay times the first acceleration to the first true velocities (`plant.model`).
 SETTLES = {"delay[velocity]": slice(0, 3), "delay[attitude]": slice(3, 6)}
