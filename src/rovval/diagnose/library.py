@@ -45,6 +45,8 @@ def hypotheses(
             if (c := slot.parameter.needs) and not logged(c):
                 untestable[slot.key] = f"needs {c}, which this log does not hold"
         slots = tuple(s for s in slots if plant.slots[s].key not in untestable)
+        if not slots:
+            continue
         next_id = len(plant.slots) + sum(len(h.directions) for h in found)
         found.extend(starts(plant, name, effect, slots, parts, next_id, periods, breaks_s, held))
     return found, untestable
