@@ -16,7 +16,7 @@ SERIOUS = 0.5  # share of the best evidence from which a rival's gain counts
 NEARLY = 0.9  # of the best's gain
 LEAST_OF_BEST = 0.5  # of the gain of the best serious rival
 REVERSED, DEGRADED = "thruster_reversed", "thruster_degraded"  # one imitates the other up to a dead thruster, and no further
-BEGUN, CLEARLY = "thruster_fault_onset", 20.0  # the same loss with an onset, and its evidence over that without (opened logs: false < 0, true > 100)
+BEGUN, CLEARLY = "thruster_fault_onset", 20.0  # the same loss with an onset, and its evidence over that without (opened logs: false < 0, true 69 and more)
 
 
 def admissible(problem: Problem, weighed: list[Rival]) -> list[Rival]:
