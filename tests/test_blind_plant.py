@@ -178,6 +178,14 @@ def test_the_whole_library_of_the_contract_and_a_dozen_foreign_effects_can_be_pl
 SECONDS = 24.0
 
 
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_vane_that_sticks_is_not_a_dead_thruster(merlin: Path, seed: int) -> None:
+    """It keeps the thrust of some speed of before, so that one that never lets go is nothing that the library has."""
+    [effect] = plant.fly(merlin, "station", [Planted("sticky_thruster", None, 2.0)], seed, 20.0, 0.0).truth["effects"]
+    working = effect["values"]["band_rpm"] / (0.8 * 2.0)
+    assert 0.5 * working <= abs(effect["values"]["first_rpm"]) <= working
+
+
 @pytest.fixture(scope="module")
 def healthy(merlin: Path) -> Flight:
     return plant.fly(merlin, "rich", [], 11, SECONDS)

@@ -125,6 +125,18 @@ def test_what_follows_a_change_has_to_outdo_what_the_whole_log_shows(
     assert [n.hypothesis.name for n in one.judgement.named] == (["reverse_asymmetry"] if told else ["voltage_sag"] if causes else [])
 
 
+def test_a_cause_that_never_begins_is_a_healthy_vehicle_with_its_own_tolerance(logs: tuple[Run, Run]) -> None:
+    """A coefficient that the cause takes is as free before it as any other."""
+    parts, _ = cut_all([logs[0]], merlin(), "fossen", 10.0)
+    library, _ = hypotheses(parts)
+    problem = pose(parts, library, 0.05)
+    drag = next(h for h in library if h.name == "linear_drag[surge]")
+    always, alone = confirm(problem, problem.origin, drag.slots), healthy_point(problem)
+    assert set(drag.slots) <= set(problem.slop.sd)
+    assert switched(problem, always, 1e6, alone) == pytest.approx(whole_evidence(problem, alone), abs=1.0)
+    assert switched(problem, always, 0.0, alone) == pytest.approx(always.evidence, abs=5.0)  # slopes of slop made anew where it settled
+
+
 def test_a_cause_from_some_moment_on_is_weighed_on_every_window(logs: tuple[Run, Run]) -> None:
     """From before the log on it is the cause itself; from after its end on, a healthy vehicle; at its own beginning it is worth more than all through."""
     parts, _ = cut_all([logs[0]], merlin(), "fossen", 10.0)
