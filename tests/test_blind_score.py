@@ -340,7 +340,7 @@ MAPPED = [
 MAPPED = [
     (n, t)
     for n, t in MAPPED
-    if not (n == "time_offset" and t in ("attitude", "depth")) and not (n == "inertia_error" and t == "surge")
+    if not (n == "inertia_error" and t == "surge")
 ]
 
 

@@ -85,14 +85,16 @@ def test_the_jet_that_meets_the_hull_most_squarely_loses_what_the_effect_says():
 
 
 def test_a_window_reproduces_the_log_that_its_own_effects_made():
-    """Shooting from a logged state with the true effects gives the log back (velocity filter and delay: to second order in their time)."""
+    """Shooting from a logged state with the true effects gives the log back: the part of a motion that a filter or a delay has not shown yet is
+    simulated, to some per cent of speeds that here reach 0.6 m/s and of rates that reach 1.9 rad/s."""
     plant = Plant(cases.merlin())
     rng = np.random.default_rng(1)
     inputs = cases.random_inputs(rng, plant)
     for key, value, tolerance in (
         ("dvl_misalignment.yaw", 0.2, 1e-9), ("dvl_lever_arm.x", 0.5, 1e-9), ("compass_deviation.sine", 0.2, 1e-9), ("attitude_bias.phi", 0.05, 1e-9),
-        ("time_offset.tau", 0.25, 1e-9), ("thrust_lag.tau", 0.3, 1e-9), ("gyro_bias.r", 0.02, 1e-9), ("velocity_filter_lag.tau", 0.3, 0.05),
-        ("time_offset[velocity].delay", 0.3, 0.05), ("time_offset[attitude].delay", 0.3, 0.05),
+        ("time_offset.tau", 0.25, 1e-9), ("thrust_lag.tau", 0.3, 1e-9), ("gyro_bias.r", 0.02, 1e-9), ("velocity_filter_lag.tau", 0.3, 0.02),
+        ("time_offset[velocity].delay", 0.3, 0.001), ("time_offset[attitude].delay", 0.3, 0.001), ("time_offset[velocity].delay", 0.65, 0.002),
+        ("time_offset[attitude].delay", 0.65, 0.005), ("time_offset[velocity].delay", -0.65, 0.03), ("time_offset[attitude].delay", -0.65, 0.02),
         ("time_offset[depth].delay", 0.3, 1e-9),
     ):  # fmt: skip
         beta = plant.null.copy()
@@ -100,7 +102,7 @@ def test_a_window_reproduces_the_log_that_its_own_effects_made():
         zero = np.zeros((1, 6))
         log = plant.simulate(inputs, np.zeros(1, int), 150, zero, zero, beta[None])
         window = plant.simulate(inputs, np.array([80]), 60, log.nu[:, 80], log.eta[:, 80], beta[None])
-        assert np.abs(window.nu - log.nu[:, 80:141]).max() < tolerance, key
+        assert np.abs(window.nu - log.nu[:, 80:141]).max() < tolerance, (key, value)
 
 
 def test_sensors_of_many_lanes_are_those_of_one_lane_at_a_time():

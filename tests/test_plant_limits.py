@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ import plant_cases as cases
 from real_data import real
 from rovval import vehicle
 from rovval.errors import BadInput, UsageProblem
-from rovval.plant import Inputs, Plant, electrical, lag, parse_settings, table61
+from rovval.plant import Inputs, Plant, electrical, lag, oracle, parse_settings, table61
 from rovval.vehicle import uuv_yaml
 
 
@@ -39,6 +40,22 @@ def test_a_lane_stops_where_thruster_speed_is_missing(hold, last):
     assert out.stopped.tolist() == [last + 1, -1]
     assert out.why == (f"lane 0 stopped at {(last + 1) / 10:.1f} s: thruster speed missing in the log",)
     assert np.isfinite(out.nu).all()
+
+
+def test_a_load_that_is_set_down_takes_inertia_with_it_and_never_all_of_it():
+    """A push astern moves the lighter vehicle more; a mass taken from so far out that nothing is left to turn stops the lane when it goes, in the kernel and
+    in its oracle, and the lane beside it goes on."""
+    plant = Plant(cases.merlin())
+    beta = np.tile(plant.null, (3, 1))
+    at = {name: plant.index[f"payload_change.{name}"] for name in ("mass", "onset", "x")}
+    beta[:, at["onset"]], beta[1, at["mass"]], beta[2, [at["mass"], at["x"]]] = 1.0, -300.0, (-1000.0, 3.0)
+    inputs, zero = Inputs(0.1, np.tile([3.0, 3.0, 0, 0, 0, 0, 0], (60, 1)), True), np.zeros((3, 6))
+    for simulate in (plant.simulate, partial(oracle.simulate, plant)):
+        out = simulate(inputs, np.zeros(3, int), 50, zero, zero, beta)
+        assert out.stopped.tolist() == [-1, -1, 11]
+        assert np.allclose(out.nu[0, :11], out.nu[1, :11], rtol=0, atol=1e-15)
+        assert 1.01 < (out.nu[1, 20, 0] - out.nu[1, 10, 0]) / (out.nu[0, 20, 0] - out.nu[0, 10, 0]) < 1.2
+    assert plant.simulate(inputs, np.zeros(3, int), 50, zero, zero, beta).why == ("lane 2 stopped at 1.1 s: the payload that was set down leaves no inertia",)
 
 
 def test_settings_are_refused_by_name_and_all_at_once():

@@ -34,7 +34,7 @@ def _mass(v: Values, target: str, vehicle: Vehicle) -> dict[str, float]:
 
 
 def _late(v: Values, target: str, vehicle: Vehicle) -> dict[str, float]:
-    return {"velocity": {"delay": v["delay_s"]}, "thruster_feedback": {"tau": -v["delay_s"]}}.get(target, {})
+    return {"tau": -v["delay_s"]} if target == "thruster_feedback" else {"delay": v["delay_s"]}
 
 
 def _compass(v: Values, target: str, vehicle: Vehicle) -> dict[str, float]:
@@ -54,7 +54,6 @@ TABLE: Mapping[str, Callable[[Values, str, Vehicle], dict[str, float]]] = {
     "thruster_reversed": lambda v, t, _: {"fraction": 1.0} if v.get("turn") == -1.0 else {},
     "reverse_asymmetry": lambda v, t, _: {"scale": -v["loss"]},
     "rpm_scale": lambda v, t, _: {"scale": 1.0 / (1.0 + v["relative"]) - 1.0},
-    "velocity_filter_lag": lambda v, t, _: {"tau": v["delay_s"]},  # two poles against one: the same mean delay
     "time_offset": _late,
     "dvl_scale": lambda v, t, _: {"scale": v["relative"]},
     "dvl_misalignment": lambda v, t, _: {ANGLE[t]: v["angle_rad"]},

@@ -27,7 +27,10 @@ SPLIT = 0.1  # m/s, rad/s: drag is known as a whole at this speed; how much of i
 UNKNOWN = 0.5  # m/s, rad/s: the same for an axis without linear drag in the file, where nobody has measured it (chosen)
 WITHIN = 3.5  # standard deviations of tolerance that healthy coefficients reach (tuning set: 3.3 of some hundred)
 STRAINED = 5.0  # standard deviations from which a coefficient is off by more than slop of the stated size
-UNSEEN = "time_offset[depth].delay"  # half a sample of it moves a depth by less than its check is held to see: no tolerance, but a fault that is longer
+WITHOUT = (  # faults of sensors that have no tolerance of their own
+    "time_offset[depth].delay",  # half a sample of it moves a depth by less than its check is held to see
+    "velocity_filter_lag.dead",  # the velocity log's time offset has it
+)
 SENSORS = {
     "attitude_bias": 0.01,  # rad: AHRS of the class give 0.2 to 0.5 degrees static (Xsens MTi data sheets)
     "gyro_bias": 0.002,  # rad/s: 0.1 degree a second, MEMS in-run bias with temperature
@@ -68,6 +71,6 @@ def slop_prior(plant: Plant, slop: float) -> Prior:
             sd[i] = slop * max(TRIM * plant.vehicle.weight, TRIM_FORCE * reference_drag_force(plant.vehicle))
         elif slot.effect == "cg_offset":
             sd[i] = slop * (max(height, CENTRE * arm) if name == "z" else max(LEVEL * height, CENTRE_LEVEL * arm, LEAST_LEVEL))
-        elif slot.effect in SENSORS and slot.key != UNSEEN:
+        elif slot.effect in SENSORS and slot.key not in WITHOUT:
             sd[i] = SENSORS[slot.effect]
     return Prior(sd)

@@ -17,10 +17,11 @@ EFFECT = Effect(
     name="payload_change",
     title="Payload taken up or set down",
     place="wrench",
-    equation="from onset on: mass m at (x, y, z) joins M_RB and C_RB, and its weight in water acts there (diagnosis.md B4). Weight comes on "
-    "over 0.1 s, mass at the next step. Added mass of the payload is not modelled.",
+    equation="from onset on: mass m at (x, y, z) joins M_RB and C_RB, negative where it is set down, and its weight in water acts there "
+    "(diagnosis.md B4). Weight comes on over 0.1 s, mass at the next step; what would leave no inertia of some motion stops the simulation. Added "
+    "mass of the payload is not modelled.",
     parameters=(
-        Parameter("mass", "kg", 0.0, 10.0, 0.0, 0.5, "up to some per cent of the vehicle (Merlin: 250 to 475 kg of 3000, thesis 2.2)", "weight"),
+        Parameter("mass", "kg", -10.0, 10.0, 0.0, 0.5, "up to some per cent of the vehicle (Merlin: 250 to 475 kg of 3000, thesis 2.2)", "weight"),
         Parameter("weight", "N", -60.0, 60.0, 0.0, 3.0, "weight less buoyancy of the load", "weight"),
         Parameter("onset", "s", 0.0, 1e6, 0.0, 60.0, "any time of the log"),
         Parameter("x", "m", -3.0, 3.0, 0.0, 0.2, "where it hangs"),

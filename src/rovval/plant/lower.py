@@ -18,6 +18,7 @@ Flags = NDArray[np.bool_]
 
 # Effects that only lower numbers, but numbers that the nominal kernel does not hold.
 BEYOND_NOMINAL = {"thrust_lag", "time_offset", "clock_drift", "thruster_interaction", "hull_interaction", "payload_change"}
+ROUNDING = 1e-9  # of a step, in the time of a sample
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +100,19 @@ def with_payload(lanes: Lanes) -> Lanes:
     centre = (lanes.mass[:, None] * lanes.centre_of_gravity + m[:, None] * r) / total[:, None]
     square = skew(r) @ skew(r)
     return replace(lanes, mass=total, centre_of_gravity=centre, inertia=lanes.inertia - m[:, None, None] * square)
+
+
+def steps_before_nothing(lanes: Lanes, first: Array, dt: float) -> NDArray[np.int64]:
+    """Steps (B,) of a lane that begins at ``first`` (B,) s before its payload leaves the vehicle no inertia of some motion: what is set down must
+    have been part of it. As many as there can be where it does."""
+    steps = np.full(len(lanes), np.iinfo(np.int64).max // 2)
+    lighter = np.flatnonzero(lanes.payload_mass < 0.0)
+    if len(lighter):
+        left = with_payload(lanes.take(lighter))
+        whole = rigid_body(left.mass, left.mass[:, None] * left.centre_of_gravity, left.inertia) + left.added_mass
+        gone = lighter[np.linalg.eigvalsh(0.5 * (whole + whole.transpose(0, 2, 1)))[:, 0] <= 0.0]
+        steps[gone] = np.maximum(np.ceil((lanes.payload_onset[gone] - first[gone]) / dt - ROUNDING), 0.0)
+    return steps
 
 
 def mass_numbers(lanes: Lanes) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -13,16 +13,20 @@ from rovval import effects
 from rovval.effects._lanes import Lanes, nominal
 from rovval.errors import BadInput, UsageProblem, all_at_once
 from rovval.frames import quaternion_from_euler
-from rovval.plant import compose, geometry, kernel, sensors, slots
+from rovval.plant import compose, geometry, kernel, late, sensors, slots
 from rovval.plant.inputs import Inputs, Prepared, prepare
-from rovval.plant.lower import Lowered, lower, mass_numbers, pack, with_payload
+from rovval.plant.lower import Lowered, lower, mass_numbers, pack, steps_before_nothing, with_payload
 from rovval.plant.template import RATE_LIMIT, SPEED_LIMIT
 from rovval.vehicle.model import Vehicle, square
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 MODELS = ("fossen", "freefloating")
-REASONS = ("", f"speed above {SPEED_LIMIT:g} m/s", f"rate above {RATE_LIMIT:g} rad/s", "state not finite", "thruster speed missing in the log")
+REASONS = (
+    "", f"speed above {SPEED_LIMIT:g} m/s", f"rate above {RATE_LIMIT:g} rad/s", "state not finite", "thruster speed missing in the log",
+    "the payload that was set down leaves no inertia")  # fmt: skip
+
+GAP, NOTHING = 4, 5  # of these; the kernel gives the first for either
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,19 +96,35 @@ class Plant:
         start, nu0, eta0, beta, which, gain = self._checked(inputs, start, steps, nu0, eta0, beta, extra, extra_gain)
         prepared = prepare(inputs, self.vehicle)
         lowered = lower(self.nominal, self.slots, self.index, self.null, beta)
-        true_nu, true_eta = sensors.unobserve(self.vehicle, self.index, self.null, beta, nu0, eta0)
-        lanes = _Lanes(start, true_nu, true_eta, which, gain)
-        if sensors.settling(lowered.active):
-            first, _, _ = self._run(inputs, prepared, lowered, lanes, min(1, steps))
-            true_nu = sensors.settle(self.vehicle, self.index, self.null, beta, true_nu, (first[:, -1, :6] - first[:, 0, :6]) / inputs.dt)
-            lanes = _Lanes(start, true_nu, true_eta, which, gain)
-        out, stopped, codes = self._run(inputs, prepared, lowered, lanes, steps)
+        lanes = _Lanes(start, *sensors.unobserve(self.vehicle, self.index, self.null, beta, nu0, eta0), which, gain)
+        delays = sensors.delays(self.index, self.null, beta)
+        lanes, before, after = self._late(inputs, prepared, lowered, lanes, delays) if delays else (lanes, np.empty((len(start), 0, 12)), 0)
+        out, stopped, codes = self._run(inputs, prepared, lowered, lanes, steps + after)
+        out, first = np.concatenate([before, out], axis=1) if delays else out, before.shape[1]
         seen = sensors.overwritten(
             self.vehicle, self.index, self.null, beta,
-            sensors.Log(out[..., :6], out[..., 6:], inputs.dt, nu0, eta0),
+            sensors.Log(out[..., :6], out[..., 6:], inputs.dt, nu0, eta0, first),
         )  # fmt: skip
+        stopped = np.where(stopped > steps, -1, stopped)
         why = tuple(f"lane {b} stopped at {stopped[b] * inputs.dt:.1f} s: {REASONS[codes[b]]}" for b in np.flatnonzero(stopped >= 0))
-        return Motion(seen.nu, seen.eta, stopped, why)
+        window = slice(first, first + steps + 1)
+        return Motion(seen.nu[:, window], seen.eta[:, window], stopped, why)
+
+    def _late(
+        self, inputs: Inputs, prepared: Prepared, lowered: Lowered, lanes: _Lanes, delays: Sequence[late.Delay]
+    ) -> tuple[_Lanes, Array, int]:
+        """The lanes at their true first states behind sensors that are late, the samples before those (B, m, 12), and how many samples beyond the
+        windows sensors that are early show."""
+
+        def simulate(some: Indices, start: Indices, state: Array, steps: int) -> tuple[Array, Indices]:
+            there = replace(lanes.take(some), start=start, nu=state[:, :6], eta=state[:, 6:])
+            out, stopped, _ = self._run(inputs, prepared, lowered.take(some), there, steps)
+            return out, stopped
+
+        clock = late.Clock(simulate, inputs.dt, len(inputs.speed))
+        state, before = late.true_start(clock, lanes.start, np.concatenate([lanes.nu, lanes.eta], axis=1), delays)
+        early = max(int(late.whole_samples(np.minimum(d.seconds, 0.0), inputs.dt).max()) for d in delays)
+        return replace(lanes, nu=state[:, :6], eta=state[:, 6:]), before, early
 
     def _run(self, inputs: Inputs, prepared: Prepared, lowered: Lowered, lanes: _Lanes, steps: int) -> tuple[Array, Indices, Indices]:
         """True motion (B, steps + 1, 12): u v w p q r, x y z phi theta psi; first invalid sample and its reason per lane."""
@@ -129,7 +149,9 @@ class Plant:
         states = _blocked(np.concatenate([lanes.eta[:, :3], quaternion_from_euler(lanes.eta[:, 3:]), lanes.nu], axis=1))
         out = np.empty((blocks * compose.W, steps + 1, 12))
         stopped, reason = np.full((blocks, compose.W), -1), np.zeros((blocks, compose.W), dtype=np.int64)
-        limit = prepared.steps_before_gap(lanes.start, inputs.hold)
+        gap = prepared.steps_before_gap(lanes.start, inputs.hold)
+        nothing = steps_before_nothing(lowered.lanes, prepared.t[lanes.start], inputs.dt)
+        limit = np.minimum(gap, nothing)
         kernel.run(
             spec, blocks,
             (
@@ -137,7 +159,8 @@ class Plant:
                 prepared.log, prepared.t, prepared.extra, *self._geometry, inputs.dt, inputs.hold, steps, self.substeps, out, stopped, reason,
             ),
         )  # fmt: skip
-        return out[:size], stopped.reshape(-1)[:size], reason.reshape(-1)[:size]
+        codes = np.where((reason.reshape(-1)[:size] == GAP) & (nothing < gap), NOTHING, reason.reshape(-1)[:size])
+        return out[:size], stopped.reshape(-1)[:size], codes
 
     def _checked(
         self, inputs: Inputs, start: Indices, steps: int, nu0: Array, eta0: Array, beta: Array,

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval.frames import euler_from_quaternion, quaternion_from_euler
-from rovval.plant import sensors
+from rovval.plant import late, sensors
 from rovval.plant.inputs import Inputs, Prepared, prepare
-from rovval.plant.lower import Lowered, lower, rigid_body, with_payload
+from rovval.plant.lower import Lowered, lower, rigid_body, steps_before_nothing, with_payload
 from rovval.plant.model import Motion, Plant
 from rovval.plant.oracle_log import at_stages, warm
 from rovval.plant.oracle_motion import derivative
@@ -34,12 +34,24 @@ def simulate(
     lowered = lower(plant.nominal, plant.slots, plant.index, plant.null, beta)
     nu, eta = sensors.unobserve(plant.vehicle, plant.index, plant.null, beta, nu0, eta0)
     prepared = prepare(inputs, plant.vehicle)
-    if sensors.settling(lowered.active):
-        first, _, _ = _integrate(plant, lowered, inputs, prepared, start, which, gain, nu, eta, 1)
-        nu = sensors.settle(plant.vehicle, plant.index, plant.null, beta, nu, (first[:, 1] - first[:, 0]) / inputs.dt)
-    true_nu, true_eta, stopped = _integrate(plant, lowered, inputs, prepared, start, which, gain, nu, eta, steps)
-    seen = sensors.observe(plant.vehicle, plant.index, plant.null, beta, sensors.Log(true_nu, true_eta, inputs.dt, nu0, eta0))
-    return Motion(seen.nu, seen.eta, stopped, tuple(f"lane {b}" for b in np.flatnonzero(stopped >= 0)))
+    before, early = np.empty((size, 0, 12)), 0
+    if delays := sensors.delays(plant.index, plant.null, beta):
+
+        def run(some: Indices, begin: Indices, state: Array, many: int) -> tuple[Array, Indices]:
+            mine, to = lowered.take(some), (which[some], gain[some])
+            there_nu, there_eta, ended = _integrate(plant, mine, inputs, prepared, begin, *to, state[:, :6], state[:, 6:], many)
+            return np.concatenate([there_nu, there_eta], axis=-1), ended
+
+        first, before = late.true_start(late.Clock(run, inputs.dt, len(inputs.speed)), start, np.concatenate([nu, eta], axis=1), delays)
+        nu, eta = first[:, :6], first[:, 6:]
+        early = max(int(late.whole_samples(np.minimum(d.seconds, 0.0), inputs.dt).max()) for d in delays)
+    true_nu, true_eta, stopped = _integrate(plant, lowered, inputs, prepared, start, which, gain, nu, eta, steps + early)
+    true_nu, true_eta = np.concatenate([before[..., :6], true_nu], axis=1), np.concatenate([before[..., 6:], true_eta], axis=1)
+    m = before.shape[1]
+    seen = sensors.observe(plant.vehicle, plant.index, plant.null, beta, sensors.Log(true_nu, true_eta, inputs.dt, nu0, eta0, m))
+    stopped = np.where(stopped > steps, -1, stopped)
+    window = slice(m, m + steps + 1)
+    return Motion(seen.nu[:, window], seen.eta[:, window], stopped, tuple(f"lane {b}" for b in np.flatnonzero(stopped >= 0)))
 
 
 def _integrate(
@@ -52,7 +64,7 @@ def _integrate(
     run.memory = warm(run)
     state = np.concatenate([eta0[:, :3], quaternion_from_euler(eta0[:, 3:]), nu0], axis=1)
     states, stopped = [state], np.full(len(start), -1)
-    limit = prepared.steps_before_gap(start, inputs.hold)
+    limit = np.minimum(prepared.steps_before_gap(start, inputs.hold), steps_before_nothing(lowered.lanes, prepared.t[start], inputs.dt))
     h = inputs.dt / plant.substeps
     for step in range(steps):
         for sub in range(plant.substeps):

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from rovval import effects
 from rovval.plant import slots
+from rovval.plant.late import Delay
 from rovval.vehicle.model import Vehicle
 
 Array = NDArray[np.float64]
@@ -26,13 +27,15 @@ ORDER = (
 
 @dataclass(frozen=True, slots=True)
 class Log:
-    """A motion on its way through the sensors: ``nu`` and ``eta`` (B, T + 1, 6), ``dt`` s, and the first measured ``nu0`` and ``eta0`` (B, 6)."""
+    """A motion on its way through the sensors: ``nu`` and ``eta`` (B, T + 1, 6), ``dt`` s, and what was measured, ``nu0`` and ``eta0`` (B, 6), at
+    its sample ``first``: before and after the window is what late and early sensors show in it."""
 
     nu: Array
     eta: Array
     dt: float
     nu0: Array
     eta0: Array
+    first: int = 0
 
 
 @cache
@@ -51,7 +54,7 @@ def overwritten(vehicle: Vehicle, index: Mapping[str, int], null: Array, beta: A
     """The same in the arrays of ``log`` themselves, which the caller gives away: they are the bulk of a simulation, of which few lanes have a
     sensor effect."""
     for name, lanes in _acting(order(), index, null, beta):
-        part = Log(log.nu[lanes], log.eta[lanes], log.dt, log.nu0[lanes], log.eta0[lanes])
+        part = Log(log.nu[lanes], log.eta[lanes], log.dt, log.nu0[lanes], log.eta0[lanes], log.first)
         seen = effects.module(name).observe(part, slots.gather(vehicle, index, name, beta[lanes]))
         for whole, before, after in ((log.nu, part.nu, seen.nu), (log.eta, part.eta, seen.eta)):
             if after is not before:
@@ -69,21 +72,21 @@ def unobserve(vehicle: Vehicle, index: Mapping[str, int], null: Array, beta: Arr
     return nu, eta
 
 
-def settling(active: frozenset[str]) -> bool:
-    """Whether a sensor with a memory is at work: its first true velocity depends on the acceleration there."""
-    return any(hasattr(effects.module(name), "SETTLES") for name in active)
+def delays(index: Mapping[str, int], null: Array, beta: Array) -> tuple[Delay, ...]:
+    """By how much sensors are late (B,), those that are in any lane."""
+    found = list[Delay]()
+    for name, _ in _acting(order(), index, null, beta):
+        for parameters, columns in getattr(effects.module(name), "LATE", {}).items():
+            seconds = np.sum([beta[:, index[_key(name, parameter)]] for parameter in parameters], axis=0)
+            if seconds.any():
+                found.append(Delay(seconds, columns))
+    return tuple(found)
 
 
-def settle(vehicle: Vehicle, index: Mapping[str, int], null: Array, beta: Array, nu0: Array, acceleration: Array) -> Array:
-    """First true velocities behind a filter that has run for long, or a delay: those that it holds back plus its time times the
-    acceleration (B, 6)."""
-    nu = nu0
-    for name, lanes in _acting(order(), index, null, beta):
-        for parameter, part in getattr(effects.module(name), "SETTLES", {}).items():
-            p = slots.gather(vehicle, index, name, beta[lanes])
-            nu = nu.copy()
-            nu[lanes, part] += p[parameter][:, None] * acceleration[lanes, part]
-    return nu
+def _key(name: str, parameter: str) -> str:
+    """``time_offset[velocity].delay`` of ``delay[velocity]``."""
+    plain, _, target = parameter.partition("[")
+    return f"{name}[{target}.{plain}" if target else f"{name}.{plain}"
 
 
 def _acting(wanted: tuple[str, ...], index: Mapping[str, int], null: Array, beta: Array) -> list[tuple[str, Part]]:
