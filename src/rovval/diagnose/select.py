@@ -114,12 +114,12 @@ def _pruned(problem: Problem, named: list[Named]) -> list[Named]:
 def _ranking(
     problem: Problem, library: list[Hypothesis], named: list[Named], rounds: Sequence[tuple[tuple[str, float, float], ...]]
 ) -> tuple[tuple[str, float], ...]:
-    """Every hypothesis with the held-out share of the gap that it closes by itself, slop standing still: the named ones, the finalists by
-    evidence, then the others by their share in the linearised model."""
+    """Every hypothesis with the held-out share of the gap that it closes by itself, slop standing still: the named ones, then the others by that
+    share, re-simulated for the finalists, linearised for the rest."""
     _, fits = contest(Ring.of(problem.gap_data, problem.folds), Prior({}), {h.label: prior_of(problem, h) for h in library}, problem.inflation)
     gap, share = float(problem.gap_data.c.sum()), dict[str, float]()
     for h in library:
         share[h.name] = max(1.0 - fits[h.label].loss / gap, share.get(h.name, -np.inf))
     share |= {name: gain for name, _, gain in (rounds[0] if rounds else ())}
-    leading = dict.fromkeys([n.hypothesis.name for n in named] + [name for name, _, _ in (rounds[0] if rounds else ())])
+    leading = dict.fromkeys(n.hypothesis.name for n in named)
     return tuple((name, share[name]) for name in (*leading, *sorted(share.keys() - leading.keys(), key=lambda n: -share[n])))
