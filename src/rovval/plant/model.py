@@ -9,11 +9,11 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from rovval import effects
 from rovval.effects._lanes import Lanes, nominal
-from rovval.errors import BadInput, UsageProblem, all_at_once
+from rovval.errors import UsageProblem
 from rovval.frames import quaternion_from_euler
 from rovval.plant import compose, geometry, kernel, late, sensors, slots
+from rovval.plant.arguments import checked
 from rovval.plant.inputs import Inputs, Prepared, prepare
 from rovval.plant.lower import Lowered, lower, mass_numbers, pack, steps_before_nothing, with_payload
 from rovval.plant.template import RATE_LIMIT, SPEED_LIMIT
@@ -93,7 +93,8 @@ class Plant:
         ``inputs.extra`` or -1, ``extra_gain`` (B,) its factor. Raises UsageProblem for parameters out of bounds or an effect
         whose channel the inputs do not hold, BadInput for shapes that do not fit.
         """
-        start, nu0, eta0, beta, which, gain = self._checked(inputs, start, steps, nu0, eta0, beta, extra, extra_gain)
+        thrusters = len(self.vehicle.thruster)
+        start, nu0, eta0, beta, which, gain = checked(self.slots, self.null, thrusters, inputs, start, steps, nu0, eta0, beta, extra, extra_gain)
         prepared = prepare(inputs, self.vehicle)
         lowered = lower(self.nominal, self.slots, self.index, self.null, beta)
         lanes = _Lanes(start, *sensors.unobserve(self.vehicle, self.index, self.null, beta, nu0, eta0), which, gain)
@@ -162,40 +163,6 @@ class Plant:
         codes = np.where((reason.reshape(-1)[:size] == GAP) & (nothing < gap), NOTHING, reason.reshape(-1)[:size])
         return out[:size], stopped.reshape(-1)[:size], codes
 
-    def _checked(
-        self, inputs: Inputs, start: Indices, steps: int, nu0: Array, eta0: Array, beta: Array,
-        extra: Indices | None, extra_gain: Array | None,
-    ) -> tuple[Indices, Array, Array, Array, Indices, Array]:
-        start = np.asarray(start, dtype=np.int64)
-        nu0, eta0, beta = (np.asarray(a, dtype=float) for a in (nu0, eta0, beta))
-        size = len(start)
-        which = np.full(size, -1, dtype=np.int64) if extra is None else np.asarray(extra, dtype=np.int64)
-        gain = np.ones(size) if extra_gain is None else np.asarray(extra_gain, dtype=float)
-        given = {"nu0": nu0, "eta0": eta0, "beta": beta, "extra": which, "extra_gain": gain}
-        wanted = {"nu0": (size, 6), "eta0": (size, 6), "beta": (size, len(self.slots)), "extra": (size,), "extra_gain": (size,)}
-        problems = [f"{name} is {a.shape}, not {wanted[name]}" for name, a in given.items() if a.shape != wanted[name]]
-        samples, k = inputs.speed.shape
-        if k != len(self.vehicle.thruster):
-            problems.append(f"{k} thruster speeds for {len(self.vehicle.thruster)} thrusters")
-        last = start.max(initial=0) + steps - (1 if inputs.hold else 0)
-        if start.min(initial=0) < 0 or last >= samples or steps < 0:
-            problems.append(f"samples {start.min(initial=0)} to {last} of a log of {samples}")
-        if which.max(initial=-1) >= (0 if inputs.extra is None else len(inputs.extra)):
-            problems.append(f"extra wrench {which.max()} is not in the bank")
-        if not problems and not (np.isfinite(nu0).all() and np.isfinite(eta0).all()):
-            problems.append("a first state is not finite")
-        if not size:
-            problems.append("no lane at all")
-        if problems:
-            raise BadInput(all_at_once(problems, "simulate"))
-        slots.check_bounds(self.slots, beta)
-        moved = [self.slots[c] for c in np.flatnonzero((beta != self.null).any(axis=0))]
-        missing = [f"{n} needs {c}" for n in sorted({s.effect for s in moved}) for c in effects.load(n).needs if c in ABSENT and _absent(inputs, c)]
-        missing += [f"{s.key} needs {s.parameter.needs}" for s in moved if s.parameter.needs in ABSENT and _absent(inputs, s.parameter.needs)]
-        if missing:
-            raise UsageProblem(all_at_once(missing, "channels that the log does not hold"))
-        return start, nu0, eta0, beta, which, gain
-
     def _payload(self, lanes: Lanes, blocks: int) -> tuple[Array, Array]:
         """Mass numbers after a payload's onset, and the onsets (s; infinite where there is none)."""
         onset = np.full(blocks * compose.W, np.inf)
@@ -203,14 +170,6 @@ class Plant:
             return np.zeros((blocks, 1)), onset.reshape(blocks, compose.W)
         onset[: len(lanes)] = np.where(lanes.payload_mass != 0, lanes.payload_onset, np.inf)
         return _blocked(mass_numbers(with_payload(lanes))), onset.reshape(blocks, compose.W)
-
-
-ABSENT = ("altitude", "wall_distance", "voltage", "tether_length")
-
-
-def _absent(inputs: Inputs, channel: str) -> bool:
-    values = getattr(inputs, channel)
-    return values is None or not np.isfinite(values).any()
 
 
 def parse_settings(plant: Plant, settings: Sequence[str]) -> Array:
