@@ -109,11 +109,6 @@ def test_damage_of_the_log_is_named(run_a: Run, fitted: Vehicle, damage: str, ri
     if damage.startswith("frame"):
         [cause] = [c for c in document["causes"] if c["effect"] == "dvl_misalignment"]
         assert cause["parameters"]["yaw"]["value"] == pytest.approx(math.radians(15.0), abs=math.radians(5.0))
-
-
-@slow
-@pytest.mark.xfail(strict=True, raises=AssertionError, reason="0.232 [0.177, 0.287]; 0.276 only beside a tether and an attitude bias that are not there")
-def test_a_damaged_scale_is_told_in_its_size(run_a: Run, fitted: Vehicle):
-    document = diagnose([changed(run_a, u=1.3 * run_a.get("u"))], fitted).document
-    [cause] = [c for c in document["causes"] if c["effect"] == "dvl_scale"]
-    assert cause["parameters"]["surge"]["value"] == pytest.approx(0.3, abs=0.05)
+    if damage.startswith("surge"):
+        [cause] = [c for c in document["causes"] if c["effect"] == "dvl_scale"]
+        assert cause["parameters"]["surge"]["value"] == pytest.approx(0.3, abs=0.05)

@@ -58,6 +58,7 @@ KNOCKED_OUT = [
     (A, "quadratic drag", drag("surge", "sway", "heave", "yaw")),
     (A, "surge drag", drag("surge")),
     (A, "sway drag", drag("sway")),
+    (A, "heave drag", drag("heave")),
     (A, "added_mass[surge]:scale=-0.9", {"added_mass[surge]"}),
     (A, "reverse_asymmetry:scale=-0.9", {"reverse_asymmetry"}),
     *((A, *dead(f"T{i}")) for i in (1, 2, 3, 4)),
@@ -69,7 +70,6 @@ KNOCKED_OUT = [
     (C, "yaw drag", drag("yaw")),
     missed(A, "reverse_asymmetry:scale=0", {"reverse_asymmetry"}, instead="no gap: on the level two turn astern and two ahead"),
     missed(A, "thrust_lag:tau=0", {"thrust_lag"}, instead="no gap: 0.08 s are less than one sample"),
-    missed(A, "heave drag", drag("heave"), instead="unknown effect: a force on heave that goes with w|w|"),
 ]
 
 

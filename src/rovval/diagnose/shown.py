@@ -18,6 +18,7 @@ from rovval.diagnose.gap import axis_weight
 from rovval.diagnose.ground import relief, without_own
 from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem, corrected_residuals
+from rovval.diagnose.separate import RELIEF
 from rovval.diagnose.shrinkage import shrinkage
 from rovval.diagnose.together import LEAST_EVIDENCE
 
@@ -61,11 +62,11 @@ def as_filed(problem: Problem, final: Confirmed, before: list[Array]) -> Way:
 
 
 def beside_slop(problem: Problem, final: Confirmed, healthy: Point, before: list[Array]) -> Way:
-    """Beside healthy coefficients: surely, where the causes close some of what those that are not their own leave when they settle alone, or
-    where they spare a healthy coefficient much of its strain."""
+    """Beside healthy coefficients: surely, where the causes close what is worth a name of what those that are not their own leave when they settle
+    alone, and some of it surely, or where they spare a healthy coefficient much of its strain."""
     was, left = axis_weight(problem, before), axis_weight(problem, corrected_residuals(problem, final.point.beta))
-    _, low, _ = relief(problem, final, without_own(problem, healthy, final.slots), 0)
-    return Way(was, left, low > SOME or healthy.strain() - final.point.strain() > SPARED, skilled(problem, was, left))
+    value, low, _ = relief(problem, final, without_own(problem, healthy, final.slots), 0)
+    return Way(was, left, (value > RELIEF and low > SOME) or healthy.strain() - final.point.strain() > SPARED, skilled(problem, was, left))
 
 
 def acting(closed: Mapping[str, float], share: float = ACTING) -> tuple[str, ...]:
