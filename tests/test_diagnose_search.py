@@ -412,3 +412,23 @@ def test_a_depth_sensor_that_is_late_is_named_and_has_no_tolerance(tmp_path: Pat
     assert late == {"time_offset.tau", "time_offset[velocity].delay", "time_offset[attitude].delay"}
     (cause,) = diagnose([run], merlin()).document["causes"]
     assert cause["effect"] == "time_offset[depth]" and cause["parameters"]["delay"]["low"] < 0.6 < cause["parameters"]["delay"]["high"]
+
+
+@pytest.mark.parametrize(
+    ("planted", "seed", "effect", "parameter", "true"),
+    [
+        (("time_offset", "attitude", 2.0), 13, "time_offset[attitude]", "delay", 0.8),
+        (("time_offset", "attitude", -1.5), 13, "time_offset[attitude]", "delay", -0.6),
+        (("payload_change", "", -1.5), 14, "payload_change", "mass", None),
+    ],
+    ids=["late", "early", "set down"],
+)
+def test_a_late_sensor_and_a_load_that_is_set_down_are_told_in_their_size(
+    planted: tuple[str, str, float], seed: int, effect: str, parameter: str, true: float | None, tmp_path: Path
+):
+    """From the independent plant: delays that are a good part of a roll's period, and a mass that leaves with its load."""
+    run = foreign(tmp_path, (planted,), seed, 200.0, 0.02)
+    cause = diagnose([run], merlin()).document["causes"][0]
+    told = cause["parameters"][parameter]
+    assert cause["effect"] == effect
+    assert told["low"] < true < told["high"] if true else told["high"] < 0.0

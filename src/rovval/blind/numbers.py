@@ -2,7 +2,7 @@
 
 Where the plant's form differs from the library's, a row stands only if one number means the same in both (a total delay, a mean); a slow
 test fits each on a vehicle without slop. Left out for failing it: ``thrust_lag`` (three stages: 0.73 s in all fits best as one of
-0.46 s), ``time_offset[attitude]`` (0.6 s fits best as 0.33),
+0.46 s), ``velocity_filter_lag`` (two poles against a time constant and a dead time, of which only the sum means the same),
 ``thruster_interaction`` (a neighbour's share of the thrust against its share of the speed: 0.9 fits best as 0.66), and a
 ``thruster_reversed`` that turns back slower than its log says (a share of the speed against one of the thrust).
 """
