@@ -38,7 +38,6 @@ EFFECT = Effect(
 )
 # Parameters by whose sum a sensor is late, and what it writes of u v w p q r x y z phi theta psi (`plant.late`).
 LATE = {("delay[velocity]",): (0, 1, 2), ("delay[attitude]",): (3, 4, 5, 9, 10, 11), ("delay[depth]",): (8,)}
-PARTS = {"delay[velocity]": (slice(0, 3), slice(0)), "delay[attitude]": (slice(3, 6), slice(3, 6)), "delay[depth]": (slice(0), slice(2, 3))}  # of nu, eta
 
 
 def lower(lanes: Lanes, p: Mapping[str, Array]) -> Lanes:
@@ -48,13 +47,12 @@ def lower(lanes: Lanes, p: Mapping[str, Array]) -> Lanes:
 
 def observe(log: Log, p: Mapping[str, Array]) -> Log:
     """Velocities of the velocity log, attitude and rates of the attitude sensor, and depth, of their ``delay`` ago."""
-    for parameter, (velocities, poses) in PARTS.items():
+    for (parameter,), columns in LATE.items():
         if p[parameter].any():
-            nu, eta = log.nu.copy(), log.eta.copy()
-            nu[..., velocities] = delayed(nu[..., velocities], p[parameter] / log.dt)
-            eta[..., poses] = delayed(np.unwrap(eta[..., poses], axis=1) if parameter == "delay[attitude]" else eta[..., poses], p[parameter] / log.dt)
-            eta[..., 3:] = wrap(eta[..., 3:])
-            log = replace(log, nu=nu, eta=eta)
+            state = np.concatenate([log.nu, log.eta], axis=-1)
+            state[..., 9:] = np.unwrap(state[..., 9:], axis=1)
+            state[..., columns] = delayed(state[..., columns], p[parameter] / log.dt)
+            log = replace(log, nu=state[..., :6], eta=np.concatenate([state[..., 6:9], wrap(state[..., 9:])], axis=-1))
     return log
 
 

@@ -47,14 +47,17 @@ class Clock:
         return added, stopped < 0
 
 
-def whole_samples(seconds: Array, dt: float) -> Indices:
-    """Whole samples that hold each delay, late or early."""
-    return np.ceil(np.abs(seconds) / dt - ROUNDING).astype(np.int64)
+def _alike(late: Array, dt: float) -> Iterator[tuple[int, Indices]]:
+    """How many whole samples hold a delay ``late`` (B,) s above zero, and the lanes with as many."""
+    whole = np.ceil(np.maximum(late, 0.0) / dt - ROUNDING).astype(np.int64)
+    for samples in np.unique(whole[whole > 0]):
+        yield int(samples), np.flatnonzero(whole == samples)
 
 
-def true_start(clock: Clock, start: Indices, measured: Array, delays: Sequence[Delay]) -> tuple[Array, Array]:
-    """True states (B, 12) at the samples ``start`` (B,) behind ``measured`` ones, and those of the samples before (B, m, 12), as far back as a late
-    sensor shows. Where the log does not reach, the delay times the acceleration at the start stands for both, as it does for positions."""
+def true_start(clock: Clock, start: Indices, measured: Array, delays: Sequence[Delay]) -> tuple[Array, Array, int]:
+    """True states (B, 12) at the samples ``start`` (B,) behind ``measured`` ones, those of the samples before (B, m, 12), as far back as a late
+    sensor shows, and how many samples beyond the window an early one shows. Where the log does not reach, the delay times the acceleration at the
+    start stands for both, as it does for positions."""
     state, led = measured.copy(), list[tuple[NDArray[np.int64], Path]]()
     for one in (d for d in delays if not set(d.columns) & set(POSITIONS)):
         columns, lanes = np.array(one.columns), np.flatnonzero(one.seconds)
@@ -71,12 +74,12 @@ def true_start(clock: Clock, start: Indices, measured: Array, delays: Sequence[D
     for one in (d for d in delays if set(d.columns) & set(POSITIONS)):
         columns = np.array(one.columns)
         state[np.ix_(lanes, columns)] += (one.seconds[lanes] / clock.dt)[:, None] * added[:, columns]
-    many = max(int(whole_samples(np.maximum(one.seconds, 0.0), clock.dt).max()) for one in delays)
+    many, after = (max((steps for one in delays for steps, _ in _alike(side * one.seconds, clock.dt)), default=0) for side in (1.0, -1.0))
     before = np.repeat(state[:, None], many, axis=1)
     before[lanes] -= np.arange(many, 0, -1)[:, None] * added[:, None]
     for columns, (known, path) in led:
         before[np.ix_(known, np.arange(many - path.shape[1] + 1, many), columns)] = path[:, :-1][..., columns]
-    return state, before
+    return state, before, after
 
 
 def _forward(clock: Clock, start: Indices, state: Array, one: Delay) -> Iterator[Path]:
@@ -84,9 +87,8 @@ def _forward(clock: Clock, start: Indices, state: Array, one: Delay) -> Iterator
     late, are taken at their first rate; what else moves is held: stepped back, it errs by what the model misses, which grows that way (roll and
     pitch of a BlueROV2)."""
     columns, turned = np.array(one.columns), np.array([c for c in ANGLES if c not in one.columns], dtype=np.int64)
-    k = np.where(one.seconds > 0, whole_samples(one.seconds, clock.dt), 0)
-    for steps in (int(s) for s in np.unique(k[k > 0])):
-        lanes = np.flatnonzero((k == steps) & (start >= steps))
+    for steps, alike in _alike(one.seconds, clock.dt):
+        lanes = alike[start[alike] >= steps]
         if len(lanes):
             begin, first = start[lanes] - steps, state[lanes]
             added, _ = clock.step(lanes, begin, first)
@@ -99,9 +101,8 @@ def _forward(clock: Clock, start: Indices, state: Array, one: Delay) -> Iterator
 def _back(clock: Clock, start: Indices, state: Array, one: Delay) -> Iterator[Path]:
     """Lanes with an early sensor, stepped back from where it showed the motion that it wrote at the start."""
     columns = np.array(one.columns)
-    k = np.where(one.seconds < 0, whole_samples(one.seconds, clock.dt), 0)
-    for steps in (int(s) for s in np.unique(k[k > 0])):
-        lanes = np.flatnonzero((k == steps) & (start + steps + 1 < clock.samples))
+    for steps, alike in _alike(-one.seconds, clock.dt):
+        lanes = alike[start[alike] + steps + 1 < clock.samples]
         if len(lanes):
             added, ran = clock.step(lanes, start[lanes] + steps, state[lanes])
             there = state[lanes]

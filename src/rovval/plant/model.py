@@ -123,9 +123,8 @@ class Plant:
             return out, stopped
 
         clock = late.Clock(simulate, inputs.dt, len(inputs.speed))
-        state, before = late.true_start(clock, lanes.start, np.concatenate([lanes.nu, lanes.eta], axis=1), delays)
-        early = max(int(late.whole_samples(np.minimum(d.seconds, 0.0), inputs.dt).max()) for d in delays)
-        return replace(lanes, nu=state[:, :6], eta=state[:, 6:]), before, early
+        state, before, after = late.true_start(clock, lanes.start, np.concatenate([lanes.nu, lanes.eta], axis=1), delays)
+        return replace(lanes, nu=state[:, :6], eta=state[:, 6:]), before, after
 
     def _run(self, inputs: Inputs, prepared: Prepared, lowered: Lowered, lanes: _Lanes, steps: int) -> tuple[Array, Indices, Indices]:
         """True motion (B, steps + 1, 12): u v w p q r, x y z phi theta psi; first invalid sample and its reason per lane."""

@@ -42,9 +42,8 @@ def simulate(
             there_nu, there_eta, ended = _integrate(plant, mine, inputs, prepared, begin, *to, state[:, :6], state[:, 6:], many)
             return np.concatenate([there_nu, there_eta], axis=-1), ended
 
-        first, before = late.true_start(late.Clock(run, inputs.dt, len(inputs.speed)), start, np.concatenate([nu, eta], axis=1), delays)
+        first, before, early = late.true_start(late.Clock(run, inputs.dt, len(inputs.speed)), start, np.concatenate([nu, eta], axis=1), delays)
         nu, eta = first[:, :6], first[:, 6:]
-        early = max(int(late.whole_samples(np.minimum(d.seconds, 0.0), inputs.dt).max()) for d in delays)
     true_nu, true_eta, stopped = _integrate(plant, lowered, inputs, prepared, start, which, gain, nu, eta, steps + early)
     true_nu, true_eta = np.concatenate([before[..., :6], true_nu], axis=1), np.concatenate([before[..., 6:], true_eta], axis=1)
     m = before.shape[1]
