@@ -304,6 +304,18 @@ def test_a_late_depth_needs_a_velocity_to_be_late_against():
     assert "time_offset[depth]" not in {h.name for h in library} and "needs w" in untestable["time_offset[depth].delay"]
 
 
+@pytest.mark.parametrize(("least", "there"), [(2.9, True), (3.1, False)])
+def test_what_acts_close_by_does_not_compete_from_afar(least: float, there: bool):
+    """Else a force that varies with depth five metres above the bottom is the bottom's."""
+    run = own((), 5, 120.0)
+    altitude = {"altitude": least + np.linspace(4.0, 0.0, len(run))}
+    logged = replace(run, values={**run.values, **altitude}, reasons={**run.reasons, "altitude": run.reasons["psi"]})
+    parts, _ = cut_all([logged], merlin(), "fossen", 10.0)
+    library, untestable = hypotheses(parts)
+    assert ("ground_effect" in {h.name for h in library}) == there
+    assert untestable.get("ground_effect") == (None if there else "no altitude below 3 m in this log")
+
+
 def test_what_is_named_is_not_called_untestable(tmp_path: Path):
     """A thruster that is turned far round shows, though a turn of typical size would not."""
     document = diagnose([bluerov2(tmp_path, "turned.csv", 12, 200.0, 0.03, ("thruster_misaligned", "T1", -2.0))], load("bluerov2_heavy")).document

@@ -189,6 +189,31 @@ def test_one_force_alone_is_worth_what_it_is_with_the_others_held():
     assert beside.alone() > beside.evidence(), "many that gain nothing cost more than the one gains"
 
 
+def test_a_few_forces_are_worth_what_they_are_one_after_another():
+    """Two of six at work; each of equal prior size, against the evidence of just those two, worked out with the whole matrix."""
+    rng = np.random.default_rng(0)
+    axes = ("surge", "sway", "surge", "yaw", "roll", "heave")
+    X = rng.normal(size=(30, 12, 4 + len(axes)))
+    r = rng.normal(size=(30, 12)) + 0.8 * X[..., 6] + 0.9 * X[..., 7]
+    data = Products(np.einsum("wni,wnj->wij", X, X), np.einsum("wni,wn->wi", X, r), (r**2).sum(axis=1), tuple(range(X.shape[-1])))
+    beside = Forces(tuple((axis, str(i)) for i, axis in enumerate(axes)), data, np.full(4, 2.0), rng.normal(size=4), 1.7)
+    pair = max(beside._evidence([2, 3], share) for share in (0.01, 0.1, 1.0)) - beside._evidence([], 1.0)
+    assert beside.alone(most=2) == pytest.approx(pair)
+    assert beside.alone() < beside.alone(most=2) <= beside.alone(most=4) < beside.alone(most=2) + 8.0, "the others are noise"
+
+
+def test_a_force_that_the_cause_itself_could_be_is_not_held_against_it():
+    """A coefficient that tolerance keeps in place leaves the force to others; as a cause it is free, and the force is the same thing."""
+    rng = np.random.default_rng(1)
+    X = rng.normal(size=(30, 12, 2))
+    X[..., 1] = X[..., 0] + 0.1 * X[..., 1]
+    r = rng.normal(size=(30, 12)) + 0.5 * X[..., 0]
+    data = Products(np.einsum("wni,wnj->wij", X, X), np.einsum("wni,wn->wi", X, r), (r**2).sum(axis=1), (7, 8))
+    beside = Forces((("surge", "u"),), data, np.full(1, 1e3), np.zeros(1), 1.0)
+    assert beside.alone(causes=(3,)) == beside.alone() > 20.0
+    assert beside.alone(causes=(7,)) == 0.0
+
+
 @pytest.mark.parametrize(("own", "counts"), [(0.95, True), (0.995, False)])
 def test_a_force_that_a_coefficient_undoes_is_no_force_of_its_own(own: float, counts: bool):
     """As drag undoes a force that varies with speed: whatever little the two do against each other, however well it fits."""

@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
+import numpy as np
+
 from rovval import effects
+from rovval.channels import channel
 from rovval.diagnose.breaks import breaks
 from rovval.diagnose.caught import caught
 from rovval.diagnose.hypothesis import Hypothesis
@@ -33,6 +36,9 @@ def hypotheses(
     def logged(channel: str) -> bool:
         return all(part.run.measured(channel) for part in parts)
 
+    def nearest(channel: str) -> float:
+        return min(float(np.nanmin(part.run.get(channel))) for part in parts)
+
     for name, slots in plant.hypotheses.items():
         effect = effects.load(name.partition("[")[0])
         if not effect.competes or {name, effect.name} & set(without):
@@ -40,6 +46,10 @@ def hypotheses(
         missing = [c for c in effect.needs if not logged(c)]
         if missing:
             untestable[name] = f"needs {', '.join(missing)}, which this log does not hold"
+            continue
+        far = [f"no {c} below {reach:g} {channel(c).unit}" for c, reach in effect.within.items() if nearest(c) >= reach]
+        if far:
+            untestable[name] = f"{', '.join(far)} in this log"
             continue
         for slot in (plant.slots[s] for s in slots):
             if (c := slot.parameter.needs) and not logged(c):

@@ -22,6 +22,7 @@ from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import Products, joined, products
 
 OWN = 0.05  # of what a force does: with less that nothing else here does, it is not one of its own (opened logs: a force on speed beside drag 0.02)
+FREED = 1e-3  # of a prior's precision: it holds nothing any more
 SHARES = (0.01, 0.1, 1.0)  # prior sizes tried for a generic force, as a share of the thrusters' own rms on that axis
 
 
@@ -41,17 +42,27 @@ class Forces:
         chosen = [i for i, (axis, name) in enumerate(self.names) if axis in axes and feature in ("", name)]
         return max(self._evidence(chosen, share) for share in SHARES) - self._evidence([], 1.0) if chosen else 0.0
 
-    def alone(self, axes: Sequence[str] = AXES) -> float:
-        """The same of the one force, one feature on one of ``axes``, that has most: where few are at work, all together cost more than they gain. One
-        that the point's columns can undo all but a little of (`OWN`), as drag undoes a force that varies with speed, is none: the two against each
-        other hold the simulation to the measured speed, whatever it is that is missing."""
+    def alone(self, axes: Sequence[str] = AXES, most: int = 1, causes: Sequence[int] = ()) -> float:
+        """The same of the one force, one feature on one of ``axes``, that has most, or of up to ``most`` of them, each beside those before: where few are
+        at work, all together cost more than they gain. One that the point's columns can undo all but a little of (`OWN`), as drag undoes a force
+        that varies with speed, is none: the two against each other hold the simulation to the measured speed, whatever it is that is missing.
+        Nor is one that is what the columns ``causes`` are, which may undo as much as they can."""
         k = len(self.precision)
-        A, b = settled(self.data.A.sum(axis=0), self.data.b.sum(axis=0), np.arange(k), np.diag(self.precision), self.pull)
-        chosen = np.array([k + i for i, (axis, _) in enumerate(self.names) if axis in axes], dtype=int)
-        shown, slope, at_first = np.diag(A)[chosen], b[chosen], np.einsum("wii->i", self.data.A)[chosen]
-        shown, slope = (x[shown > OWN * at_first] for x in (shown, slope))
-        ridge = self.inflation / np.array(SHARES)[:, None] ** 2
-        return float((slope**2 / (shown + ridge) / self.inflation - np.log1p(shown / ridge)).max(initial=0.0))
+        freed = np.where(np.isin(self.data.columns[:k], causes), FREED, 1.0) * self.precision
+        undone, at_first = np.diag(self._settled(freed)[0]), np.einsum("wii->i", self.data.A)
+        own = [k + i for i, (axis, _) in enumerate(self.names) if axis in axes and undone[k + i] > OWN * at_first[k + i]]
+        A, b = self._settled(self.precision)
+        A, b = A[np.ix_(own, own)], b[own]
+        ridge, total = self.inflation / np.array(SHARES)[:, None] ** 2, 0.0
+        for _ in range(min(most, len(own))):
+            worth = b**2 / (np.diag(A) + ridge) / self.inflation - np.log1p(np.diag(A) / ridge)
+            size, best = np.unravel_index(int(np.argmax(worth)), worth.shape)
+            if worth[size, best] <= 0.0:
+                break
+            total += float(worth[size, best])
+            A, b = settled(A, b, np.array([best]), np.diag(ridge[size]), np.zeros(1))
+            A, b = np.delete(np.delete(A, best, 0), best, 1), np.delete(b, best)
+        return total
 
     @property
     def features(self) -> tuple[str, ...]:
@@ -64,6 +75,11 @@ class Forces:
         columns, whole = self.data.columns[k:], float(self.data.c.sum())
         kept = [float(heldout(self.data, folds, Prior(dict.fromkeys(columns, share)), self.inflation).sum()) for share in SHARES]
         return max(1.0 - min(kept) / whole, 0.0)
+
+    def _settled(self, precision: Array) -> tuple[Array, Array]:
+        """Curvature and slope of everything once the point's columns have settled beside it, with priors of ``precision``."""
+        free = np.arange(len(precision))
+        return settled(self.data.A.sum(axis=0), self.data.b.sum(axis=0), free, np.diag(precision), self.pull)
 
     def _evidence(self, chosen: Sequence[int], share: float) -> float:
         k = len(self.precision)

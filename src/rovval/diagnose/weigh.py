@@ -25,6 +25,7 @@ from rovval.diagnose.unknown import Forces, forces
 from rovval.diagnose.wavering import drifting, wavering
 
 BETTER = 1.0  # of a cause's evidence: a generic force that has more is nearer to the truth (chosen)
+FORCES, AS_NEAR = 4, 0.9  # the same of so few single ones (opened sets: right causes 0.87 at most, 7 of 15 foreign ones 0.92 and more)
 FORMLESS = 20.0  # twice the log Bayes factor of what is beside a cause, from which it is more than the form of an equation (chosen)
 LONE, LEFT = 75.0, 0.15  # the same of a single force beside, and its share of a cause's evidence (opened sets: the 5 beyond both were wrong; a right one 61)
 REAL = 100.0  # twice the log Bayes factor of a generic force from which it is not a healthy vehicle's form (tuning set)
@@ -65,7 +66,7 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
     ways = [filed, *([beside_slop(problem, final, selection.healthy, before)] if strained <= STRAINED else [])]
     skill = not many or faulty or any(way.skill for way in ways)
     stands = stand(ways, seen=faulty or not many)
-    outdone = many and not faulty and instead > BETTER * total
+    outdone = many and not faulty and (instead > BETTER * total or general.alone(axes, FORCES, final.slots) > AS_NEAR * total)
     varies = wavering(problem, final, selection.named) if many else {}
     unsteady = _unsteady(problem, selection, final, varies) if many else ()
     bent = strained > BENT and total < OUTWEIGHS * strained**2

@@ -61,11 +61,12 @@ class Parameter:
 @dataclass(frozen=True, slots=True)
 class Effect:
     """One effect as an engineer reads it: where it enters, its equation with source, its parameters, what one sees, what it is
-    confused with and what separates it. ``needs``: channels without which it cannot be tested. ``grid``: start points for
-    parameters that linearisation at the null value cannot see (``onset`` as a fraction of the run); ``where``: parameters that begin
-    where a channel stood at the onset; ``levers``: coordinates of the point where a force acts, which it cannot see either, the one ahead
-    first. ``apart``: each parameter may well be at work without the others, as an offset along one of three axes, and is tried by itself,
-    too. ``refines``: parameters that only refine the others, which are tried without them as well; of an effect that is also
+    confused with and what separates it. ``needs``: channels without which it cannot be tested; ``within``: what a channel has to
+    come below, in its unit, for it to act at all. ``grid``: start points for parameters that linearisation at the null value
+    cannot see (``onset`` as a fraction of the run); ``where``: parameters that begin where a channel stood at the onset;
+    ``levers``: coordinates of the point where a force acts, which it cannot see either, the one ahead first. ``apart``: each
+    parameter may well be at work without the others, as an offset along one of three axes, and is tried by itself, too.
+    ``refines``: parameters that only refine the others, which are tried without them as well; of an effect that is also
     ``apart`` they say of one axis what the others say of all, and are tried one by one only. ``competes`` False: a tolerance
     that healthy vehicles have, which a diagnosis takes into account and never names."""
 
@@ -80,6 +81,7 @@ class Effect:
     per: Literal["", "axis", "thruster"] = ""
     axes: tuple[str, ...] = ()
     needs: tuple[str, ...] = ()
+    within: Mapping[str, float] = field(default_factory=dict)
     grid: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     where: Mapping[str, str] = field(default_factory=dict)
     levers: tuple[str, ...] = ()
@@ -88,6 +90,7 @@ class Effect:
     competes: bool = True
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "within", MappingProxyType(dict(self.within)))
         object.__setattr__(self, "grid", MappingProxyType(dict(self.grid)))
         object.__setattr__(self, "where", MappingProxyType(dict(self.where)))
 

@@ -21,6 +21,7 @@ EFFECT = Effect(
     confused_with=("buoyancy_error", "current_shear", "density_gradient"),
     separates="steps of altitude over the same spot",
     needs=("altitude",),
+    within={"altitude": 3.0},  # m, chosen: three times the largest reach of diagnosis.md E7, where a twentieth is left
     grid={"height": (0.2, 0.5, 1.5)},
 )
 ROWS = ("gain", "inverse")
