@@ -158,6 +158,13 @@ def test_harm_is_told_from_what_is_closed_in_all():
     assert not harms(Way(before, before | {"yaw": 1.0 + 0.5 * UNMOVED * 11.0}, True, True))  # rounding, as of a compass
 
 
+def test_a_drag_that_spoils_its_own_axis_is_none():
+    """Whatever it closes elsewhere, beside other causes or through coupling."""
+    way = Way({"surge": 1.0, "yaw": 10.0}, {"surge": 2.0, "yaw": 1.0}, True, True)
+    assert harms(way, ["surge"]) and not stand([way], False, ["yaw", "surge"])
+    assert not harms(way) and not harms(way, ["yaw"]) and stand([way], False, ["yaw"])
+
+
 def test_beside_a_cause_coefficients_may_be_as_slop_lets_them_be():
     p = problem("buoyancy_error:force=60", "quadratic_drag[surge]:scale=0.2")
     final, healthy = confirm(p, p.origin, (slot(p, "buoyancy_error.force"),)), healthy_point(p)

@@ -25,6 +25,7 @@ from rovval.diagnose.together import LEAST_EVIDENCE
 ACTING = 0.15  # of what a cause closes: the axes on which it acts
 MUCH = 0.3  # of what a cause closes: the axes on which the simulator must follow the vehicle (chosen; the one on which it closes most always)
 HARMS = 0.25  # of what causes close in all: a cause that opens more on one axis is the least bad (chosen)
+WORSE = 0.02  # of the gap, that the axis of an axis's own cause may get worse (opened sets: of 100 right ones none does at all, of a foreign one 0.06)
 UNMOVED = 0.001  # of the gap: less is rounding, as of a compass, which moves nothing (chosen)
 SKILL = 0.5  # of the squared motion: an axis on which more is left is not simulated at all (chosen)
 NOTHING = 0.05  # of the squared error: less is form, whatever its evidence (chosen)
@@ -88,15 +89,16 @@ def _closed(was: Mapping[str, float], left: Mapping[str, float]) -> dict[str, fl
     return {axis: max(was[axis] - left[axis], 0.0) for axis in was}
 
 
-def harms(way: Way) -> bool:
-    """Whether an axis gets worse by a good part of what is closed in all."""
+def harms(way: Way, own: Sequence[str] = ()) -> bool:
+    """Whether an axis gets worse by a good part of what is closed in all, or one that a cause is said to be of, its ``own``, by more than a little."""
     before, after = sum(way.was.values()), sum(way.left.values())
-    return max(way.left[axis] - way.was[axis] for axis in way.was) > max(HARMS * (before - after), UNMOVED * before)
+    worse = {axis: way.left[axis] - way.was[axis] for axis in way.was}
+    return max(worse.values()) > max(HARMS * (before - after), UNMOVED * before) or any(worse[axis] > WORSE * before for axis in own)
 
 
-def stand(ways: Sequence[Way], seen: bool) -> bool:
-    """Whether one of the ways shows the causes; ``seen``: the kinematic checks do, and motion need not."""
-    return any(not harms(way) and (seen or (way.sure and way.skill)) for way in ways)
+def stand(ways: Sequence[Way], seen: bool, own: Sequence[str] = ()) -> bool:
+    """Whether one of the ways shows the causes; ``seen``: the kinematic checks do, and motion need not; ``own``: axes that they are said to be of."""
+    return any(not harms(way, own) and (seen or (way.sure and way.skill)) for way in ways)
 
 
 def checked(problem: Problem, final: Confirmed) -> bool:

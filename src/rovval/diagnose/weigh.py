@@ -65,7 +65,8 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
     faulty = all(of_sensor(n) for n in selection.named) and checked(problem, final)  # a force imitates a bias of the sensor that shows what it does
     ways = [filed, *([beside_slop(problem, final, selection.healthy, before)] if strained <= STRAINED else [])]
     skill = not many or faulty or any(way.skill for way in ways)
-    stands = stand(ways, seen=faulty or not many)
+    own = [n.hypothesis.name.partition("[")[2].rstrip("]") for n in selection.named if n.hypothesis.effect.per == "axis"]
+    stands = stand(ways, faulty or not many, own)
     outdone = many and not faulty and (instead > BETTER * total or general.alone(axes, FORCES, final.slots) > AS_NEAR * total)
     varies = wavering(problem, final, selection.named) if many else {}
     unsteady = _unsteady(problem, selection, final, varies) if many else ()
