@@ -92,3 +92,17 @@ def test_values_that_lie_on_no_grid_have_no_grain():
     assert grain(rng.normal(size=2000)) == 0.0, "a fine channel"
     assert grain(np.zeros(2000)) == 0.0, "one that never moves"
     assert grain(np.repeat(rng.normal(size=200), 10)) == 0.0, "held, but on no grid"
+
+
+def test_a_rate_that_contradicts_its_angle_is_said_and_no_coefficient_is_blamed():
+    """A gyro that reads too little of fast turns, softly, so that no sample stands at a stop: inertia, drag or thrusters would else take the blame."""
+    run = own((), 5, 160.0)
+    document = diagnose([with_values(run, r=0.3 * np.tanh(run.get("r") / 0.3))], merlin()).document
+    assert not document["causes"] and document["verdict"] == "unknown"
+    assert [(row["channel"], row["finding"]) for row in document["log"]] == [("psi", "contradicted")]
+    assert "psi and r contradict each other by" in document["sentence"]
+
+
+def test_a_faulty_sensor_of_the_library_is_no_contradiction():
+    document = diagnose([own(("gyro_bias:r=0.02", "thruster_degraded[HFP]:loss=0.5"), 5, 160.0)], merlin()).document
+    assert {c["effect"] for c in document["causes"]} == {"gyro_bias", "thruster_degraded[HFP]"} and not document["log"]

@@ -12,9 +12,10 @@ from rovval.data import Array
 from rovval.diagnose import Diagnosis, next_flight
 from rovval.diagnose.breaks import change_points
 from rovval.diagnose.causes import causes, settings
+from rovval.diagnose.contradicted import contradicted
 from rovval.diagnose.faults import faults
 from rovval.diagnose.finding import Finding
-from rovval.diagnose.gap import axis_rows, noise_loss
+from rovval.diagnose.gap import axis_rows, axis_weight, noise_loss
 from rovval.diagnose.ground import relief, without_own
 from rovval.diagnose.localise import slices, worst
 from rovval.diagnose.miscalibrated import calibration
@@ -58,7 +59,7 @@ def answer(finding: Finding, left_out: tuple[str, ...], slop: float, seed: int, 
         "traces": traces(problem, judgement.final, before),
         "coherence": coherence_matrix(problem, selection, judgement),
         "inputs": problem.parts[0].driven.source,
-        "log": _log(problem),
+        "log": [*_log(problem), *contradicted(problem, axis_weight(problem, before))],
         "runs_left_out": list(left_out),
         "left_out_s": sum(part.contact_s for part in problem.parts),
         "windows_stopped": sum(part.stopped for part in problem.parts),

@@ -1,8 +1,9 @@
 """What is asked of causes before they are named: a library effect is not named for being the least bad.
 
-Does it do better than a generic force on the axes where it acts? What would such a force still gain beside it, what a single one? How far must healthy
-coefficients leave their tolerance so that it fits? Does the simulator follow the vehicle there at all? Does no axis get worse by much?
-And does it hold still? A true cause passes all; the nearest relative of an effect that the library lacks fails one of them.
+Does it do better than a generic force on the axes where it acts? What would such a force still gain beside it, what a single one? How far
+must healthy coefficients leave their tolerance so that it fits? Does the simulator follow the vehicle there at all? Does no axis get worse by
+much? Does it hold still? Does the log not contradict itself there? A true cause passes all; the nearest relative of an effect that the library
+lacks fails one of them.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 
 from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed
+from rovval.diagnose.contradicted import contradicted
 from rovval.diagnose.point import Point, whole_evidence
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.select import Selection
@@ -74,6 +76,8 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
     broken = not stands or strained > BROKEN or bent or max(varies.values(), default=0.0) > max(WAVERS * total, LEAST_EVIDENCE)
     lone = rest.alone(axes) if many and not faulty and not any(way.all_of_it for way in ways) else 0.0
     broken = broken or lone > max(LONE, LEFT * total)
+    moved = not all(of_sensor(n) for n in selection.named)
+    broken = broken or (moved and bool(contradicted(problem, {axis: filed.closed[axis] for axis in axes})))
     least_bad = outdone or broken or max(beside, excess) > max(form_share(problem.blocks) * total, FORMLESS)
     parity_led = any(of_sensor(n) for n in selection.named) and seen_by_checks(problem, final)
     remains = not filed.sure or strained > STRAINED or (holds and rest.evidence() > max(REAL, REMAINS * total))
