@@ -27,7 +27,7 @@ from rovval.diagnose.unknown import Forces, forces
 from rovval.diagnose.wavering import drifting, wavering
 
 BETTER = 1.0  # of a cause's evidence: a generic force that has more is nearer to the truth (chosen)
-FORCES, AS_NEAR = 4, 0.9  # the same of so few single ones (opened sets: right causes 0.87 at most, 7 of 15 foreign ones 0.92 and more)
+FORCES, AS_NEAR = 4, 0.85  # what so few single ones gain in its place and not beside it (opened sets: right causes 0.77 at most, 4 wrong 0.88 and more)
 FORMLESS = 20.0  # twice the log Bayes factor of what is beside a cause, from which it is more than the form of an equation (chosen)
 LONE, LEFT = 75.0, 0.15  # the same of a single force beside, and its share of a cause's evidence (opened sets: the 5 beyond both were wrong; a right one 61)
 REAL = 100.0  # twice the log Bayes factor of a generic force from which it is not a healthy vehicle's form (tuning set)
@@ -69,7 +69,8 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
     skill = not many or faulty or any(way.skill for way in ways)
     own = [n.hypothesis.name.partition("[")[2].rstrip("]") for n in selection.named if n.hypothesis.effect.per == "axis"]
     stands = stand(ways, faulty or not many, own)
-    outdone = many and not faulty and (instead > BETTER * total or general.alone(axes, FORCES, final.slots) > AS_NEAR * total)
+    few = general.alone(axes, FORCES, final.slots) - rest.alone(axes, FORCES)
+    outdone = many and not faulty and (instead > BETTER * total or few > AS_NEAR * total)
     varies = wavering(problem, final, selection.named) if many else {}
     unsteady = _unsteady(problem, selection, final, varies) if many else ()
     bent = strained > BENT and total < OUTWEIGHS * strained**2
@@ -77,7 +78,8 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
     lone = rest.alone(axes) if many and not faulty and not any(way.all_of_it for way in ways) else 0.0
     broken = broken or lone > max(LONE, LEFT * total)
     moved = not all(of_sensor(n) for n in selection.named)
-    broken = broken or (moved and bool(contradicted(problem, {axis: filed.closed[axis] for axis in axes})))
+    most = max(filed.closed.items(), key=lambda item: item[1])
+    broken = broken or (moved and bool(contradicted(problem, dict([most]))))
     least_bad = outdone or broken or max(beside, excess) > max(form_share(problem.blocks) * total, FORMLESS)
     parity_led = any(of_sensor(n) for n in selection.named) and seen_by_checks(problem, final)
     remains = not filed.sure or strained > STRAINED or (holds and rest.evidence() > max(REAL, REMAINS * total))
