@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from diagnose_case import NOISE, bare, commands, merlin, own
-from rovval.data import Array, Run
+from rovval.data import Array, Reason, Run
 from rovval.diagnose.breaks import change_points
 from rovval.diagnose.confirm import confirm
 from rovval.diagnose.contest import Fold, Prior, Ring, contest, fit, folds_of, heldout
@@ -214,6 +214,17 @@ def test_parity_finds_a_sensor_fault_with_sign_and_size(fault, size):
     row = parity_of(spoilt({fault: size}))[fault]
     assert row["significant"]
     assert row["value"] == pytest.approx(size, rel=0.15)
+
+
+def test_a_fault_is_not_told_of_fewer_windows_than_its_scatter_needs():
+    """A log of which the yaw rate is missing but for 11 s here and there, as where a gyro stands at its stop: four windows, which a few numbers fit."""
+    run = own((), 5, 120.0)
+    r = np.where(np.arange(len(run)) % 300 < 110, run.get("r"), np.nan)
+    reasons = np.where(np.isnan(r), Reason.NOT_LOGGED, Reason.OK).astype(np.uint8)
+    told = parity_of(replace(run, values={**run.values, "r": r}, reasons={**run.reasons, "r": reasons}))
+    assert not told, "each interval would have no width"
+    whole = parity_of(run)
+    assert whole and {row["significant"] for row in whole.values()} <= {False}
 
 
 def test_parity_about_another_point_is_that_of_its_moved_rows():

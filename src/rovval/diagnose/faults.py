@@ -11,18 +11,23 @@ from rovval.diagnose.stretches import Stretches
 from rovval.effects import load
 from rovval.plant.slots import Slot
 
+FREEDOM = 5  # windows more than parameters, from which their scatter says how sure a fault is: six for one (as `separate.FEW`)
+
 
 def faults(parity_rows: Parity, stretches: Stretches, origin: Array) -> list[dict[str, object]]:
     """Each sensor effect, and the factor of each axis, fitted to the parity rows alone: value with 90 % interval, and whether it differs from
-    ``origin`` (k,), what the vehicle's file says of the sensors (``was``), significantly on its own."""
+    ``origin`` (k,), what the vehicle's file says of the sensors (``was``), significantly on its own. One that has hardly fewer parameters than
+    there are windows to check it fits whatever it likes, and is not told."""
     found: list[dict[str, object]] = []
     by_effect: dict[tuple[str, str], list[int]] = {}
     for i, column in enumerate(parity_rows.columns):
         if np.abs(parity_rows.traces[..., i]).max(initial=0.0) > 0:
             by_effect.setdefault(_together(stretches.plant.slots[column]), []).append(i)
     rows = parity_rows.rows - parity_rows.traces @ origin[list(parity_rows.columns)]  # of these only sensors leave a trace
-    total = float((rows**2).sum())
+    total, windows = float((rows**2).sum()), int((np.abs(parity_rows.traces).max(axis=(1, 2), initial=0.0) > 0).sum())
     for places in by_effect.values():
+        if windows < len(places) + FREEDOM:
+            continue
         trace = parity_rows.traces[..., places]
         H = np.einsum("wqi,wqj->ij", trace, trace) + 1e-12 * np.eye(len(places))
         g = np.einsum("wqi,wq->wi", trace, rows)
@@ -30,7 +35,7 @@ def faults(parity_rows: Parity, stretches: Stretches, origin: Array) -> list[dic
         score = g - np.einsum("wqi,wqj,j->wi", trace, trace, value)
         bread = np.linalg.inv(H)
         error = np.sqrt(np.diag(bread @ (score.T @ score) @ bread))
-        t = float(stats.t.ppf(0.95, max(len(g) - len(places), 2)))
+        t = float(stats.t.ppf(0.95, windows - len(places)))
         share = float(g.sum(axis=0) @ value) / total if total > 0 else 0.0
         for j, place in enumerate(places):
             slot_id = parity_rows.columns[place]
