@@ -17,6 +17,7 @@ from rovval.data import Run
 from rovval.diagnose import diagnose, verdict
 from rovval.diagnose.confirm import confirm
 from rovval.diagnose.ground import relief, without_own
+from rovval.diagnose.hypothesis import Hypothesis
 from rovval.diagnose.library import hypotheses
 from rovval.diagnose.point import evidence
 from rovval.diagnose.problem import Problem, corrected_residuals, pose
@@ -29,7 +30,7 @@ from rovval.diagnose.steadied import discount, gains, loop_gain, loosened
 from rovval.diagnose.stretches import cut, cut_all
 from rovval.diagnose.tolerance import slop_prior
 from rovval.diagnose.unknown import Forces, forces
-from rovval.diagnose.weigh import Weighed
+from rovval.diagnose.weigh import Weighed, _crowd
 from rovval.plant import Plant
 from rovval.vehicle.model import allocation
 
@@ -156,6 +157,19 @@ def test_harm_is_told_from_what_is_closed_in_all():
     assert harms(Way(before, {"surge": 2.0, "yaw": 4.0}, True, True))
     assert not harms(Way(before, {"surge": 2.0, "yaw": 2.0}, True, True))
     assert not harms(Way(before, before | {"yaw": 1.0 + 0.5 * UNMOVED * 11.0}, True, True))  # rounding, as of a compass
+
+
+@pytest.mark.parametrize(
+    ("names", "crowd"),
+    [
+        (("linear_drag[surge]", "quadratic_drag[surge]", "linear_drag[sway]"), True), (("linear_drag[surge]", "linear_drag[sway]"), False),
+        (("thruster_degraded[HFP]", "thruster_misaligned[HFS]", "thruster_reversed[HAP]"), True),
+        (("linear_drag[surge]", "thruster_degraded[HFP]", "linear_drag[sway]"), False), (("waves", "current_constant", "dvl_scale"), False),
+    ],
+)  # fmt: skip
+def test_three_causes_of_one_kind_are_a_crowd(names: tuple[str, ...], crowd: bool):
+    named: Any = [SimpleNamespace(hypothesis=Hypothesis(name, name, (), (), ())) for name in names]
+    assert _crowd(named) == crowd
 
 
 def test_a_drag_that_spoils_its_own_axis_is_none():

@@ -2,13 +2,13 @@
 
 Does it do better than a generic force on the axes where it acts? What would such a force still gain beside it, what a single one? How far
 must healthy coefficients leave their tolerance so that it fits? Does the simulator follow the vehicle there at all? Does no axis get worse by
-much? Does it hold still? Does the log not contradict itself there? A true cause passes all; the nearest relative of an effect that the library
-lacks fails one of them.
+much? Does it hold still? Does the log not contradict itself there? Are there not three of one kind? A true cause passes all; the nearest
+relative of an effect that the library lacks fails one of them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +18,7 @@ from rovval.diagnose.confirm import Confirmed
 from rovval.diagnose.contradicted import contradicted
 from rovval.diagnose.point import Point, whole_evidence
 from rovval.diagnose.problem import Problem
-from rovval.diagnose.select import Selection
+from rovval.diagnose.select import MOST, Selection
 from rovval.diagnose.separate import FEW, form_share
 from rovval.diagnose.shown import acting, as_filed, beside_slop, checked, seen_by_checks, stand
 from rovval.diagnose.together import LEAST_EVIDENCE, Named
@@ -76,7 +76,7 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
     bent = strained > BENT and total < OUTWEIGHS * strained**2
     broken = not stands or strained > BROKEN or bent or max(varies.values(), default=0.0) > max(WAVERS * total, LEAST_EVIDENCE)
     lone = rest.alone(axes) if many and not faulty and not any(way.all_of_it for way in ways) else 0.0
-    broken = broken or lone > max(LONE, LEFT * total)
+    broken = broken or lone > max(LONE, LEFT * total) or _crowd(selection.named)
     moved = not all(of_sensor(n) for n in selection.named)
     most = max(filed.closed.items(), key=lambda item: item[1])
     broken = broken or (moved and bool(contradicted(problem, dict([most]))))
@@ -89,6 +89,12 @@ def weigh(problem: Problem, selection: Selection, final: Confirmed, general: For
 def of_sensor(named: Named) -> bool:
     """Whether a cause is a fault of a sensor."""
     return named.hypothesis.effect.place == "sensor"
+
+
+def _crowd(named: Sequence[Named]) -> bool:
+    """Whether there are `MOST` causes of one kind, all of axes or all of thrusters: a file that is off in so many coefficients is miscalibrated (which is
+    asked where nothing is named), or they make up what its equations lack. Opened sets: none of 5 such answers was right."""
+    return len(named) == MOST and len({n.hypothesis.effect.per for n in named}) == 1 and named[0].hypothesis.effect.per != ""
 
 
 def _unsteady(problem: Problem, selection: Selection, final: Confirmed, varies: Mapping[str, float]) -> tuple[str, ...]:
