@@ -304,13 +304,6 @@ def test_a_late_depth_needs_a_velocity_to_be_late_against():
     assert "time_offset[depth]" not in {h.name for h in library} and "needs w" in untestable["time_offset[depth].delay"]
 
 
-def test_a_drive_that_only_waits_is_a_lag_as_well_as_a_late_thruster_log():
-    """Without a time constant: of two numbers that do the same, neither is surely apart from nothing, and the cause is."""
-    document = diagnose([own(("thrust_lag:dead=0.5",), 5, 160.0)], merlin()).document
-    (cause,) = document["causes"]
-    assert sorted(cause["group"]) == ["thrust_lag", "time_offset"]
-
-
 @pytest.mark.parametrize(("least", "there"), [(2.9, True), (3.1, False)])
 def test_what_acts_close_by_does_not_compete_from_afar(least: float, there: bool):
     """Else a force that varies with depth five metres above the bottom is the bottom's."""

@@ -21,7 +21,7 @@ from rovval.diagnose.products import Scaled
 from rovval.diagnose.settle import FEW, moved, settle
 
 INTERVAL = 0.90
-PLACING = ("onset", "period", "phase", "direction", "height", "reach", "radius", "depth", "nearness")
+PLACING = ("onset", "period", "phase", "direction", "height", "reach", "radius", "depth", "dead", "nearness")
 ONSET_SEARCH_S = (-12.0, -6.0, -3.0, -1.5, 1.5, 3.0, 6.0, 12.0)
 
 
@@ -113,16 +113,10 @@ def errors(problem: Problem, fitted: Confirmed, fixed: Sequence[int] = ()) -> Ar
 
 def significance(problem: Problem, fitted: Confirmed, slots: tuple[int, ...]) -> float:
     """Largest departure of ``slots`` from where the vehicle stands, in standard errors that include calibration slop. Parameters that only
-    place an effect (an onset, a period) have no null of their own: they do not count, and stand where they are. So do those that refine others
-    while these are asked, and the others while those are: of a lag and a dead time that do the same, neither is nothing."""
-    placed = [s for s in slots if places(problem, s)]
-    fine = [s for s in slots if s not in placed and problem.plant.slots[s].parameter.name in effects.load(problem.plant.slots[s].effect).refines]
-    coarse = [s for s in slots if s not in (*placed, *fine)]
-    found = [0.0]
-    for asked, still in ((coarse, fine), (fine, coarse)):
-        error = errors(problem, fitted, [*placed, *still]) if asked else np.zeros(0)
-        found += [float(abs(fitted.beta[s] - problem.origin[s]) / max(error[fitted.slots.index(s)], 1e-12)) for s in asked]
-    return max(found)
+    place an effect (an onset, a period) have no null of their own: they do not count, and stand where they are."""
+    sized = [s for s in slots if not places(problem, s)]
+    error = errors(problem, fitted, [s for s in slots if s not in sized])
+    return max(float(abs(fitted.beta[s] - problem.origin[s]) / max(error[fitted.slots.index(s)], 1e-12)) for s in sized)
 
 
 def places(problem: Problem, slot: int) -> bool:
