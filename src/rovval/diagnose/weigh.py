@@ -27,7 +27,7 @@ from rovval.diagnose.unknown import Forces, forces
 from rovval.diagnose.wavering import drifting, wavering
 
 BETTER = 1.0  # of a cause's evidence: a generic force that has more is nearer to the truth (chosen)
-FORCES, AS_NEAR = 4, 0.9  # what so few single ones gain in its place and not beside it (opened sets: right causes 0.77 at most, a weak current in a test 0.9; wrong 0.88 to 0.93)
+FORCES, AS_NEAR = 4, 0.9  # what so few single ones gain in its place and not beside it (opened sets: right 0.77 at most, a test's weak current 0.9; wrong 0.88)
 FORMLESS = 20.0  # twice the log Bayes factor of what is beside a cause, from which it is more than the form of an equation (chosen)
 LONE, LEFT = 75.0, 0.15  # the same of a single force beside, and its share of a cause's evidence (opened sets: the 5 beyond both were wrong; a right one 61)
 REAL = 100.0  # twice the log Bayes factor of a generic force from which it is not a healthy vehicle's form (tuning set)
