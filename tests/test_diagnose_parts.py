@@ -17,7 +17,7 @@ from rovval.diagnose.faults import faults
 from rovval.diagnose.library import hypotheses
 from rovval.diagnose.linearise import Linear
 from rovval.diagnose.localise import axis_channels, slices, worst
-from rovval.diagnose.parity import parity
+from rovval.diagnose.parity import Parity, parity
 from rovval.diagnose.problem import pose
 from rovval.diagnose.products import Products, beside, products, scaled, start_corrected
 from rovval.diagnose.separate import coherence
@@ -257,6 +257,24 @@ def test_a_velocity_scale_is_read_without_the_bias_of_its_tangent():
         one = rows.moved(beta, (slot,)).products(rows.inflation)
         beta[slot] += float(one.b.sum() / one.A.sum())
     assert beta[slot] == pytest.approx(0.12, abs=0.004)
+
+
+@pytest.mark.parametrize("name", ["time_offset[velocity].delay", "time_offset[attitude].delay"])
+@pytest.mark.parametrize("late", [1.2, -0.9])
+def test_a_late_sensor_is_read_without_the_bias_of_its_tangent(name: str, late: float):
+    """Of a vehicle that turns, at the delay the horizontal rows are nearly those of the sound log; a straight trace leaves much."""
+    parts = [cut(spoilt(fault), merlin(), "fossen", 10.0) for fault in ({name: late}, {})]
+    slot = parts[0].plant.index[name]
+    (rows, sound), beta = (parity(part, (slot,)) for part in parts), parts[0].plant.null.copy()
+    beta[slot] = late
+
+    def metres(scaled: Array, check: Parity) -> float:
+        return float(np.sqrt(np.mean((scaled.reshape(len(scaled), -1, 6) * check.sigma)[..., :2] ** 2)))
+
+    straight = metres(rows.rows - rows.traces[..., 0] * late, rows)
+    assert metres(rows.undone(beta)[0], rows) < min(1.2 * metres(sound.rows, sound), 0.95 * straight)
+    told = parity_of(spoilt({name: late}))[name]
+    assert told["significant"] and told["value"] == pytest.approx(late, rel=0.05)
 
 
 def test_parity_of_healthy_sensors_finds_nothing():

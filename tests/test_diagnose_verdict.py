@@ -22,6 +22,7 @@ from rovval.diagnose.library import hypotheses
 from rovval.diagnose.point import evidence
 from rovval.diagnose.problem import Problem, corrected_residuals, pose
 from rovval.diagnose.products import Products
+from rovval.diagnose.questions import crowd
 from rovval.diagnose.separate import FORM, MOST_FORM, form_share
 from rovval.diagnose.settle import healthy_point, settle
 from rovval.diagnose.shown import UNMOVED, Way, as_filed, beside_slop, harms, skilled, stand
@@ -30,7 +31,7 @@ from rovval.diagnose.steadied import discount, gains, loop_gain, loosened
 from rovval.diagnose.stretches import cut, cut_all
 from rovval.diagnose.tolerance import slop_prior
 from rovval.diagnose.unknown import Forces, forces
-from rovval.diagnose.weigh import Weighed, _crowd
+from rovval.diagnose.weigh import Weighed
 from rovval.plant import Plant
 from rovval.vehicle.model import allocation
 
@@ -160,16 +161,16 @@ def test_harm_is_told_from_what_is_closed_in_all():
 
 
 @pytest.mark.parametrize(
-    ("names", "crowd"),
+    ("names", "many"),
     [
         (("linear_drag[surge]", "quadratic_drag[surge]", "linear_drag[sway]"), True), (("linear_drag[surge]", "linear_drag[sway]"), False),
         (("thruster_degraded[HFP]", "thruster_misaligned[HFS]", "thruster_reversed[HAP]"), True),
         (("linear_drag[surge]", "thruster_degraded[HFP]", "linear_drag[sway]"), False), (("waves", "current_constant", "dvl_scale"), False),
     ],
 )  # fmt: skip
-def test_three_causes_of_one_kind_are_a_crowd(names: tuple[str, ...], crowd: bool):
+def test_three_causes_of_one_kind_are_a_crowd(names: tuple[str, ...], many: bool):
     named: Any = [SimpleNamespace(hypothesis=Hypothesis(name, name, (), (), ())) for name in names]
-    assert _crowd(named) == crowd
+    assert crowd(named) == many
 
 
 def test_a_drag_that_spoils_its_own_axis_is_none():

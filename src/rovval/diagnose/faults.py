@@ -11,6 +11,7 @@ from rovval.diagnose.stretches import Stretches
 from rovval.effects import load
 from rovval.plant.slots import Slot
 
+STEPS, SETTLED = 6, 1e-9  # Gauss-Newton steps at most, and the share of the loss below which they end
 FREEDOM = 5  # windows more than parameters, from which their scatter says how sure a fault is: six for one (as `separate.FEW`)
 
 
@@ -23,20 +24,15 @@ def faults(parity_rows: Parity, stretches: Stretches, origin: Array) -> list[dic
     for i, column in enumerate(parity_rows.columns):
         if np.abs(parity_rows.traces[..., i]).max(initial=0.0) > 0:
             by_effect.setdefault(_together(stretches.plant.slots[column]), []).append(i)
-    rows = parity_rows.rows - parity_rows.traces @ origin[list(parity_rows.columns)]  # of these only sensors leave a trace
-    total, windows = float((rows**2).sum()), int((np.abs(parity_rows.traces).max(axis=(1, 2), initial=0.0) > 0).sum())
+    total, windows = float((_about(parity_rows, origin)[0] ** 2).sum()), int((np.abs(parity_rows.traces).max(axis=(1, 2), initial=0.0) > 0).sum())
     for places in by_effect.values():
         if windows < len(places) + FREEDOM:
             continue
-        trace = parity_rows.traces[..., places]
-        H = np.einsum("wqi,wqj->ij", trace, trace) + 1e-12 * np.eye(len(places))
-        g = np.einsum("wqi,wq->wi", trace, rows)
-        value = np.linalg.solve(H, g.sum(axis=0))
-        score = g - np.einsum("wqi,wqj,j->wi", trace, trace, value)
+        value, score, H, loss = _fitted(parity_rows, origin, places)
         bread = np.linalg.inv(H)
         error = np.sqrt(np.diag(bread @ (score.T @ score) @ bread))
         t = float(stats.t.ppf(0.95, windows - len(places)))
-        share = float(g.sum(axis=0) @ value) / total if total > 0 else 0.0
+        share = 1.0 - loss / total if total > 0 else 0.0
         for j, place in enumerate(places):
             slot_id = parity_rows.columns[place]
             slot = stretches.plant.slots[slot_id]
@@ -56,6 +52,32 @@ def faults(parity_rows: Parity, stretches: Stretches, origin: Array) -> list[dic
                 }
             )
     return found
+
+
+def _fitted(check: Parity, origin: Array, places: list[int]) -> tuple[Array, Array, Array, float]:
+    """Departure from ``origin`` (p,) at which faults fit the rows best, the score of every window there (m, p), their curvature (p, p) and the loss. Rows
+    bend with a delay: Gauss-Newton steps, as long as they fit better."""
+    beta, columns = origin.copy(), [check.columns[i] for i in places]
+    rows, traces = _about(check, beta)
+    for _ in range(STEPS):
+        G = traces[..., places]
+        H = np.einsum("wqi,wqj->ij", G, G) + 1e-12 * np.eye(len(places))
+        trial = beta.copy()
+        trial[columns] += np.linalg.solve(H, np.einsum("wqi,wq->i", G, rows))
+        there, slopes = _about(check, trial)
+        if (there**2).sum() >= (1.0 - SETTLED) * (rows**2).sum():
+            break
+        beta, rows, traces = trial, there, slopes
+    G = traces[..., places]
+    H = np.einsum("wqi,wqj->ij", G, G) + 1e-12 * np.eye(len(places))
+    return (beta - origin)[columns], np.einsum("wqi,wq->wi", G, rows), H, float((rows**2).sum())
+
+
+def _about(check: Parity, beta: Array) -> tuple[Array, Array]:
+    """Rows and traces about ``beta`` (k,); of its columns only sensors leave a trace, delays one that bends."""
+    rows, traces = check.undone(beta)
+    straight = np.array([0.0 if c in check.delays else beta[c] for c in check.columns])
+    return rows - traces @ straight, traces
 
 
 def _together(slot: Slot) -> tuple[str, str]:

@@ -14,14 +14,13 @@ import numpy as np
 from scipy import signal
 
 from rovval.data import Array, Flags
+from rovval.diagnose.lateness import UNDONE, Traces
 from rovval.diagnose.products import Products
-from rovval.diagnose.reckoning import LEAD, RELATIONS, complete, drift, measured, wrap_angles
+from rovval.diagnose.reckoning import RELATIONS, complete, drift, inside, measured
 from rovval.diagnose.stretches import Stretches
 from rovval.effects import load
-from rovval.plant.sensors import Log, observe
 
 LEAST_SIGMA = (0.005, 0.005, 0.002, 0.001, 0.001, 0.001)  # m, rad: no sensor is believed below these (chosen)
-STEP = 0.25  # finite-difference step, in typical sizes
 SMOOTH = 11  # samples of the quadratic by which motion is smoothed for traces: a delay's is a slope, which noise would drown and correlate
 FACTORS = ("dvl_scale",)  # faults that multiply what they measure
 DEAD_RECKONED = 0.5  # a position that follows the integrated velocity closer than half its noise allows was integrated from it
@@ -30,22 +29,43 @@ DEAD_RECKONED = 0.5  # a position that follows the integrated velocity closer th
 @dataclass(frozen=True, slots=True)
 class Parity:
     """Rows (m, q) in standard errors and their change (m, q, k) per parameter of ``columns``; ``gram`` their products of those columns
-    that leave a trace, ``factor`` which of them multiply what they measure; ``used`` relations, ``sigma`` of each, and ``inflation`` of
-    its score. Zero rows where a window lacks pose or velocity."""
+    that leave a trace, ``factor`` which of them multiply what they measure, ``late`` which are delays; ``used`` relations, ``sigma`` of each, and
+    ``inflation`` of its score; ``of`` the motion that the traces are of. Zero rows where a window lacks pose or velocity."""
 
     rows: Array
     traces: Array
     gram: Products
     factor: Flags
+    late: Flags
     columns: tuple[int, ...]
     used: tuple[str, ...]
     sigma: tuple[float, ...]
     inflation: float
     notes: tuple[str, ...]
+    of: Traces | None
 
     def moved(self, beta: Array, columns: tuple[int, ...]) -> Moved:
         """The same rows about another parameter point, for other columns."""
         return Moved(self, beta, columns)
+
+    @property
+    def delays(self) -> tuple[int, ...]:
+        """Columns of sensors that are late."""
+        return tuple(c for c, late in zip(self.gram.columns, self.late, strict=True) if late)
+
+    def undone(self, beta: Array) -> tuple[Array, Array]:
+        """Rows (m, q) with what sensors that are late by ``beta`` (k,) make of them taken out, and traces (m, q, k) about these delays."""
+        late = {c: float(beta[c]) for c in self.delays if beta[c] != 0.0}
+        if not late or self.of is None:
+            return self.rows, self.traces
+        keep, traces = [RELATIONS.index(name) for name in self.used], self.traces.copy()
+        made, slopes = self.of.late(late)
+        for column, slope in slopes.items():
+            traces[..., self.columns.index(column)] = self._scaled(slope[..., keep])
+        return self.rows - self._scaled(made[..., keep]), traces
+
+    def _scaled(self, relations: Array) -> Array:
+        return np.asarray((relations / np.array(self.sigma)).reshape(self.rows.shape))
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,12 +77,12 @@ class Moved:
     columns: tuple[int, ...]
 
     def products(self, inflation: float) -> Products:
-        """Products of the rows, discounted so that one common ``inflation`` suits them and the dynamics. Rows are linear in the sensors'
+        """Products of the rows, discounted so that one common ``inflation`` suits them and the dynamics. But for delays, rows are linear in the sensors'
         parameters, r(beta) = r - T beta, so that with A = T'T, b = T'r and c = r'r at the null value b(beta) = b - A beta and
         c(beta) = c - beta'(b + b(beta)); columns without a trace have zeros. Of a measured velocity that is 1 + s times the true one, s is not
         s of it but s / (1 + s), with slope 1 / (1 + s)^2."""
-        null, m, k = self.parity.gram, len(self.parity.gram.c), len(self.columns)
-        given = self.beta[list(null.columns)]
+        null, m, k = self._about_delays(), len(self.parity.gram.c), len(self.columns)
+        given = np.where(self.parity.late, 0.0, self.beta[list(null.columns)])
         beta = np.where(self.parity.factor, given / (1.0 + given), given)
         slope = np.where(self.parity.factor, (1.0 + given) ** -2, 1.0)
         b = null.b - null.A @ beta
@@ -76,38 +96,33 @@ class Moved:
         out.b[:, to] = scale * b[:, of] * slope[of]
         return out
 
+    def _about_delays(self) -> Products:
+        """Products of the columns that leave a trace about the delays of ``beta``, all else at its null value."""
+        columns = self.parity.gram.columns
+        if not self.beta[list(self.parity.delays)].any():
+            return self.parity.gram
+        rows, traces = self.parity.undone(self.beta)
+        return _gram(rows, traces[..., [self.parity.columns.index(c) for c in columns]], columns)
+
 
 def parity(stretches: Stretches, columns: tuple[int, ...]) -> Parity:
     """Parity rows of every window and the trace that each sensor parameter among ``columns`` leaves in them."""
     nu, eta, whole = measured(stretches)
-    nominal = drift(nu[:, LEAD:], eta[:, LEAD:], stretches.run.dt)
+    nominal, usable = drift(inside(nu), inside(eta), stretches.run.dt), complete(stretches)
     nu, eta = (signal.savgol_filter(a, SMOOTH, 2, axis=1) for a in (nu, eta))
-    smooth = drift(nu[:, LEAD:], eta[:, LEAD:], stretches.run.dt)
-    sensor = [c for c in columns if load(stretches.plant.slots[c].effect).place == "sensor"]
+    of = Traces(stretches, nu, eta, usable)
     traces = np.zeros((*nominal.shape, len(columns)))
-    for column in sensor:
-        parameter = stretches.plant.slots[column].parameter
-        step = STEP * parameter.typical
-        beta = stretches.plant.null.copy()
-        beta[column] += step
-        seen = _seen(stretches, nu, eta, beta)
-        traces[..., columns.index(column)] = wrap_angles(drift(seen.nu[:, LEAD:], seen.eta[:, LEAD:], stretches.run.dt) - smooth) / step
+    for i, column in enumerate(columns):
+        if load(stretches.plant.slots[column].effect).place == "sensor":
+            traces[..., i] = of.of(column)
     keep = [i for i, name in enumerate(RELATIONS) if whole[i]]
-    usable = complete(stretches)
-    nominal[~usable], traces[~usable] = 0.0, 0.0
-    return _weighted(stretches, nominal, traces, columns, keep)
+    nominal[~usable] = 0.0
+    return _weighted(of, nominal, traces, columns, keep)
 
 
-def _seen(stretches: Stretches, nu: Array, eta: Array, beta: Array) -> Log:
-    """The measured motion as sensors with the fault ``beta`` (k,) would have logged it."""
-    plant = stretches.plant
-    log = Log(nu, eta, stretches.run.dt, nu[:, 0], eta[:, 0])
-    return observe(plant.vehicle, plant.index, plant.null, np.tile(beta, (len(nu), 1)), log)
-
-
-def _weighted(stretches: Stretches, nominal: Array, traces: Array, columns: tuple[int, ...], keep: list[int]) -> Parity:
+def _weighted(of: Traces, nominal: Array, traces: Array, columns: tuple[int, ...], keep: list[int]) -> Parity:
     """Rows and traces in standard errors: what all sensor faults together leave is the noise of each relation."""
-    m, k = len(nominal), len(columns)
+    stretches, m, k = of.stretches, len(nominal), len(columns)
     if not keep:
         return _none(m, columns, ("no pose beside velocity in this log",))
     seen = np.flatnonzero(np.abs(traces).max(axis=(0, 1, 2)) > 0)
@@ -120,7 +135,7 @@ def _weighted(stretches: Stretches, nominal: Array, traces: Array, columns: tupl
         G = traces[..., keep, :][..., free] / sigma[:, None]
         X = G.reshape(-1, len(free))
         y = (nominal[..., keep] / sigma).reshape(-1)
-        typical = np.array([stretches.plant.slots[columns[i]].parameter.typical for i in free])
+        typical = np.array([slots[i].parameter.typical for i in free])
         fitted = np.linalg.lstsq(np.vstack([X, np.diag(0.1 / typical)]), np.concatenate([y, np.zeros(len(free))]), rcond=None)[0]
         left = (nominal[..., keep] / sigma - G @ fitted) * sigma
         sigma = np.maximum(left.std(axis=(0, 1)), [LEAST_SIGMA[i] for i in keep])
@@ -131,14 +146,16 @@ def _weighted(stretches: Stretches, nominal: Array, traces: Array, columns: tupl
     scaled = (traces[..., keep, :] / sigma[:, None]).reshape(m, rows.shape[1], k)
     inflation = _inflation(rows, scaled, free)
     gram = _gram(rows, scaled[..., seen], tuple(columns[i] for i in seen))
-    factor = np.array([stretches.plant.slots[c].effect in FACTORS for c in gram.columns], dtype=bool)
-    return Parity(rows, scaled, gram, factor, columns, tuple(RELATIONS[i] for i in keep), tuple(sigma.tolist()), inflation, tuple(notes))
+    factor = np.array([slots[i].effect in FACTORS for i in seen], dtype=bool)
+    late = np.array([slots[i].parameter.name in UNDONE for i in seen], dtype=bool)
+    return Parity(rows, scaled, gram, factor, late, columns, tuple(RELATIONS[i] for i in keep), tuple(sigma.tolist()), inflation, tuple(notes), of)
 
 
 def _none(m: int, columns: tuple[int, ...], notes: tuple[str, ...]) -> Parity:
     """No rows at all."""
     rows, traces = np.zeros((m, 0)), np.zeros((m, 0, len(columns)))
-    return Parity(rows, traces, _gram(rows, traces[..., :0], ()), np.zeros(0, dtype=bool), columns, (), (), 1.0, notes)
+    nothing = np.zeros(0, dtype=bool)
+    return Parity(rows, traces, _gram(rows, traces[..., :0], ()), nothing, nothing, columns, (), (), 1.0, notes, None)
 
 
 def _gram(rows: Array, traces: Array, columns: tuple[int, ...]) -> Products:

@@ -1,0 +1,53 @@
+"""What late sensors leave in the parity rows: of a vehicle that turns, half a second of it is not ten times a twentieth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rovval.data import Array, Flags
+from rovval.diagnose.reckoning import drift, inside, wrap_angles
+from rovval.diagnose.stretches import Stretches
+from rovval.plant.sensors import Log, observe
+
+STEP = 0.25  # finite-difference step, in typical sizes
+UNDONE = ("delay",)  # faults that their opposite undoes, whatever their size
+
+
+@dataclass(frozen=True, slots=True)
+class Traces:
+    """Smooth measured motion ``nu`` and ``eta`` (m, margin + n + margin, 6) of the windows, ``usable`` (m,) of them, and what sensors make of it."""
+
+    stretches: Stretches
+    nu: Array
+    eta: Array
+    usable: Flags
+
+    def of(self, column: int) -> Array:
+        """Change of the drift (m, rows, 6) per unit of a fault, at none."""
+        step = self._step(column)
+        return wrap_angles(self._drift({column: step}) - self._drift({})) / step
+
+    def late(self, delays: dict[int, float]) -> tuple[Array, dict[int, Array]]:
+        """What sensors that are late by ``delays`` (column: seconds) make of the drift (m, rows, 6): the drift as it is, less that of the motion once
+        they are undone; and its change per second more of each."""
+        undone = self._drift({c: -value for c, value in delays.items()})
+        slopes = dict[int, Array]()
+        for column in delays:
+            step = self._step(column)
+            slopes[column] = wrap_angles(undone - self._drift({c: -value - step * (c == column) for c, value in delays.items()})) / step
+        return wrap_angles(self._drift({}) - undone), slopes
+
+    def _step(self, column: int) -> float:
+        return STEP * self.stretches.plant.slots[column].parameter.typical
+
+    def _drift(self, faults: dict[int, float]) -> Array:
+        """Drift of the motion as sensors with ``faults`` (column: value) would have logged it."""
+        plant, beta = self.stretches.plant, self.stretches.plant.null.copy()
+        beta[list(faults)] += list(faults.values())
+        log = Log(self.nu, self.eta, self.stretches.run.dt, self.nu[:, 0], self.eta[:, 0])
+        seen = observe(plant.vehicle, plant.index, plant.null, np.tile(beta, (len(self.nu), 1)), log)
+        rows = drift(inside(seen.nu), inside(seen.eta), self.stretches.run.dt)
+        rows[~self.usable] = 0.0
+        return rows
