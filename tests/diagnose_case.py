@@ -72,10 +72,13 @@ def own(effects: tuple[str, ...] = (), seed: int = 0, seconds: float = 240.0, no
 
 
 @functools.cache
-def foreign(folder: Path, planted: Sequence[tuple[str, str, float]], seed: int, seconds: float = 200.0, slop: float = 0.0) -> Run:
+def foreign(
+    folder: Path, planted: Sequence[tuple[str, str, float]], seed: int, seconds: float = 200.0, slop: float = 0.0, v: str = "merlin",
+    mission: str = "rich", onset: float | None = None,
+) -> Run:  # fmt: skip
     """A log of the independent plant, written and read as Merlin's CSV; ``planted``: (effect, target, severity)."""
-    effects = [Planted(name, target or None, severity) for name, target, severity in planted]
-    flight = fly(LIBRARY / "merlin.toml", "rich", effects, seed, seconds, slop)
+    effects = [Planted(name, target or None, severity, onset) for name, target, severity in planted]
+    flight = fly(LIBRARY / f"{v}.toml", mission, effects, seed, seconds, slop)
     path = folder / f"foreign{seed}.csv"
     write_csv(flight, path)
     return store.open_run(path, "merlin", folder / "archive")

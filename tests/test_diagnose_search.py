@@ -21,6 +21,7 @@ from rovval.diagnose.caught import _settled as settled_spring
 from rovval.diagnose.confirm import Confirmed, confirm, errors
 from rovval.diagnose.excited import LARGE, LEAST_SIGMA, excited
 from rovval.diagnose.finalists import _half_a_turn_later, finalists, prior_of
+from rovval.diagnose.holding import EVIDENT
 from rovval.diagnose.hypothesis import Hypothesis
 from rovval.diagnose.lanes import lanes_of
 from rovval.diagnose.library import hypotheses
@@ -367,6 +368,22 @@ def test_what_holds_the_vehicle_begins_where_it_is_said_to():
         assert somewhere[place] == pytest.approx(float(np.interp(somewhere["onset"] / run.dt, np.arange(len(run)), run.get(channel))))
     spring = {"stiffness": 300.0, "north": 3.0, "east": -2.0, "down": 9.0, "radius": 1.5, "onset": 80.0, "x": -0.5, "z": 0.0}
     assert snags([spring, spring | {"x": -9.0}]) == [spring, spring | {"x": -2.0}]
+
+
+def test_a_stiff_spring_is_found_through_the_beginnings_of_windows(tmp_path: Path):
+    """A small vehicle of the independent plant, held for half of the log: over ten seconds a spring a third too soft is a valley of its own."""
+    run = foreign(tmp_path, (("tether_snag", "", 1.1),), 47900686, 300.0, 0.03, "bluerov2_heavy", "survey", 135.4)
+    document = diagnose([run], load("bluerov2_heavy")).document
+    assert [c["effect"] for c in document["causes"]] == ["tether_snag"], document["sentence"]
+    assert document["causes"][0]["onset_s"] == pytest.approx(135.4, abs=10.0)
+    assert document["shrinkage"]["total"] > 0.85
+
+
+def test_a_slack_spring_is_a_steady_pull_and_not_evident():
+    parts, _ = cut_all([own((), 5, 200.0)], merlin(), "fossen", 10.0)
+    spring = {"stiffness": 300.0, "onset": 80.0}
+    springs = [spring | {"share": EVIDENT}, spring | {"share": 0.9 * EVIDENT}, spring]
+    assert [h.evident for h in hypotheses(parts, held=springs)[0] if h.name == "tether_snag"] == [True, False, False]
 
 
 def test_a_spring_is_found_in_the_forces_that_are_missing():

@@ -27,6 +27,7 @@ HALVES = 2  # of a window, in each of which what is missing is one force and one
 EVERY_S = 0.5  # between the places along a half at which the spring pulls
 SHARES = (0.2, 0.5, 0.8)  # of how far the vehicle gets from where it was caught: slack tried
 BEST, APART_S = 4, 10.0  # springs that the search begins from, and how far apart their onsets are (chosen)
+SLACK = 5.0  # N/m: half of what is typical of one that is caught (`effects.tether_snag`); opened sets: 8 to 900, an even pull 0.0 to 3
 ENOUGH, TIED = 150, 2  # evaluations of a spring, and how often it is laid, each time from where the one before is tied
 LEVER_X = np.array([[0, 0, 0], [0, 0, -1], [0, 1, 0]])  # moment of a force that acts 1 m ahead of the origin
 LEVER_Z = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 0]])  # and 1 m below it
@@ -60,7 +61,8 @@ class Missing:
 
 def caught(problem: Problem) -> list[dict[str, float]]:
     """Springs that explain most of what the first run's windows lack of the vehicle as it is, the best first: north, east, down, radius, levers x and z
-    (m), stiffness (N/m) and onset (s since the run's start) of each."""
+    (m), stiffness (N/m) and onset (s since the run's start) of each, and the share of the gap that it takes by its stretch: none where it is so slack that
+    it might as well pull evenly (`SLACK`)."""
     part = problem.parts[0]
     lack = missing(part, problem.at_null[0], problem.origin, problem.variance)
     onsets = lack.t[:, :, 0].reshape(-1)
@@ -69,7 +71,9 @@ def caught(problem: Problem) -> list[dict[str, float]]:
     for i in np.argsort([-worth for worth, _ in first]):
         if len(found) < BEST and first[i][0] > 0 and all(abs(onsets[i] - spring["onset"]) >= APART_S for _, spring in found):
             found.append(_settled(lack, float(onsets[i]), _places(lack)[i], first[i][1]))
-    return [spring for worth, spring in sorted(found, key=lambda one: -one[0]) if worth > 0]
+    gap = float(problem.gap.c.sum())
+    springs = [(worth / gap, spring) for worth, spring in sorted(found, key=lambda one: -one[0]) if worth > 0]
+    return [spring | {"share": share if spring["stiffness"] >= SLACK else 0.0} for share, spring in springs]
 
 
 def missing(part: Stretches, left: Linear, beta: Array, variance: Array) -> Missing:

@@ -17,7 +17,7 @@ from rovval.diagnose.hypothesis import PRIOR_WIDTH, Hypothesis
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.products import Products
 from rovval.diagnose.separate import Rival, coherence
-from rovval.diagnose.settle import stays
+from rovval.diagnose.settle import early, stays
 
 FINALISTS = 10  # hypotheses that are re-simulated in a round
 SCREENED = 0.15  # of the best linear evidence: less is not re-simulated,
@@ -37,8 +37,8 @@ def finalists(
     ``data`` is the library linearised where what ``stands`` settled, ``promised`` the evidence there of each starting point.
     """
     base = stands.point
-    ordered = sorted(library, key=lambda h: -promised[h.label])
-    least = SCREENED * max(promised[ordered[0].label], 0.0)
+    ordered = sorted(library, key=lambda h: (not h.evident, -promised[h.label]))
+    least = SCREENED * max(0.0, *(promised[h.label] for h in library))
     ground = problem.slop.widened(freed(problem, chosen))
     fitted: dict[str, tuple[Hypothesis, Confirmed]] = {}
 
@@ -54,13 +54,15 @@ def finalists(
         start = begun(problem, data, h, moves(h), base.beta, slots)
         if h.name.startswith(REVERSED):
             start = _turned(problem, h, start)
+        if h.evident:
+            start = early(problem, still(h, slots), slots)
         quick = roughly(problem, start, slots, base.scaled).light()
         if h.name not in fitted or quick.evidence > fitted[h.name][1].evidence:
             fitted[h.name] = h, quick
 
     tries = Counter[str]()
     for h in ordered:
-        promising = promised[h.label] > (least if len(fitted) >= FEWEST else min(least, ANYWAY))
+        promising = h.evident or promised[h.label] > (least if len(fitted) >= FEWEST else min(least, ANYWAY))
         if promising and (tries[h.name] < TRIES if h.name in fitted and _valleys(h) else h.name not in fitted and len(fitted) < FINALISTS):
             refit(h)
             tries[h.name] += 1

@@ -14,7 +14,8 @@ PRIOR_WIDTH = 4.0  # wide prior, in typical sizes: keeps a parameter that the lo
 @dataclass(frozen=True, slots=True)
 class Hypothesis:
     """``name`` as in the contract (``thruster_degraded[HFP]``); ``slots`` all of its parameters; ``columns`` of the linearisation that it
-    sets free, with their prior ``sd``; ``at`` where a starting point moves slots to; ``label`` tells starting points apart."""
+    sets free, with their prior ``sd``; ``at`` where a starting point moves slots to; ``label`` tells starting points apart. ``evident``: the forces that
+    are missing show it, whatever the linearisation promises."""
 
     name: str
     label: str
@@ -23,6 +24,7 @@ class Hypothesis:
     sd: tuple[float, ...]
     at: tuple[tuple[int, float], ...] = ()
     directions: tuple[Direction, ...] = ()
+    evident: bool = False
 
     @property
     def effect(self) -> Effect:

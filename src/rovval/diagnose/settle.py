@@ -45,12 +45,17 @@ def settle(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[S
 
 
 def healthy_point(problem: Problem) -> Point:
-    """Where slop settles by itself. The beginning of each window is fitted first: over ten seconds a vehicle that rolls freely forgets how it
-    began, and a fit of the whole window from far away ends in the first of many valleys."""
-    beta = problem.origin
+    """Where slop settles by itself."""
+    return settle(problem, early(problem, problem.origin, ()), ())
+
+
+def early(problem: Problem, start: Array, slots: tuple[int, ...]) -> Array:
+    """Where ``slots`` and slop (k,) settle from ``start`` on the beginning of each window. Over ten seconds a vehicle that rolls freely, or that something
+    holds, forgets how it began, and a fit of the whole window from far away ends in the first of many valleys."""
+    beta = start
     for seconds in EARLY:
-        beta = settle(_begun(problem, seconds), beta, ()).beta
-    return settle(problem, beta, ())
+        beta = settle(_begun(problem, seconds), beta, slots).beta
+    return beta
 
 
 def resettled(problem: Problem, before: Point, point: Point, slots: tuple[int, ...]) -> Point:
