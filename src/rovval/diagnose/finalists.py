@@ -77,8 +77,8 @@ def finalists(
 
 
 def _valleys(h: Hypothesis) -> bool:
-    """Whether fits of it end in one of many valleys: it begins well away from nothing, or it swings."""
-    return h.whole or "period" in effects.load(h.name.partition("[")[0]).grid
+    """Whether fits of it end in one of many valleys: it begins well away from nothing and is not settled through the beginnings of windows, or it swings."""
+    return (h.whole and not h.evident) or "period" in effects.load(h.name.partition("[")[0]).grid
 
 
 def _retried(

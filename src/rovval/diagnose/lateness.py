@@ -1,4 +1,8 @@
-"""What late sensors leave in the parity rows: of a vehicle that turns, half a second of it is not ten times a twentieth."""
+"""What late sensors leave in the parity rows: of a vehicle that turns, half a second of it is not ten times a twentieth.
+
+An angle is held against its rate, and both are of one sensor: no delay shows there, though the windows slide along what else is wrong there. (At no
+delay that slide is a trace as any other, by which a tolerance of half a sample takes up some of what is wrong there: a real tank run has much of it.)
+"""
 
 from __future__ import annotations
 
@@ -36,8 +40,8 @@ class Traces:
         slopes = dict[int, Array]()
         for column in delays:
             step = self._step(column)
-            slopes[column] = wrap_angles(undone - self._drift({c: -value - step * (c == column) for c, value in delays.items()})) / step
-        return wrap_angles(self._drift({}) - undone), slopes
+            slopes[column] = _of_places(undone - self._drift({c: -value - step * (c == column) for c, value in delays.items()})) / step
+        return _of_places(self._drift({}) - undone), slopes
 
     def _step(self, column: int) -> float:
         return STEP * self.stretches.plant.slots[column].parameter.typical
@@ -51,3 +55,8 @@ class Traces:
         rows = drift(inside(seen.nu), inside(seen.eta), self.stretches.run.dt)
         rows[~self.usable] = 0.0
         return rows
+
+
+def _of_places(rows: Array) -> Array:
+    """Rows (m, rows, 6) with the relations of angles taken out."""
+    return np.concatenate([rows[..., :3], np.zeros_like(rows[..., 3:])], axis=-1)

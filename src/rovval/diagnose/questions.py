@@ -25,7 +25,6 @@ BETTER = 1.0  # of a cause's evidence: a generic force that has more is nearer t
 FORCES, AS_NEAR = 4, 0.9  # what so few single ones gain in its place and not beside it (opened sets: right 0.77 at most, a test's weak current 0.9; wrong 0.88)
 FORMLESS = 20.0  # twice the log Bayes factor of what is beside a cause, from which it is more than the form of an equation (chosen)
 LONE, LEFT = 75.0, 0.15  # the same of a single force beside, and its share of a cause's evidence (opened sets: the 5 beyond both were wrong; a right one 61)
-HOLDS = 0.02  # of what is left: a generic force that closes less on held-out windows is a fit to these windows (chosen)
 BROKEN = 7.0  # standard deviations that say by themselves that something is at work: one of some hundred healthy logs of the tuning set reached 6
 BENT, OUTWEIGHS = 6.0, 5.0  # the same of causes with less evidence than so much of what the strain costs by its prior (opened sets: 3.9, 4.6; true 15)
 WAVERS = 0.5  # of a cause's evidence: one whose value varies more surely than that is not it (opened sets: true ones 0.40 at most)
@@ -34,8 +33,9 @@ WAVERS = 0.5  # of a cause's evidence: one whose value varies more surely than t
 @dataclass(frozen=True, slots=True)
 class Case:
     """Causes and what speaks for and against them: their joint fit ``final`` and its evidence ``total``, the generic forces on the healthy
-    vehicle and those beside the causes, the ways in which they show what they do (`shown`; the first: as filed), the evidence that each one's value
-    varies. ``faulty``: they are faults of sensors that the kinematic checks see, which a force imitates."""
+    vehicle and those beside the causes (``holds``: on windows that they were not fitted on, too), the ways in which they show what they do (`shown`; the
+    first: as filed), the evidence that each one's value varies. ``faulty``: they are faults of sensors that the kinematic checks see, which a force
+    imitates."""
 
     problem: Problem
     named: tuple[Named, ...]
@@ -43,6 +43,7 @@ class Case:
     total: float
     general: Forces
     rest: Forces
+    holds: bool
     ways: tuple[Way, ...]
     varies: Mapping[str, float]
     faulty: bool
@@ -66,11 +67,6 @@ class Case:
     def strain(self) -> float:
         """How far the most strained healthy coefficient leaves its tolerance beside them."""
         return self.final.point.strain()
-
-    @property
-    def holds(self) -> bool:
-        """Whether the generic forces beside them hold on windows that they were not fitted on."""
-        return self.many and self.rest.share(self.problem.folds) > HOLDS
 
     @property
     def instead(self) -> float:

@@ -9,13 +9,13 @@ from rovval.data import Array
 from rovval.diagnose.confirm import Confirmed
 from rovval.diagnose.left import left
 from rovval.diagnose.problem import Problem
-from rovval.diagnose.questions import BROKEN, HOLDS, of_sensor
+from rovval.diagnose.questions import BROKEN, of_sensor
 from rovval.diagnose.round import FALSE_ALARM
 from rovval.diagnose.select import Selection
 from rovval.diagnose.together import Named, jointly
 from rovval.diagnose.tolerance import STRAINED
 from rovval.diagnose.unknown import Forces, bare_forces, forces
-from rovval.diagnose.weigh import REAL, Weighed, weigh
+from rovval.diagnose.weigh import HOLDS, REAL, Weighed, weigh
 
 COMPANY = 0.4  # of the probability of a further cause: what one cause leaves unexplained has other names, too (opened sets: 16 of 45 such names were right)
 NEAR = 0.05  # of the gap, held out: an effect that closes less is not near the truth, whatever its evidence (chosen)

@@ -23,6 +23,7 @@ from rovval.diagnose.tolerance import STRAINED
 from rovval.diagnose.unknown import Forces, forces
 from rovval.diagnose.wavering import drifting, wavering
 
+HOLDS = 0.02  # of what is left: a generic force that closes less on held-out windows is a fit to these windows (chosen)
 REAL = 100.0  # twice the log Bayes factor of a generic force from which it is not a healthy vehicle's form (tuning set)
 REMAINS = 0.10  # of a cause's evidence: less left over is form, not another cause
 
@@ -70,7 +71,9 @@ def _case(problem: Problem, selection: Selection, final: Confirmed, general: For
     slop = [beside_slop(problem, final, selection.healthy, before)] if final.point.strain() <= STRAINED else []
     faulty = all(of_sensor(n) for n in selection.named) and checked(problem, final)
     varies = wavering(problem, final, selection.named) if problem.blocks >= FEW else {}
-    return Case(problem, selection.named, final, total, general, forces(problem, final.point), (filed, *slop), varies, faulty)
+    rest = forces(problem, final.point)
+    holds = problem.blocks >= FEW and rest.share(problem.folds) > HOLDS
+    return Case(problem, selection.named, final, total, general, rest, holds, (filed, *slop), varies, faulty)
 
 
 def _unsteady(problem: Problem, selection: Selection, final: Confirmed, varies: Mapping[str, float]) -> tuple[str, ...]:
