@@ -12,7 +12,7 @@ from rovval.diagnose.hypothesis import Hypothesis, beginning
 from rovval.diagnose.stretches import Stretches
 from rovval.plant import Plant
 
-EVIDENT = 0.2  # of the gap, that a spring takes through the forces that are missing (opened sets: ten snags 0.22 to 0.82; of a hundred others four)
+EVIDENT = 0.2  # of the gap, that a spring takes through the forces that are missing (opened sets: eight snags 0.22 to 0.82; of 82 others three)
 
 
 def holding(plant: Plant, name: str, slots: tuple[int, ...], springs: Sequence[Mapping[str, float]], next_id: int) -> list[Hypothesis]:
