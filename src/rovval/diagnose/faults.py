@@ -60,17 +60,19 @@ def _fitted(check: Parity, origin: Array, places: list[int]) -> tuple[Array, Arr
     beta, columns = origin.copy(), [check.columns[i] for i in places]
     rows, traces = _about(check, beta)
     for _ in range(STEPS):
-        G = traces[..., places]
-        H = np.einsum("wqi,wqj->ij", G, G) + 1e-12 * np.eye(len(places))
+        score, H = _normal(rows, traces[..., places])
         trial = beta.copy()
-        trial[columns] += np.linalg.solve(H, np.einsum("wqi,wq->i", G, rows))
+        trial[columns] += np.linalg.solve(H, score.sum(axis=0))
         there, slopes = _about(check, trial)
         if (there**2).sum() >= (1.0 - SETTLED) * (rows**2).sum():
             break
         beta, rows, traces = trial, there, slopes
-    G = traces[..., places]
-    H = np.einsum("wqi,wqj->ij", G, G) + 1e-12 * np.eye(len(places))
-    return (beta - origin)[columns], np.einsum("wqi,wq->wi", G, rows), H, float((rows**2).sum())
+    return (beta - origin)[columns], *_normal(rows, traces[..., places]), float((rows**2).sum())
+
+
+def _normal(rows: Array, G: Array) -> tuple[Array, Array]:
+    """Scores of the windows (m, p) and curvature (p, p) of traces (m, q, p)."""
+    return np.einsum("wqi,wq->wi", G, rows), np.einsum("wqi,wqj->ij", G, G) + 1e-12 * np.eye(G.shape[-1])
 
 
 def _about(check: Parity, beta: Array) -> tuple[Array, Array]:

@@ -21,17 +21,19 @@ UNDONE = ("delay",)  # faults that their opposite undoes, whatever their size
 
 @dataclass(frozen=True, slots=True)
 class Traces:
-    """Smooth measured motion ``nu`` and ``eta`` (m, margin + n + margin, 6) of the windows, ``usable`` (m,) of them, and what sensors make of it."""
+    """Smooth measured motion ``nu`` and ``eta`` (m, margin + n + margin, 6) of the windows, ``usable`` (m,) of them, its drift ``as_is`` (m, rows, 6), and
+    what sensors make of it (`traced`)."""
 
     stretches: Stretches
     nu: Array
     eta: Array
     usable: Flags
+    as_is: Array
 
     def of(self, column: int) -> Array:
         """Change of the drift (m, rows, 6) per unit of a fault, at none."""
         step = self._step(column)
-        return wrap_angles(self._drift({column: step}) - self._drift({})) / step
+        return wrap_angles(self._drift({column: step}) - self.as_is) / step
 
     def late(self, delays: dict[int, float]) -> tuple[Array, dict[int, Array]]:
         """What sensors that are late by ``delays`` (column: seconds) make of the drift (m, rows, 6): the drift as it is, less that of the motion once
@@ -41,7 +43,7 @@ class Traces:
         for column in delays:
             step = self._step(column)
             slopes[column] = _of_places(undone - self._drift({c: -value - step * (c == column) for c, value in delays.items()})) / step
-        return _of_places(self._drift({}) - undone), slopes
+        return _of_places(self.as_is - undone), slopes
 
     def _step(self, column: int) -> float:
         return STEP * self.stretches.plant.slots[column].parameter.typical
@@ -52,9 +54,18 @@ class Traces:
         beta[list(faults)] += list(faults.values())
         log = Log(self.nu, self.eta, self.stretches.run.dt, self.nu[:, 0], self.eta[:, 0])
         seen = observe(plant.vehicle, plant.index, plant.null, np.tile(beta, (len(self.nu), 1)), log)
-        rows = drift(inside(seen.nu), inside(seen.eta), self.stretches.run.dt)
-        rows[~self.usable] = 0.0
-        return rows
+        return _drift_of(seen.nu, seen.eta, self.stretches.run.dt, self.usable)
+
+
+def traced(stretches: Stretches, nu: Array, eta: Array, usable: Flags) -> Traces:
+    """Traces of a smooth motion."""
+    return Traces(stretches, nu, eta, usable, _drift_of(nu, eta, stretches.run.dt, usable))
+
+
+def _drift_of(nu: Array, eta: Array, dt: float, usable: Flags) -> Array:
+    rows = drift(inside(nu), inside(eta), dt)
+    rows[~usable] = 0.0
+    return rows
 
 
 def _of_places(rows: Array) -> Array:

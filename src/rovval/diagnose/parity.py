@@ -14,7 +14,7 @@ import numpy as np
 from scipy import signal
 
 from rovval.data import Array, Flags
-from rovval.diagnose.lateness import UNDONE, Traces
+from rovval.diagnose.lateness import UNDONE, Traces, traced
 from rovval.diagnose.products import Products
 from rovval.diagnose.reckoning import RELATIONS, complete, drift, inside, measured
 from rovval.diagnose.stretches import Stretches
@@ -110,7 +110,7 @@ def parity(stretches: Stretches, columns: tuple[int, ...]) -> Parity:
     nu, eta, whole = measured(stretches)
     nominal, usable = drift(inside(nu), inside(eta), stretches.run.dt), complete(stretches)
     nu, eta = (signal.savgol_filter(a, SMOOTH, 2, axis=1) for a in (nu, eta))
-    of = Traces(stretches, nu, eta, usable)
+    of = traced(stretches, nu, eta, usable)
     traces = np.zeros((*nominal.shape, len(columns)))
     for i, column in enumerate(columns):
         if load(stretches.plant.slots[column].effect).place == "sensor":

@@ -16,7 +16,7 @@ from rovval.diagnose.point import Point
 from rovval.diagnose.problem import Problem
 from rovval.diagnose.select import MOST
 from rovval.diagnose.separate import FEW, form_share
-from rovval.diagnose.shown import Way, acting, stand
+from rovval.diagnose.shown import Way, stand
 from rovval.diagnose.together import LEAST_EVIDENCE, Named
 from rovval.diagnose.tolerance import WITHIN
 from rovval.diagnose.unknown import Forces
@@ -33,7 +33,8 @@ WAVERS = 0.5  # of a cause's evidence: one whose value varies more surely than t
 @dataclass(frozen=True, slots=True)
 class Case:
     """Causes and what speaks for and against them: their joint fit ``final`` and its evidence ``total``, the generic forces on the healthy
-    vehicle and those beside the causes (``holds``: on windows that they were not fitted on, too), the ways in which they show what they do (`shown`; the
+    vehicle and those beside the causes (``holds``: on windows that they were not fitted on, too), the ``axes`` where they
+    act, evidence of generic forces there ``instead`` of and ``beside`` them, the ways in which they show what they do (`shown`; the
     first: as filed), the evidence that each one's value varies. ``faulty``: they are faults of sensors that the kinematic checks see, which a force
     imitates."""
 
@@ -44,6 +45,9 @@ class Case:
     general: Forces
     rest: Forces
     holds: bool
+    axes: tuple[str, ...]
+    instead: float
+    beside: float
     ways: tuple[Way, ...]
     varies: Mapping[str, float]
     faulty: bool
@@ -59,24 +63,9 @@ class Case:
         return self.ways[0].closed
 
     @property
-    def axes(self) -> tuple[str, ...]:
-        """Where they act."""
-        return acting(self.closed)
-
-    @property
     def strain(self) -> float:
         """How far the most strained healthy coefficient leaves its tolerance beside them."""
         return self.final.point.strain()
-
-    @property
-    def instead(self) -> float:
-        """Evidence of generic forces in their place."""
-        return self.general.evidence(self.axes)
-
-    @property
-    def beside(self) -> float:
-        """Evidence of generic forces beside them."""
-        return self.rest.evidence(self.axes) if self.holds else 0.0
 
     @property
     def of_best(self) -> float:

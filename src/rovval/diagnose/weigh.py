@@ -17,7 +17,7 @@ from rovval.diagnose.problem import Problem
 from rovval.diagnose.questions import WAVERS, Case, of_sensor
 from rovval.diagnose.select import Selection
 from rovval.diagnose.separate import FEW
-from rovval.diagnose.shown import as_filed, beside_slop, checked, seen_by_checks
+from rovval.diagnose.shown import acting, as_filed, beside_slop, checked, seen_by_checks
 from rovval.diagnose.together import LEAST_EVIDENCE
 from rovval.diagnose.tolerance import STRAINED
 from rovval.diagnose.unknown import Forces, forces
@@ -73,7 +73,9 @@ def _case(problem: Problem, selection: Selection, final: Confirmed, general: For
     varies = wavering(problem, final, selection.named) if problem.blocks >= FEW else {}
     rest = forces(problem, final.point)
     holds = problem.blocks >= FEW and rest.share(problem.folds) > HOLDS
-    return Case(problem, selection.named, final, total, general, rest, holds, (filed, *slop), varies, faulty)
+    axes = acting(filed.closed)
+    instead, beside = general.evidence(axes), rest.evidence(axes) if holds else 0.0
+    return Case(problem, selection.named, final, total, general, rest, holds, axes, instead, beside, (filed, *slop), varies, faulty)
 
 
 def _unsteady(problem: Problem, selection: Selection, final: Confirmed, varies: Mapping[str, float]) -> tuple[str, ...]:
