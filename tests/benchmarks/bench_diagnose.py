@@ -30,6 +30,7 @@ def measured(folder: str, minutes: list[float]) -> list[dict[str, Any]]:
     from time import perf_counter, process_time
 
     from diagnose_case import foreign, merlin
+
     from rovval import effects
     from rovval.diagnose import diagnose
 
@@ -49,7 +50,7 @@ def measured(folder: str, minutes: list[float]) -> list[dict[str, Any]]:
 
 def test_ten_minutes_against_the_whole_library(tmp_path):
     code = f"import json, bench_diagnose as b; print(json.dumps(b.measured({str(tmp_path)!r}, {list(MINUTES)})))"
-    environment = {**os.environ, **ONE_THREAD, "PYTHONPATH": f"{HERE}{os.pathsep}{HERE.parent}"}
+    environment = {**os.environ, **ONE_THREAD, "PYTHONPATH": f"{HERE}{os.pathsep}{HERE.parent / 'cases'}"}
     done = subprocess.run([sys.executable, "-c", code], env=environment, check=True, capture_output=True, text=True)
     rows = json.loads(done.stdout.splitlines()[-1])
     print(f"\n{'log':>8}{'windows':>9}{'hypotheses':>12}{'rounds':>8}{'CPU s':>8}{'wall s':>8}  named")

@@ -21,8 +21,12 @@ import numpy as np
 import pytest
 
 from rovval import vehicle
-from rovval.plant import Inputs, Plant, compose, kernel, model, oracle, parse_settings, template
-from rovval.plant.lower import lower, pack
+from rovval.plant import Inputs, Plant, model, parse_settings
+from rovval.plant.codegen import cache as kernel
+from rovval.plant.codegen import source as template
+from rovval.plant.codegen import spec as compose
+from rovval.plant.lowering import lower, pack
+from rovval.plant.reference import plant as oracle
 
 HERE = Path(__file__).parent
 FLAGS = "-O3 -march=native -ffp-contract=fast -fno-math-errno -fno-trapping-math -shared -fPIC".split()
@@ -224,5 +228,5 @@ def test_cold_and_cached_start(tmp_path):
     environment = {**os.environ, "ROVVAL_CACHE": str(tmp_path)}
     for name in ("cold", "cached"):
         start = time.perf_counter()
-        subprocess.run([sys.executable, "-c", code, str(HERE.parent)], env=environment, check=True, capture_output=True)
+        subprocess.run([sys.executable, "-c", code, str(HERE.parent / "cases")], env=environment, check=True, capture_output=True)
         print(f"\n{name} start: {time.perf_counter() - start:.1f} s")

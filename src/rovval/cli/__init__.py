@@ -10,7 +10,7 @@ import traceback
 from pathlib import Path
 from typing import NoReturn
 
-from rovval.errors import RovvalError
+from rovval.core.errors import RovvalError
 
 INTERNAL = 70
 CONFIGURATION, INPUT = 2, 3

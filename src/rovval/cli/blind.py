@@ -45,9 +45,9 @@ def make(
       rovval blind make sets/small --seed 7 --size small
     """
     from rovval import vehicle as vehicles
-    from rovval.blind import make as maker
-    from rovval.blind.generate import read_cases
-    from rovval.blind.plan import Question
+    from rovval.blind.cases.generate import read_cases
+    from rovval.blind.cases.plan import Question
+    from rovval.blind.sealed import make as maker
 
     vehicles.load(vehicle)
     path = Path(vehicle) if vehicle.endswith(".toml") else vehicles.LIBRARY / f"{vehicle}.toml"
@@ -72,7 +72,7 @@ def answer(
     Example:
       rovval blind answer sets/small
     """
-    from rovval.blind import answer as answerer
+    from rovval.blind.sealed import answer as answerer
 
     done = answerer.answer(folder, workers=workers, floors=floors, fresh=fresh, say=_steps(quiet))
     output.result(f"answers of engine {done['engine']} committed at {done['committed']}, SHA-256 {done['sha256']}")
@@ -96,9 +96,9 @@ def score(
     Example:
       rovval blind score sets/small
     """
-    from rovval.blind import page
-    from rovval.blind import score as scorer
+    from rovval.blind.scoring import score as scorer
     from rovval.pipeline.atomic import write_text
+    from rovval.report.blind import page
 
     result = scorer.score(folder, key=key, kept=history, workers=workers, say=_steps(quiet))
     write_text(folder / "score.html", page.html(result))

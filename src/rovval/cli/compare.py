@@ -10,7 +10,7 @@ import typer
 from rovval.cli import complete, logs, options, output
 
 if TYPE_CHECKING:
-    from rovval.data import Comparison
+    from rovval.core.data import Comparison
     from rovval.vehicle.model import Vehicle
 
 With = Annotated[
@@ -55,7 +55,7 @@ def command(
       rovval compare dive.csv --fail-above surge=0.10 --fail-above yaw.iae=5 --json
       rovval compare run_a.csv --with run_a.sim.csv --with-profile bluerov2_tank_sim
     """
-    from rovval.compare import compare
+    from rovval.comparison import compare
     from rovval.pipeline import tolerances
     from rovval.pipeline.steps import other_velocities, simulated, vehicle_of
 
@@ -83,8 +83,8 @@ def command(
 def _report(comparison: Comparison, vehicle: Vehicle, folder: Path | None, as_json: bool) -> dict[str, Any]:
     """The report into its folder, if it has one, and the result on stdout; what `--json` prints."""
     from rovval import report
-    from rovval.report.json import document as comparison_json
-    from rovval.report.table import text
+    from rovval.report.comparison.json import document as comparison_json
+    from rovval.report.comparison.table import text
 
     document = comparison_json(comparison)
     files = {} if folder is None else report.write(comparison, folder, vehicle)

@@ -58,9 +58,9 @@ def command(
       rovval diagnose dive.csv --json diagnosis.json
       rovval diagnose dive1.csv dive2.csv --profile merlin --write-vehicle mended.toml
     """
-    from rovval import whole
     from rovval.diagnose import diagnose
     from rovval.pipeline.steps import vehicle_of
+    from rovval.storage import atomic as whole
 
     anywhere = _folder(out, json_, "")
     whole.check(None if str(json_) == "-" else json_, write_vehicle, anywhere and anywhere / "diagnosis.json")
@@ -102,7 +102,7 @@ def _as_typed(found: Diagnosis, sources: dict[str, str], vehicle: str | None, op
 def _print(found: Diagnosis, json_: Path | None, quiet: bool) -> None:
     """The diagnosis on stdout as text, or as JSON where that was asked for; JSON into its file."""
     from rovval.pipeline.atomic import write_json
-    from rovval.report.table import diagnosis_text
+    from rovval.report.comparison.table import diagnosis_text
 
     if str(json_) == "-":
         output.result_json(found.document)

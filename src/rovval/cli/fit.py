@@ -31,10 +31,10 @@ def command(
     Example:
       rovval fit dive.csv --parameters quadratic_drag[surge],quadratic_drag[sway] --out tuned.toml
     """
-    from rovval import whole
-    from rovval.diagnose.fit import fit
+    from rovval.fit import fit
     from rovval.pipeline.atomic import write_text
     from rovval.pipeline.steps import vehicle_of
+    from rovval.storage import atomic as whole
 
     whole.check(out)
     options.spare(vehicle, out)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rovval.cli import complete, options, output
-from rovval.errors import UsageProblem
+from rovval.core.errors import UsageProblem
 
 if TYPE_CHECKING:
     from rovval.vehicle.model import Vehicle

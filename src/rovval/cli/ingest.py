@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from rovval.cli import complete, logs, options, output
-from rovval.errors import RovvalError
+from rovval.core.errors import RovvalError
 
 
 def command(
@@ -32,8 +32,8 @@ def command(
       rovval ingest dive.csv --profile merlin
       rovval ingest bags/ --archive /data/archive
     """
-    from rovval import store
     from rovval.pipeline.discover import logs_in
+    from rovval.storage import archive as store
 
     show = output.progress(quiet)
     files = logs_in(sources)

@@ -76,7 +76,7 @@ def show_command(
 
 def _names(kind: Kind, archive: Path) -> list[str]:
     if kind is Kind.run:
-        from rovval import store
+        from rovval.storage import archive as store
 
         return [str(run) for run in store.runs(archive)]
     return complete.known(kind.value)
@@ -142,7 +142,7 @@ def _effect_document(effect: Effect) -> dict[str, Any]:
 
 
 def _metric(name: str) -> Shown:
-    from rovval import metrics
+    from rovval.comparison import metrics
 
     metric = metrics.get(name)
     units = ", ".join(f"{metric.unit_of(u)} for {u}" for u in ("m/s", "rad/s", "rad"))
@@ -151,7 +151,7 @@ def _metric(name: str) -> Shown:
 
 
 def _run(name: str, archive: Path) -> Shown:
-    from rovval import store
+    from rovval.storage import archive as store
 
     run = store.open_run(name, None, archive)
     document: dict[str, Any] = {

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rovval.cli import output
-from rovval.errors import SimulationStopped, UsageProblem
+from rovval.core.errors import SimulationStopped, UsageProblem
 
 if TYPE_CHECKING:
-    from rovval.data import Run, SimResult
+    from rovval.core.data import Run, SimResult
     from rovval.vehicle.model import Vehicle
 
 SHOWN = 6  # findings of a run in a terminal; the others stand in its report
@@ -18,7 +18,7 @@ SHOWN = 6  # findings of a run in a terminal; the others stand in its report
 
 def opened(source: str, profile: str | None, archive: Path, quiet: bool = False) -> Run:
     """The run of a log file, folder or id; its findings on stderr."""
-    from rovval import store
+    from rovval.storage import archive as store
 
     run = store.open_run(source, profile, archive)
     tell(run, quiet)

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from rovval.cli import complete
-from rovval.errors import UsageProblem
+from rovval.core.errors import UsageProblem
 
 
 class Model(StrEnum):

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rovval.cli import complete, logs, options, output
-from rovval.errors import UsageProblem
+from rovval.core.errors import UsageProblem
 
 if TYPE_CHECKING:
-    from rovval.scenarios import Outcome
+    from rovval.fly.scenarios import Outcome
 
 SIGNS = {True: "pass", False: "FAIL", None: "-"}
 NEED_A_LOG = (4, 5)
@@ -61,9 +61,9 @@ def command(
 
 
 def _alone(number: int, vehicle: str | None, model: str) -> Outcome:
-    from rovval.scenarios.movements import movements
-    from rovval.scenarios.stability import stability
-    from rovval.scenarios.thrusters import thrusters
+    from rovval.fly.scenarios.movements import movements
+    from rovval.fly.scenarios.stability import stability
+    from rovval.fly.scenarios.thrusters import thrusters
     from rovval.vehicle import load
 
     return {1: stability, 2: thrusters, 3: movements}[number](load(vehicle or "merlin"), model)
@@ -75,10 +75,10 @@ def _with_log(number: int, source: str | None, vehicle: str | None, model: str, 
 
     run = demo.sample() if source is None else logs.opened(source, profile, archive)
     if number == 4:
-        from rovval.scenarios.hardware import hardware
+        from rovval.fly.scenarios.hardware import hardware
 
         return hardware(run)
-    from rovval.scenarios.performance import performance
+    from rovval.fly.scenarios.performance import performance
 
     return performance(run, vehicle_of(run, vehicle), model)
 

@@ -10,7 +10,7 @@ import typer
 from rovval.cli import logs, options, output
 
 if TYPE_CHECKING:
-    from rovval.data import SimResult
+    from rovval.core.data import SimResult
 
 
 def command(
@@ -34,8 +34,8 @@ def command(
       rovval simulate dive.csv --profile merlin
       rovval simulate dive.csv --effect inflow_loss:loss=0.3 --model fossen --out with_loss.parquet
     """
-    from rovval import simfile
     from rovval.pipeline.steps import simulated, vehicle_of
+    from rovval.simulation import file as simfile
 
     run = logs.opened(source, profile, archive, quiet)
     nominal = vehicle_of(run, vehicle)

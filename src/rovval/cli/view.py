@@ -34,7 +34,7 @@ def command(
     import sys
 
     from rovval import report
-    from rovval.compare import compare
+    from rovval.comparison import compare
     from rovval.pipeline.steps import simulated, vehicle_of
 
     run = logs.opened(source, profile, archive, quiet)

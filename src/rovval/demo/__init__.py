@@ -9,10 +9,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-from rovval.whole import drafts
+from rovval.storage.atomic import drafts
 
 if TYPE_CHECKING:
-    from rovval.data import Run
+    from rovval.core.data import Run
 
 SAMPLE = Path(__file__).parent / "SYNTHETIC_merlin_dive.csv.gz"
 EFFECT = "inflow_loss:loss=0.3"
@@ -45,11 +45,11 @@ def sample() -> Run:
 def run(folder: Path, with_diagnosis: bool, progress: Callable[[str, float], None]) -> Shown:
     """Ingest, align, simulate, compare and diagnose the sample; reports and the log itself go to ``folder``."""
     from rovval import report
-    from rovval.compare import compare
+    from rovval.comparison import compare
     from rovval.diagnose import diagnose
-    from rovval.report.json import document as comparison_json
-    from rovval.report.table import diagnosis_text, text
-    from rovval.simulate import simulate
+    from rovval.report.comparison.json import document as comparison_json
+    from rovval.report.comparison.table import diagnosis_text, text
+    from rovval.simulation import simulate
     from rovval.vehicle import load
 
     progress("read the sample log", 0.0)
@@ -82,7 +82,7 @@ def run(folder: Path, with_diagnosis: bool, progress: Callable[[str, float], Non
 
 
 def _read(log: Path) -> Run:
-    from rovval import store
+    from rovval.storage import archive as store
 
     dive = store.open_run(log, "merlin")
     return replace(dive, properties={**dive.properties, "synthetic": SYNTHETIC})

@@ -14,11 +14,11 @@ from pathlib import Path
 
 import numpy as np
 
-from rovval.channels import POSE, VELOCITIES
-from rovval.data import RATE_HZ, Array, ClockReport, Reason, Run
+from rovval.core.channels import POSE, VELOCITIES
+from rovval.core.data import RATE_HZ, Array, ClockReport, Reason, Run
 from rovval.demo import EFFECT, SAMPLE
 from rovval.demo.mission import speeds
-from rovval.simulate import simulate
+from rovval.simulation import simulate
 from rovval.vehicle import load
 from rovval.vehicle.model import Vehicle
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rovval.channels import AXES
-from rovval.data import RATE_HZ, Array
+from rovval.core.channels import AXES
+from rovval.core.data import RATE_HZ, Array
 from rovval.vehicle.model import Vehicle, allocation
 
 RAMP_S = 1.5  # chosen: a hand on a stick

@@ -27,7 +27,7 @@ from pathlib import Path
 from types import MappingProxyType, ModuleType
 from typing import Literal
 
-from rovval.errors import UsageProblem
+from rovval.core.errors import UsageProblem
 
 FOLDER = Path(__file__).parent
 Place = Literal["vehicle", "input", "water", "wrench", "sensor"]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rovval.frames import skew
+from rovval.core.frames import skew
 from rovval.vehicle.model import Vehicle, allocation, inertia, square
 
 Array = NDArray[np.float64]

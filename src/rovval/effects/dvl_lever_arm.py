@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rovval.core.frames import skew
 from rovval.effects import Effect, Parameter
 from rovval.effects._lanes import Array
-from rovval.frames import skew
 
 if TYPE_CHECKING:
     from rovval.plant.sensors import Log

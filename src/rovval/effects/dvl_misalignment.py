@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rovval.core.frames import rotation_from_euler
 from rovval.effects import Effect, Parameter
 from rovval.effects._lanes import Array
-from rovval.frames import rotation_from_euler
 
 if TYPE_CHECKING:
     from rovval.plant.sensors import Log

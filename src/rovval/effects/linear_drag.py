@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rovval.channels import AXES
+from rovval.core.channels import AXES
 from rovval.effects import Effect, Parameter
 from rovval.effects._lanes import Array, Lanes, reference_drag
 

@@ -11,9 +11,10 @@ import pkgutil
 from pathlib import Path
 from typing import Protocol, cast
 
-from rovval.data import RawLog
-from rovval.errors import BadInput, RovvalError, UsageProblem
-from rovval.ingest._files import refuse_unusable
+from rovval.core.data import RawLog
+from rovval.core.errors import BadInput, RovvalError, UsageProblem
+from rovval.ingest import formats
+from rovval.ingest.files import refuse_unusable
 from rovval.ingest.profile import Profile, load_profile, profiles
 
 __all__ = ["Profile", "Reader", "load_profile", "profiles", "read", "reader", "readers"]
@@ -39,14 +40,14 @@ class Reader(Protocol):
 
 def readers() -> tuple[str, ...]:
     """Names of the readers, by looking at file names only."""
-    return tuple(sorted(m.name for m in pkgutil.iter_modules(__path__) if not m.name.startswith("_") and m.name != "profile"))
+    return tuple(sorted(m.name for m in pkgutil.iter_modules(formats.__path__)))
 
 
 def reader(name: str) -> Reader:
     """A reader by name; refuses one that does not exist (`UsageProblem`)."""
     if name not in readers():
         raise UsageProblem(f"unknown format {name!r}", f"use one of: {', '.join(readers())}")
-    return cast(Reader, importlib.import_module(f"{__name__}.{name}"))
+    return cast(Reader, importlib.import_module(f"{formats.__name__}.{name}"))
 
 
 def read(path: Path, profile: str | None = None) -> RawLog:

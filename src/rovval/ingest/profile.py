@@ -1,6 +1,6 @@
 """A profile: one TOML file that says, for one source of logs, which column or topic is which channel, in which unit and frame.
 
-Nothing is guessed: a mapped channel without unit is refused by name. Keys of `[channels]` are names of `rovval.channels`;
+Nothing is guessed: a mapped channel without unit is refused by name. Keys of `[channels]` are names of `rovval.core.channels`;
 `"n:*" = {column = "*_PV", unit = "rpm"}` maps every column that fits the pattern, and `attitude` with the unit `quaternion`
 stands for the three Euler angles.
 """
@@ -15,9 +15,9 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError
 
-from rovval.channels import CHANNELS, VELOCITIES, Resampling
-from rovval.errors import UsageProblem, all_at_once
-from rovval.units import SI
+from rovval.core.channels import CHANNELS, VELOCITIES, Resampling
+from rovval.core.errors import UsageProblem, all_at_once
+from rovval.core.units import SI
 
 FOLDER = Path(__file__).parent / "profiles"
 ATTITUDE = "attitude"  # a quaternion that becomes phi, theta, psi

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from rovval.whole import LEFTOVER, drafts
+from rovval.storage.atomic import LEFTOVER, drafts
 
 
 def write_text(path: Path, text: str) -> None:

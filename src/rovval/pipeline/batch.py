@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from rovval.errors import UsageProblem
+from rovval.core.errors import UsageProblem
 from rovval.pipeline import atomic, cluster, config, lock, summary
 from rovval.pipeline.execute import execute
 from rovval.pipeline.plan import Plan, Task, plan
@@ -61,8 +61,8 @@ def run(
 
 def _publish(reports: Path, summary: dict[str, Any], records: list[Mapping[str, Any]]) -> None:
     """The summary for programs and for people: both of this batch, or both of the one before."""
-    from rovval.report import batch_html
-    from rovval.report.files import write_all
+    from rovval.report.batch import html as batch_html
+    from rovval.report.common.files import write_all
 
     write_all(reports, {SUMMARY: atomic.json_text(summary), INDEX: batch_html.text(summary, records)})
 

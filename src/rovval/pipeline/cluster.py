@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
-from rovval.errors import UsageProblem
+from rovval.core.errors import UsageProblem
 from rovval.pipeline.plan import Task
 from rovval.pipeline.work import Outcome
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from rovval import engine
+from rovval.core import code_version as engine
 
 NO_RESULT = ("blind", "cli", "demo", "scenarios")  # rooms that no step of a batch goes through
 

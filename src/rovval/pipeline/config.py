@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from rovval.errors import RovvalError, UsageProblem, all_at_once
+from rovval.core.errors import RovvalError, UsageProblem, all_at_once
 from rovval.pipeline import tolerances
 
 Step = Literal["ingest", "simulate", "compare", "diagnose"]

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from glob import glob
 from pathlib import Path
 
-from rovval.errors import BadInput, UsageProblem, all_at_once
+from rovval.core.errors import BadInput, UsageProblem, all_at_once
 
 SUFFIXES = (".csv", ".tsv", ".txt", ".bag", ".db3", ".mcap", ".bin", ".tlog", ".xlsx", ".parquet")
 COMPRESSED = (".gz",)

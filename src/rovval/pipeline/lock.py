@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from rovval.errors import UsageProblem
+from rovval.core.errors import UsageProblem
 
 
 @contextmanager

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rovval.errors import BadInput, UsageProblem
+from rovval.core.errors import BadInput, UsageProblem
 
 if TYPE_CHECKING:
-    from rovval.data import Array, Run, SimResult
+    from rovval.core.data import Array, Run, SimResult
     from rovval.vehicle.model import Vehicle
 
 DAY_S = 86400.0
@@ -32,7 +32,7 @@ def held_against(run: Run, vehicle: Vehicle) -> Run:
     """The run with what it shows beyond the limits of the vehicle's own file among its findings."""
     from dataclasses import replace
 
-    from rovval.limits import overspeed
+    from rovval.simulation.sanity_limits import overspeed
 
     return replace(run, findings=tuple(dict.fromkeys((*run.findings, *overspeed(run, vehicle)))))
 
@@ -44,8 +44,9 @@ def other_velocities(path: Path, run: Run, profile: str | None, archive: Path) -
     """
     import numpy as np
 
-    from rovval import simfile, store
-    from rovval.channels import VELOCITIES
+    from rovval.core.channels import VELOCITIES
+    from rovval.simulation import file as simfile
+    from rovval.storage import archive as store
 
     if not path.exists():
         raise UsageProblem(f"{path} does not exist", "give --with a .parquet of `rovval simulate` or a log of velocities")
@@ -89,7 +90,7 @@ def _seconds_of_day(run: Run) -> float:
 
 
 def simulated(run: Run, vehicle: Vehicle, model: str, effects: Sequence[str], window_s: float) -> SimResult:
-    """`rovval.simulate.simulate`, imported when called."""
-    from rovval.simulate import simulate
+    """`rovval.simulation.simulate`, imported when called."""
+    from rovval.simulation import simulate
 
     return simulate(run, vehicle, model, effects, window_s)

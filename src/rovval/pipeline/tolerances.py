@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from rovval.errors import UsageProblem, all_at_once
+from rovval.core.errors import UsageProblem, all_at_once
 
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 FREE = ("rmse", "mae", "iae", "mean_error")

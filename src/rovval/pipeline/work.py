@@ -11,13 +11,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rovval.errors import RovvalError, Unwritable
+from rovval.core.errors import RovvalError, Unwritable
 from rovval.pipeline import atomic
 from rovval.pipeline.code import mine
 from rovval.pipeline.plan import RECORD, Task, read_record
 
 if TYPE_CHECKING:
-    from rovval.data import Run, SimResult
+    from rovval.core.data import Run, SimResult
     from rovval.vehicle.model import Vehicle
 
 Outcome = dict[str, Any]
@@ -97,7 +97,7 @@ class _Bench:
 
     @cached_property
     def run(self) -> Run:
-        from rovval import store
+        from rovval.storage import archive as store
 
         return store.open_run(str(self.task.log), self.task.profile, self.task.archive)
 
@@ -124,13 +124,13 @@ class _Bench:
         return steps[step]()
 
     def ingest(self) -> tuple[dict[str, Any], list[Path]]:
-        from rovval import store
+        from rovval.storage import archive as store
 
         place = store.save(self.run, self.task.archive, overwrite=True)
         return {"findings": [str(f) for f in self.run.findings]}, [place]
 
     def simulate(self) -> tuple[dict[str, Any], list[Path]]:
-        from rovval import simfile
+        from rovval.simulation import file as simfile
 
         path = self.task.folder / "simulation.parquet"
         simfile.save(self.sim, path)
@@ -138,9 +138,9 @@ class _Bench:
 
     def compare(self) -> tuple[dict[str, Any], list[Path]]:
         from rovval import report
-        from rovval.compare import compare
+        from rovval.comparison import compare
         from rovval.pipeline.steps import held_against
-        from rovval.report.json import document
+        from rovval.report.comparison.json import document
 
         comparison = compare(held_against(self.run, self.vehicle), self.sim)
         files = report.write(comparison, self.task.folder / "comparison", self.vehicle)
@@ -149,7 +149,7 @@ class _Bench:
     def diagnose(self) -> tuple[dict[str, Any], list[Path]]:
         from rovval import report
         from rovval.diagnose import diagnose
-        from rovval.report.diagnosis_words import verdict
+        from rovval.report.diagnosis.words import verdict
 
         task, place = self.task, self.task.folder / "diagnosis"
         found = diagnose(

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval import effects
-from rovval.errors import BadInput, UsageProblem, all_at_once
+from rovval.core.errors import BadInput, UsageProblem, all_at_once
 from rovval.plant import slots
 from rovval.plant.inputs import Inputs
 

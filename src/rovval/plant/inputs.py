@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rovval.errors import BadInput
+from rovval.core.errors import BadInput
 from rovval.vehicle.model import Vehicle
 
 Array = NDArray[np.float64]

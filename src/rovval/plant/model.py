@@ -9,14 +9,17 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
+from rovval.core.errors import UsageProblem
+from rovval.core.frames import quaternion_from_euler
 from rovval.effects._lanes import Lanes, nominal
-from rovval.errors import UsageProblem
-from rovval.frames import quaternion_from_euler
-from rovval.plant import compose, geometry, kernel, late, sensors, slots
+from rovval.plant import geometry, sensors, slots
+from rovval.plant import sensor_delay as late
 from rovval.plant.arguments import checked
+from rovval.plant.codegen import cache as kernel
+from rovval.plant.codegen import spec as compose
+from rovval.plant.codegen.source import RATE_LIMIT, SPEED_LIMIT
 from rovval.plant.inputs import Inputs, Prepared, prepare
-from rovval.plant.lower import Lowered, lower, mass_numbers, pack, steps_before_nothing, with_payload
-from rovval.plant.template import RATE_LIMIT, SPEED_LIMIT
+from rovval.plant.lowering import Lowered, lower, mass_numbers, pack, steps_before_nothing, with_payload
 from rovval.vehicle.model import Vehicle, square
 
 Array = NDArray[np.float64]

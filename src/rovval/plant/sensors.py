@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rovval import effects
 from rovval.plant import slots
-from rovval.plant.late import Delay
+from rovval.plant.sensor_delay import Delay
 from rovval.vehicle.model import Vehicle
 
 Array = NDArray[np.float64]

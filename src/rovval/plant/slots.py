@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval import effects
-from rovval.channels import AXES
+from rovval.core.channels import AXES
+from rovval.core.errors import UsageProblem, all_at_once
 from rovval.effects import Parameter
 from rovval.effects._lanes import reference_drag_force, reference_speed
-from rovval.errors import UsageProblem, all_at_once
 from rovval.vehicle.model import Vehicle
 
 Array = NDArray[np.float64]

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from rovval.data import Comparison, SimResult
+    from rovval.core.data import Comparison, SimResult
     from rovval.vehicle.model import Vehicle
 
 
@@ -16,8 +16,9 @@ def write(comparison: Comparison, folder: Path, vehicle: Vehicle, corrected: Sim
 
     ``corrected`` is a simulation of the same run with the effects of a diagnosis in it: the recording's third trace.
     """
-    from rovval.report import html, json, markdown, recording
-    from rovval.report.files import write_all
+    from rovval.report.common.files import write_all
+    from rovval.report.comparison import html, json, markdown
+    from rovval.report.recording import write as recording
 
     return write_all(
         Path(folder),
@@ -41,8 +42,11 @@ def write_diagnosis(
 
     With a comparison and its vehicle it also writes run.rrd, with the corrected simulation as its third trace.
     """
-    from rovval.report import diagnosis_html, diagnosis_markdown, json, recording
-    from rovval.report.files import Writer, write_all
+    from rovval.report.common.files import Writer, write_all
+    from rovval.report.comparison import json
+    from rovval.report.diagnosis import html as diagnosis_html
+    from rovval.report.diagnosis import markdown as diagnosis_markdown
+    from rovval.report.recording import write as recording
 
     if comparison is not None and "synthetic" not in document and "synthetic" in comparison.run.properties:
         document = {**document, "synthetic": comparison.run.properties["synthetic"]}

@@ -6,7 +6,7 @@ import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rovval.errors import BadVehicle, UsageProblem, all_at_once
+from rovval.core.errors import BadVehicle, UsageProblem, all_at_once
 
 if TYPE_CHECKING:
     from rovval.vehicle.model import Vehicle

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rovval.channels import AXES
+from rovval.core.channels import AXES
 from rovval.vehicle.model import Vehicle, allocation, inertia, rigid_body_mass, square
 
 WEIGHT_MISMATCH = 0.25  # chosen: an ROV is trimmed to within a few per cent; a quarter is a wrong unit or a wrong volume

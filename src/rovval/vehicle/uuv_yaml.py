@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rovval.errors import BadVehicle, all_at_once
+from rovval.core.errors import BadVehicle, all_at_once
 from rovval.vehicle import parse
 from rovval.vehicle.model import Vehicle
 

@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rovval.errors import UsageProblem
+from rovval.core.errors import UsageProblem
 from rovval.vehicle.model import Vehicle
 
 FORM = "write NAME:param=value,... as `rovval simulate --effect` takes it"

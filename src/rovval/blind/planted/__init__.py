@@ -1,1 +1,1 @@
-"""Everything that can be planted, a family a file. Each class is one effect; ``rovval.blind.catalogue`` lists them."""
+"""Everything that can be planted, a family a file. Each class is one effect; ``rovval.blind.planted.catalogue`` lists them."""

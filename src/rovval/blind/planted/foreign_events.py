@@ -7,11 +7,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from rovval.blind.effect import Kin, Planting
+from rovval.blind.plant.effect import Kin, Planting
+from rovval.blind.plant.rotation import to_body
+from rovval.blind.plant.sensors import DVL
+from rovval.blind.plant.spec import Array
 from rovval.blind.planted.foreign_flow import _Foreign
-from rovval.blind.rotation import to_body
-from rovval.blind.sensors import DVL
-from rovval.blind.spec import Array
 
 
 class CollisionBumps(_Foreign):

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from rovval.blind.effect import Effect, Kin, Planting
+from rovval.blind.plant.effect import Effect, Kin, Planting
+from rovval.blind.plant.rotation import to_body
+from rovval.blind.plant.spec import Array
 from rovval.blind.planted.hydrodynamic import working_drag
-from rovval.blind.rotation import to_body
-from rovval.blind.spec import Array
 
 
 class _Foreign(Effect):

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from rovval.blind.effect import Kin, Planting
-from rovval.blind.params import Params
+from rovval.blind.plant.effect import Kin, Planting
+from rovval.blind.plant.parameters import Params
+from rovval.blind.plant.spec import STEP_S, Array
 from rovval.blind.planted.foreign_flow import _Foreign
-from rovval.blind.spec import STEP_S, Array
 
 
 class StickyThruster(_Foreign):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from rovval.blind.effect import Effect, Kin, Planting
-from rovval.blind.params import Params
-from rovval.blind.spec import AXES, Array
+from rovval.blind.plant.effect import Effect, Kin, Planting
+from rovval.blind.plant.parameters import Params
+from rovval.blind.plant.spec import AXES, Array
 
 TURN = 0.5  # rad/s, the working rate of roll, pitch and yaw drag (chosen)
 SURE = 0.8  # of a coefficient of the file, four standard deviations of 5 % slop below it

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rovval.blind.effect import Effect, Planting
-from rovval.blind.params import Params
+from rovval.blind.plant.effect import Effect, Planting
+from rovval.blind.plant.parameters import Params
 
 
 class BuoyancyError(Effect):

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from rovval.blind.effect import Planting
+from rovval.blind.plant.effect import Planting
+from rovval.blind.plant.sensors import DVL, wander
+from rovval.blind.plant.spec import Array
 from rovval.blind.planted.timing import _Sensor
-from rovval.blind.sensors import DVL, wander
-from rovval.blind.spec import Array
 
 RATES = ("AngVelX", "AngVelY", "AngVelZ")
 ANGLES = ("Roll", "Pitch", "Heading")

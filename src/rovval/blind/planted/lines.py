@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from rovval.blind.effect import Effect, Kin, Planting
+from rovval.blind.plant.effect import Effect, Kin, Planting
+from rovval.blind.plant.rotation import to_body, to_world
+from rovval.blind.plant.spec import Array
 from rovval.blind.planted.tether import fairlead
-from rovval.blind.rotation import to_body, to_world
-from rovval.blind.spec import Array
 
 
 class _Pull(Effect):

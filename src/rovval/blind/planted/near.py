@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from rovval.blind.effect import Effect, Kin, Planting
-from rovval.blind.rotation import to_body
-from rovval.blind.spec import Array
+from rovval.blind.plant.effect import Effect, Kin, Planting
+from rovval.blind.plant.rotation import to_body
+from rovval.blind.plant.spec import Array
 
 
 class GroundEffect(Effect):

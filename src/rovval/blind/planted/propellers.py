@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from rovval.blind.effect import Effect, Kin, Planting
-from rovval.blind.params import Params
-from rovval.blind.spec import Array
+from rovval.blind.plant.effect import Effect, Kin, Planting
+from rovval.blind.plant.parameters import Params
+from rovval.blind.plant.spec import Array
 
 OBLIQUE = 0.70710678  # share of the working speed along a 45-degree thruster
 

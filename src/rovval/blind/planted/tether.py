@@ -11,9 +11,9 @@ import math
 
 import numpy as np
 
-from rovval.blind.effect import Effect, Kin, Planting
-from rovval.blind.rotation import to_body, to_world
-from rovval.blind.spec import Array
+from rovval.blind.plant.effect import Effect, Kin, Planting
+from rovval.blind.plant.rotation import to_body, to_world
+from rovval.blind.plant.spec import Array
 
 SEGMENTS = 5
 NORMAL = 1.2  # drag coefficient of a cylinder across the flow

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rovval.blind.effect import Effect, Kin, Planting
-from rovval.blind.spec import Array
+from rovval.blind.plant.effect import Effect, Kin, Planting
+from rovval.blind.plant.spec import Array
 
 
 class _OneUnit(Effect):

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.signal import lfilter
 
-from rovval.blind.effect import Effect, Planting
-from rovval.blind.sensors import DVL
-from rovval.blind.spec import STEP_S, Array
+from rovval.blind.plant.effect import Effect, Planting
+from rovval.blind.plant.sensors import DVL
+from rovval.blind.plant.spec import STEP_S, Array
 
 GROUPS: Mapping[str, tuple[str, ...]] = {
     "velocity": DVL,

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from rovval.blind.effect import RAMP_S, Effect, Flow, Kin, Planting
-from rovval.blind.spec import STEP_S, Array
+from rovval.blind.plant.effect import RAMP_S, Effect, Flow, Kin, Planting
+from rovval.blind.plant.spec import STEP_S, Array
 
 SALT = 14.0  # kg/m3, half of what sea water is heavier than fresh (1027 - 999): a small vehicle's step would else be that to a brine
 

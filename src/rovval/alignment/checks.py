@@ -1,0 +1,174 @@
+"""What a reader of any result should know about a log: every finding at once, none raised."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from rovval.alignment.series import bad_samples, still_runs
+from rovval.core.channels import channel
+from rovval.core.data import Array, Flags, RawLog, Series
+from rovval.core.errors import Finding
+from rovval.core.frames import euler_rates, rotation_from_euler
+
+STUCK_S = 3.0  # a living sensor does not repeat itself to the last digit for so long, unless the vehicle rests
+SENSORS = ("u", "v", "w", "p", "q", "r", "x", "y", "z", "phi", "theta", "psi", "udot", "vdot", "wdot", "altitude")
+EULER = ("phi", "theta", "psi")
+LEVEL = 1.0  # rad of roll and pitch beyond which Euler rates say little
+SAME, FAR = 0.9, 2.0  # correlation and ratio of speed and set-point: a governor that lags or droops stays within
+SURE = 0.5  # correlation of two signals that are one by kinematics, beyond which a sign or a scale may be named
+
+
+def check(raw: RawLog) -> tuple[Finding, ...]:
+    """Gaps, stuck channels, absurd values, changes of rate, and kinematic identities with the wrong sign or scale."""
+    found: list[Finding] = []
+    for name, series in raw.channels.items():
+        found += _gaps(raw, name, series)
+        found += _stuck(raw, name, series)
+        found += bad_samples(name, series, None)[1]
+        found += _rate(name, series)
+    return (*_together(found), *_kinematics(raw), *_set_points(raw))
+
+
+def _together(found: list[Finding]) -> list[Finding]:
+    """What is true of several channels in the same words is one finding."""
+    where: dict[tuple[str, str], list[str]] = {}
+    for finding in found:
+        where.setdefault((finding.code, finding.detail), []).append(finding.where)
+    return [Finding(code, ", ".join(names), detail) for (code, detail), names in where.items()]
+
+
+def _gaps(raw: RawLog, name: str, series: Series) -> list[Finding]:
+    rule = raw.rules.get(name)
+    limit = (rule.longest_gap_s if rule else None) or channel(name).longest_gap_s
+    steps = np.diff(series.t)
+    wide = np.flatnonzero(steps > limit + 1e-6)
+    if not len(wide):
+        return []
+    longest = wide[np.argmax(steps[wide])]
+    detail = (
+        f"{len(wide)} gaps longer than {limit:g} s, {steps[wide].sum():.1f} s in all; "
+        f"the longest {steps[longest]:.2f} s from t = {series.t[longest]:.1f} s; not bridged"
+    )
+    return [Finding("gap", name, detail)]
+
+
+def _stuck(raw: RawLog, name: str, series: Series) -> list[Finding]:
+    rule = raw.rules.get(name)
+    if name.partition(":")[0] not in SENSORS or (rule is not None and rule.stuck_s is not None):
+        return []
+    if np.ptp(series.values) == 0.0:
+        return [Finding("constant", name, f"holds {series.values[0]:.6g} {channel(name).unit} throughout")] if len(series.t) > 1 else []
+    runs = still_runs(series, STUCK_S)
+    if not runs or _coarse(series, runs):
+        return []
+    first, last = max(runs, key=lambda run: series.t[run[1]] - series.t[run[0]])
+    detail = (
+        f"{len(runs)} runs of equal values longer than {STUCK_S:g} s; the longest {series.t[last] - series.t[first]:.1f} s "
+        f"from t = {series.t[first]:.1f} s; not masked (declare stuck_s in the profile to mask)"
+    )
+    return [Finding("stuck", name, detail)]
+
+
+def _coarse(series: Series, runs: list[tuple[int, int]]) -> bool:
+    """Whether the channel repeats itself outside its long runs as well, as a sensor of coarse steps does."""
+    outside = np.ones(len(series.t) - 1, dtype=bool)
+    for first, last in runs:
+        outside[max(first - 1, 0) : last + 1] = False
+    repeats = np.diff(series.values) == 0.0
+    return bool(outside.sum() < 10 or repeats[outside].mean() > 0.3)
+
+
+def _rate(name: str, series: Series) -> list[Finding]:
+    """A rate that changes by half and stays so, between tenths of the log."""
+    if len(series.t) < 200:
+        return []
+    periods = [float(np.median(part)) for part in np.array_split(np.diff(series.t), 10)]
+    changes = [(i, a, b) for i, (a, b) in enumerate(pairwise(periods)) if max(a, b) > 1.5 * min(a, b)]
+    if not changes:
+        return []
+    i, a, b = changes[0]
+    at = series.t[(i + 1) * len(series.t) // 10]
+    return [Finding("rate_change", name, f"from {1 / a:.3g} to {1 / b:.3g} Hz near t = {at:.0f} s")]
+
+
+def _kinematics(raw: RawLog) -> list[Finding]:
+    """Pose against the integral of the body velocities over a second: the same way twice, so that sign and scale can be told
+    without any dynamics."""
+    if not all(n in raw.channels for n in EULER) or len(raw.channels["phi"].t) < 50:
+        return []
+    t = raw.channels["phi"].t
+    c = {n: np.interp(t, s.t, np.unwrap(s.values) if n in EULER else s.values, np.nan, np.nan) for n, s in raw.channels.items() if n in SENSORS}
+    k = max(1, round(1.0 / float(np.median(np.diff(t)))))
+    euler = np.stack([c[n] for n in EULER], axis=1)
+    moved: list[tuple[str, Array, Array]] = []
+    if all(n in c for n in "pqr"):
+        rates = euler_rates(euler, np.stack([c[n] for n in "pqr"], axis=1))
+        moved += [(f"{n}, {b}", _step(c[n], k), _way(rates[:, i], t, k)) for i, (n, b) in enumerate(zip(EULER, "pqr", strict=True))]
+    if all(n in c for n in "uvwz"):
+        down = np.einsum("ni,ni->n", rotation_from_euler(euler)[:, 2], np.stack([c[n] for n in "uvw"], axis=1))
+        moved.append(("z, w", _step(c["z"], k), _way(down, t, k)))
+    if all(n in c for n in "uvwxyz"):
+        turn = rotation_from_euler(euler)[k // 2 : k // 2 + len(t) - k]
+        room = np.einsum("nji,nj->ni", turn, np.stack([_step(c[n], k) for n in "xyz"], axis=1))
+        moved += [(f"{n}, {b}", room[:, i], _way(c[b], t, k)) for i, (n, b) in enumerate(zip("xyz", "uvw", strict=True))]
+    level = _while(np.abs(euler[:, :2]).max(axis=1) < LEVEL, k) & (t[k:] - t[:-k] < 2.0)
+    found: list[Finding] = []
+    for names, way, said in moved:
+        known = level & np.isfinite(way) & np.isfinite(said)
+        if known.sum() >= 50 and not any(f.where == names for f in found):
+            found += _agree(names, way[known], said[known])
+    return found
+
+
+def _set_points(raw: RawLog) -> list[Finding]:
+    """Measured speed of each thruster against its set-point: where one is a multiple of the other, a unit or a sign is wrong."""
+    found: list[Finding] = []
+    for name, speed in raw.channels.items():
+        family, _, thruster = name.partition(":")
+        wanted = raw.channels.get(f"n_cmd:{thruster}")
+        if family != "n" or wanted is None or min(len(speed.t), len(wanted.t)) < 50:
+            continue
+        a, b = speed.values, np.interp(speed.t, wanted.t, wanted.values)
+        aa, ab, bb = (float((x * y).sum()) for x, y in ((a, a), (a, b), (b, b)))
+        if abs(ab) < SAME * np.sqrt(aa * bb) or ab == 0.0:
+            continue
+        if ab < 0:
+            found.append(Finding("sign", f"{name}, n_cmd:{thruster}", "the thruster turns against its set-point: one of the signs is wrong"))
+        elif not 1 / FAR < ab / bb < FAR:
+            detail = f"the thruster turns {ab / bb:.3g} times its set-point: one of the units is wrong"
+            found.append(Finding("scale", f"{name}, n_cmd:{thruster}", detail))
+    return found
+
+
+def _step(x: Array, k: int) -> Array:
+    return np.asarray(x[k:] - x[:-k])
+
+
+def _way(rate: Array, t: Array, k: int) -> Array:
+    """Integral of ``rate`` over each ``k`` steps; NaN where it is not known all along."""
+    whole = np.concatenate(([0.0], np.cumsum(np.nan_to_num(0.5 * (rate[1:] + rate[:-1]) * np.diff(t)))))
+    return np.where(_while(np.isfinite(rate), k), whole[k:] - whole[:-k], np.nan)
+
+
+def _while(flag: Flags, k: int) -> Flags:
+    """Whether ``flag`` holds all along each ``k`` steps."""
+    broken = np.concatenate(([0], np.cumsum(~flag)))
+    return np.asarray(broken[k + 1 :] == broken[: -k - 1])
+
+
+def _agree(names: str, moved: Array, said: Array) -> list[Finding]:
+    a, b = moved - moved.mean(), said - said.mean()
+    aa, ab, bb = (float((x * y).sum()) for x, y in ((a, a), (a, b), (b, b)))
+    size = float(np.sqrt(aa * bb))
+    if size < 1e-12 * len(a):
+        return []
+    correlation, scale = ab / size, ab / bb
+    if correlation < -SURE:
+        detail = f"the pose runs against the velocity that is its rate (correlation {correlation:.2f}): one of the signs is wrong"
+        return [Finding("sign", names, detail)]
+    if correlation > 0.9 and not 0.8 < scale < 1.25:
+        detail = f"the pose moves {scale:.3g} times what the velocity that is its rate gives: one of the units or scales is wrong"
+        return [Finding("scale", names, detail)]
+    return []

@@ -1,0 +1,48 @@
+"""Questions that checks and alignment both ask of one channel: which samples are absurd, where does it stand still."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rovval.core.channels import channel
+from rovval.core.data import Codes, Reason, Series
+from rovval.core.errors import Finding
+
+MOST = 0.5  # a channel that moves mostly outside its sane range is not what the profile says: its rest is no measurement either
+FILLS = 3  # distinct values: no more than these are what an instrument writes while it has nothing to say (-32.768, 9999)
+
+
+def still_runs(series: Series, longer_than_s: float) -> list[tuple[int, int]]:
+    """Runs (first, last index) of equal values that last longer than ``longer_than_s`` (s)."""
+    change = np.flatnonzero(np.diff(series.values) != 0.0)
+    first = np.concatenate(([0], change + 1))
+    last = np.concatenate((change, [len(series.values) - 1])) if len(series.values) else first[:0]
+    first = first[: len(last)]
+    long = series.t[last] - series.t[first] > longer_than_s
+    return list(zip(first[long].tolist(), last[long].tolist(), strict=True))
+
+
+def bad_samples(name: str, series: Series, stuck_s: float | None) -> tuple[Codes, tuple[Finding, ...]]:
+    """Per sample 0 or the `Reason` to mask it: outside the channel's sane range, or in a still run where the profile says so."""
+    row = channel(name)
+    code = np.zeros(len(series.t), dtype=np.uint8)
+    findings = []
+    if stuck_s is not None:
+        runs = still_runs(series, stuck_s)
+        for first, last in runs:
+            code[first : last + 1] = Reason.STUCK
+        if runs:
+            detail = f"{len(runs)} runs of equal values longer than {stuck_s:g} s, from t = {series.t[runs[0][0]]:.1f} s; masked"
+            findings.append(Finding("stuck", name, detail))
+    outside = (series.values < row.low) | (series.values > row.high)
+    most = outside.mean() > MOST and len(np.unique(series.values[outside])) > FILLS
+    code[outside | most] = Reason.OUT_OF_RANGE
+    if outside.any():
+        low, high = series.values[outside].min(), series.values[outside].max()
+        detail = (
+            f"{outside.sum()} samples outside {row.low:g} to {row.high:g} {row.unit} ({low:.4g} to {high:.4g}), "
+            f"from t = {series.t[outside][0]:.1f} s; "
+            + (f"{100 * outside.mean():.0f} % of the channel, so all of it is masked: is its unit right in the profile?" if most else "masked")
+        )
+        findings.append(Finding("out_of_range", name, detail))
+    return code, tuple(findings)

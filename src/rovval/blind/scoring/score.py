@@ -1,0 +1,160 @@
+"""Open the seal and score what was committed: digests first, then the labels, then marks, tables, page and history."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import rovval
+from rovval import vehicle as vehicles
+from rovval.blind.scoring import history, tables, truth
+from rovval.blind.scoring.marks import marks
+from rovval.blind.scoring.oracle import oracle
+from rovval.blind.scoring.strata import strata
+from rovval.blind.sealed import sealing
+from rovval.blind.sealed.answer import one_thread_each
+from rovval.blind.sealed.folder import Folder, write
+from rovval.blind.sealed.make import now
+from rovval.core.errors import UsageProblem
+
+SCHEMA = "rovval.blind-score/1"
+HEADLINE = (
+    "top_1",
+    "right_when_one_named",
+    "group_hit",
+    "truth_named",
+    "all_found",
+    "group_size",
+    "errors",
+    "detected",
+    "blamed",
+    "said_unknown",
+    "axis",
+    "of_oracle",
+    "cpu_s",
+)
+Say = Callable[[str, float], None]
+
+
+def score(
+    root: Path,
+    *,
+    key: Path | None = None,
+    kept: Path | None = None,
+    workers: int = 2,
+    say: Say = lambda text, share: None,
+) -> dict[str, Any]:
+    """Score the committed answers of a set; ``kept`` is the history of unsealings.
+
+    Raises:
+        UsageProblem: answers are not committed, or were made or changed after the labels were first opened.
+        BadInput: a log, the labels or an answer is not what was sealed or committed.
+    """
+    place = Folder(root)
+    manifest, commit = place.manifest(), place.committed()
+    place.check_logs()
+    past = kept or history.default(root)
+    history.refuse_other_answers(past, manifest["labels_sha256"], commit["sha256"])
+    secret = sealing.read_key(key or place.key)
+    opened = _open(place, commit)
+    sealed = json.loads(sealing.unseal(place.labels.read_bytes(), secret))
+    labels = sealed["logs"]
+    answers = {row["log"]: row for row in (json.loads(p.read_text(encoding="utf-8")) for p in place.answer_files())}
+    best = _oracles(place, manifest, labels, commit, workers, say)
+    result = marked(labels, answers, best, manifest["vehicle"])
+    result = {
+        "schema": SCHEMA, "opened": opened, "seed": sealed["seed"], "size": sealed["size"], "vehicle": sealed["vehicle"],
+        "rovval": rovval.__version__, "engine": commit["engine"], "committed": commit["committed"],
+        "labels_sha256": manifest["labels_sha256"], "answers_sha256": commit["sha256"], "flights_failed": len(sealed["failed"]), **result,
+    }  # fmt: skip
+    write(root / "score.json", result)
+    fields = ("opened", "seed", "size", "vehicle", "rovval", "engine", "labels_sha256", "answers_sha256")
+    line = {name: result[name] for name in fields} | {"logs": len(labels), "summary": summary(result["strata"])}
+    history.append(past, line)
+    result["unsealings"] = history.read(past)
+    return result
+
+
+def marked(
+    labels: Mapping[str, Any], answers: Mapping[str, Any], oracles: Mapping[str, Mapping[str, float]], vehicle: str
+) -> dict[str, Any]:
+    """Marks of every log, the tables over strata, and the wrong answers."""
+    path, nominal = Path(vehicle), vehicles.load(vehicle)
+    rows = []
+    for name, label in labels.items():
+        answer = answers.get(name, {"failed": "no answer", "cpu_s": 0.0})
+        best = _at_least(oracles.get(name, {}), label, answer)
+        row = marks(label, answer, best, nominal, path)
+        row |= {
+            "log": name,
+            "mission": label["mission"],
+            "strata": strata(label, best),
+            "truth": tables.names_of(label),
+        }
+        row |= {"foreign": [truth.foreign(e) for e in label["effects"]], "left_out": label["left_out"]}
+        row |= {
+            "severity": [e["severity"] for e in label["effects"]],
+            "library": len(answer.get("document", {}).get("ranking", [])),
+        }
+        rows.append(row)
+    return {"logs": rows, "strata": tables.table(rows), "wrong": tables.confusions(rows)}
+
+
+def _at_least(best: Mapping[str, float], label: Mapping[str, Any], answer: Mapping[str, Any]) -> dict[str, float]:
+    """The oracle, which is a local search, is never behind an answer that names the truth and nothing else."""
+    causes = answer.get("document", {}).get("causes", [])
+    if not best or [c["effect"] for c in causes] != tables.names_of(label) or label["left_out"]:
+        return dict(best)
+    reached = float(answer["document"]["shrinkage"]["total"])
+    return {key: value if key == "each" else max(value, reached) for key, value in best.items()}
+
+
+def summary(by_stratum: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, float | int]]:
+    """The few numbers of each stratum that the history keeps."""
+    return {
+        name: {"n": row["n"], **{m: round(row[m]["value"], 3) for m in HEADLINE if m in row and row[m]["value"] is not None}}
+        for name, row in by_stratum.items()
+    }
+
+
+def _open(place: Folder, commit: Mapping[str, Any]) -> str:
+    """Note that the labels are about to be read, before they are; the time of the first unsealing."""
+    if place.opened.exists():
+        before: dict[str, str] = json.loads(place.opened.read_text(encoding="utf-8"))
+        if before["answers_sha256"] != commit["sha256"]:
+            raise UsageProblem(
+                f"{place.root}: the seal was opened at {before['opened']}; these answers were made or changed after that",
+                "restore the answers that were scored, or make a new set with another seed",
+            )
+        return before["opened"]
+    when = now()
+    write(place.opened, {"opened": when, "answers_sha256": commit["sha256"], "engine": commit["engine"]})
+    return when
+
+
+def _oracles(
+    place: Folder, manifest: Mapping[str, Any], labels: Mapping[str, Any], commit: Mapping[str, Any], workers: int, say: Say
+) -> dict[str, dict[str, float]]:
+    """The oracle of every log with known effects; kept beside the score, since it does not depend on the answers."""
+    kept = place.root / "oracle.json"
+    if kept.is_file() and (found := json.loads(kept.read_text(encoding="utf-8")))["engine"] == commit["engine"]:
+        return dict(found["logs"])
+    done: dict[str, dict[str, float]] = {}
+    asked = {name: commit[name] for name in ("model", "window_s", "calibration_slop")}
+    with one_thread_each(), ProcessPoolExecutor(workers, mp_context=get_context("forkserver")) as pool:
+        jobs = {}
+        for name, label in labels.items():
+            effects = [e for e in label["effects"] if not truth.foreign(e)]
+            onsets = {truth.name(e): e["onset_s"] for e in effects if e["onset_s"] is not None}
+            true = list(dict.fromkeys(truth.name(e) for e in effects))
+            if true:
+                jobs[pool.submit(oracle, place.logs / name, manifest["vehicle"], true, onsets, asked)] = name
+        for job in as_completed(jobs):
+            done[jobs[job]] = job.result()
+            say(f"oracle {len(done)} of {len(jobs)}", len(done) / len(jobs))
+    write(kept, {"engine": commit["engine"], "logs": done})
+    return done

@@ -1,0 +1,81 @@
+"""From a label to what counts as right: the library's name of a planted effect, aliases each with its reason, axes, and what it goes with."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from rovval.blind.plant.hull import read_hull
+from rovval.blind.plant.scales import scales
+from rovval.blind.plant.spec import AXES
+
+Row = Mapping[str, Any]  # one effect of a label, or one cause of an answer
+TARGETED = {"added_mass", "linear_drag", "quadratic_drag", "inertia_error", "thruster_degraded", "thruster_fault_onset"}
+TARGETED |= {"thruster_reversed", "thruster_misaligned", "thruster_interaction"}  # by axis or thruster, as the library has them
+EARLY_S = 10.0  # an onset within the first window is no onset to a diagnosis in windows of 10 s
+MAIN = 0.5  # an axis belongs to an effect that pushes it at least half as hard as its hardest
+ABOUT = {"added_mass": "inertia_error", "inertia_error": "added_mass"}  # one law about roll, pitch and yaw
+CHANNEL_AXIS = {"LinVelX": "surge", "LinVelY": "sway", "LinVelZ": "heave", "Depth": "heave", "AngVelX": "roll", "Roll": "roll"}
+CHANNEL_AXIS |= {"AngVelY": "pitch", "Pitch": "pitch", "AngVelZ": "yaw", "Heading": "yaw"}
+VELOCITY = dict(zip(AXES, "uvwpqr", strict=True))
+GOES_WITH = {  # what the gap of an effect varies with, as the diagnosis words regimes and features; others are not scored
+    "current_constant": "heading", "current_shear": "depth", "compass_deviation": "heading", "tether_tension": "heading",
+    "density_gradient": "depth", "ground_effect": "altitude|bottom", "voltage_sag": "time|third", "payload_change": "time|third",
+    "inflow_loss": r"\bu\b|thrust|turning", "reverse_asymmetry": "backward|thrust|turning",
+}  # fmt: skip
+
+
+def name(effect: Row) -> str:
+    """The library's hypothesis for a planted effect; a foreign one keeps its own name, which no hypothesis has."""
+    if effect["name"] == "inertia_error" and effect["target"] == "surge":
+        return "added_mass[surge]"  # see `alias`
+    apart = effect["name"] in TARGETED or (effect["name"] == "time_offset" and effect["target"] in ("velocity", "attitude", "depth"))
+    return f"{effect['name']}[{effect['target']}]" if apart else str(effect["name"])
+
+
+def foreign(effect: Row) -> bool:
+    """Whether the library has nothing of the kind."""
+    return bool(effect["place"] == "foreign")
+
+
+def accepts(effect: Row, cause: Row) -> bool:
+    """Whether a cause of an answer names a planted effect, by its own name or an alias that the cause's numbers bear out."""
+    return not foreign(effect) and (cause["effect"] == name(effect) or alias(effect, cause) is not None)
+
+
+def alias(effect: Row, cause: Row) -> str | None:
+    """The reason for which a cause of another name is the same answer; None: it is not. There are these and no others."""
+    said, on = str(cause["effect"]), f"[{effect['target']}]"
+    if effect["name"] == "inertia_error" and effect["target"] == "surge":
+        if said in ("added_mass[sway]", "added_mass[heave]", "payload_change"):
+            return "weightless extra mass has no name of its own: the library has it as added mass of an axis or as a payload"
+    elif effect["name"] == "thruster_degraded" and said == f"thruster_fault_onset{on}":
+        onset = cause.get("onset_s")
+        if onset is not None and float(onset) < EARLY_S:
+            return "a loss from the first window on is a loss all the time"
+    elif effect["name"] in ABOUT and effect["target"] in ("roll", "pitch", "yaw") and said == ABOUT[effect["name"]] + on:
+        return "about an axis of rotation the motion shows the sum of inertia and added inertia and nothing of either"
+    return None
+
+
+def axes(effect: Row, vehicle: Path) -> set[str]:
+    """Axes that the effect acts on: those it pushes hard, by the acceleration that its wrench would give; by channel for sensors."""
+    size = effect["realised"]
+    if "channel_rms" in size:
+        return {CHANNEL_AXIS[c] for c in size["channel_rms"] if c in CHANNEL_AXIS}
+    hull = read_hull(vehicle)
+    mass = [hull.mass + float(hull.added_mass[i, i]) for i in range(3)]
+    turn = [(float(hull.inertia[i, i]) + float(hull.added_mass[i + 3, i + 3])) / scales(hull).length for i in range(3)]
+    push = {axis: size["wrench_rms"][axis] / m for axis, m in zip(AXES, [*mass, *turn], strict=True)}
+    return {axis for axis, value in push.items() if value >= MAIN * max(push.values())}
+
+
+def goes_with(effect: Row) -> str | None:
+    """Pattern that one of an answer's worst regimes, or features of the unknown force, should match; None: not scored."""
+    if effect["name"] in ("linear_drag", "quadratic_drag"):
+        return rf"\|?\b{VELOCITY[str(effect['target'])]}\b"
+    if effect["name"].startswith("thruster_") and effect["target"]:
+        return re.escape(str(effect["target"]))
+    return GOES_WITH.get(str(effect["name"]))

@@ -1,0 +1,67 @@
+"""Multipliers into SI, the only place where a unit is converted: ``value * SI["deg"]``."""
+
+from __future__ import annotations
+
+from math import pi
+
+from rovval.core.errors import UsageProblem
+
+SI: dict[str, float] = {
+    "1": 1.0,
+    "s": 1.0,
+    "ms": 1e-3,
+    "us": 1e-6,
+    "ns": 1e-9,
+    "h": 3600.0,
+    "min": 60.0,
+    "m": 1.0,
+    "cm": 1e-2,
+    "mm": 1e-3,
+    "km": 1e3,
+    "ft": 0.3048,  # international foot, exact
+    "m/s": 1.0,
+    "cm/s": 1e-2,
+    "mm/s": 1e-3,
+    "km/h": 1.0 / 3.6,
+    "knot": 1852.0 / 3600.0,  # exact by definition of the nautical mile
+    "m/s2": 1.0,
+    "mg": 9.80665e-3,  # thousandth of standard gravity (CGPM 1901), as autopilots log accelerations
+    "g": 9.80665,
+    "rad": 1.0,
+    "deg": pi / 180.0,
+    "cdeg": pi / 18000.0,
+    "mrad": 1e-3,
+    "rad/s": 1.0,
+    "mrad/s": 1e-3,
+    "deg/s": pi / 180.0,
+    "rad/s2": 1.0,
+    "deg/s2": pi / 180.0,
+    "rev/s": 1.0,  # thruster speed is in rev/s inside
+    "rpm": 1.0 / 60.0,
+    "radps_shaft": 1.0 / (2.0 * pi),  # a shaft speed logged in rad/s
+    "pwm_us": 1.0,  # pulse width stays in microseconds
+    "fraction": 1.0,
+    "percent": 0.01,
+    "V": 1.0,
+    "mV": 1e-3,
+    "A": 1.0,
+    "N": 1.0,
+    "kgf": 9.80665,  # standard gravity, CGPM 1901
+    "degree_latitude": 1.0,  # latitude and longitude stay in degrees until they become x, y
+}
+
+DEGREES = 180.0 / pi
+DEGREE_UNITS = {"rad": "deg", "rad/s": "deg/s"}
+
+
+def to_si(unit: str) -> float:
+    """Multiplier of ``unit`` into SI; refuses a unit that is not in the table."""
+    try:
+        return SI[unit]
+    except KeyError:
+        raise UsageProblem(f"unknown unit {unit!r}", f"use one of: {', '.join(sorted(SI))}") from None
+
+
+def in_degrees(value: float, unit: str) -> tuple[float, str]:
+    """The value as people read it: radians become degrees, all else stays."""
+    return (value * DEGREES, DEGREE_UNITS[unit]) if unit in DEGREE_UNITS else (value, unit)

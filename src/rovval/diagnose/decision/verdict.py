@@ -1,0 +1,99 @@
+"""The verdict: explained, partly explained, unknown, or no gap. What was found is asked what `weigh` asks, and is named if it passes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from rovval.core.data import Array
+from rovval.diagnose.decision.left import left
+from rovval.diagnose.decision.questions import BROKEN, of_sensor
+from rovval.diagnose.decision.weigh import HOLDS, REAL, Weighed, weigh
+from rovval.diagnose.inference.hypothesis_fit import Confirmed
+from rovval.diagnose.inference.prior import STRAINED
+from rovval.diagnose.inference.problem import Problem
+from rovval.diagnose.search.discrepancy import Forces, bare_forces, forces
+from rovval.diagnose.search.forward import Selection
+from rovval.diagnose.search.joint import Named, jointly
+from rovval.diagnose.search.round import FALSE_ALARM
+
+COMPANY = 0.4  # of the probability of a further cause: what one cause leaves unexplained has other names, too (opened sets: 16 of 45 such names were right)
+NEAR = 0.05  # of the gap, held out: an effect that closes less is not near the truth, whatever its evidence (chosen)
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """``verdict`` of the contract; the causes that stand, their joint fit, groups and probabilities; the evidence of the causes, of a
+    generic force instead of them and beside them; the largest strain on a healthy coefficient; what is left in words."""
+
+    verdict: str
+    named: tuple[Named, ...]
+    final: Confirmed | None
+    groups: Mapping[str, tuple[tuple[str, float], ...]]
+    probability: Mapping[str, float]
+    causes: float
+    instead: float
+    beside: float
+    strain: float
+    left: dict[str, object] | None
+
+
+def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgement:
+    """Weigh what was found against what could have been found; ``before`` are the nominal vehicle's residuals."""
+    general = forces(problem, selection.healthy)
+    weighed = weigh(problem, selection, selection.final, general, before) if selection.final else None
+    if weighed and weighed.unsteady and not weighed.least_bad:
+        selection, weighed = _steady(problem, selection, weighed, general, before)
+    if selection.final and weighed and weighed.parity_led and weighed.least_bad:
+        selection = _only(problem, selection, tuple(n for n in selection.named if of_sensor(n)))
+        weighed = replace(weighed, remains=True)
+    if selection.final and weighed and (weighed.parity_led or not weighed.least_bad):
+        return _named(problem, selection, selection.final, weighed)
+    return _nameless(problem, selection, weighed, general)
+
+
+def _named(problem: Problem, selection: Selection, final: Confirmed, weighed: Weighed) -> Judgement:
+    groups = {n.hypothesis.name: n.group for n in selection.named}
+    gone = [name for name in weighed.unsteady if name not in groups]
+    rest = left(problem, weighed.rest, final.point, gone) if weighed.remains else None
+    surest = max(selection.named, key=lambda n: n.evidence)
+    probability = {n.hypothesis.name: _probability(n) * (1.0 if n is surest or of_sensor(n) else COMPANY) for n in selection.named}
+    verdict = "partly_explained" if weighed.remains else "explained"
+    figures = weighed.total, weighed.instead, weighed.beside, weighed.strain
+    return Judgement(verdict, selection.named, final, groups, probability, *figures, rest)
+
+
+def _nameless(problem: Problem, selection: Selection, weighed: Weighed | None, general: Forces) -> Judgement:
+    """No gap, or an unknown cause where something is surely at work: a force, a strain, an effect that nearly fits."""
+    total, skill, unsteady = (weighed.total, weighed.skill, weighed.unsteady) if weighed else (0.0, True, ())
+    anything, strained = general.evidence(), selection.healthy.strain()
+    tried = max((worth if gain > NEAR else worth / 3 for _, worth, gain in selection.rounds[0]), default=0.0) if selection.rounds else 0.0
+    nearly = skill and (max(total, tried) > REAL or bool(unsteady))
+    real = nearly or (anything > REAL and general.share(problem.folds) > HOLDS) or strained > BROKEN
+    rest = left(problem, bare_forces(problem), selection.healthy, unsteady) if real else None
+    return Judgement("unknown" if real else "no_gap", (), None, {}, {}, total, anything, anything, strained, rest)
+
+
+def _steady(problem: Problem, selection: Selection, weighed: Weighed, general: Forces, before: list[Array]) -> tuple[Selection, Weighed]:
+    """What stands without the causes that do not hold still; they are told as what is left."""
+    kept = tuple(n for n in selection.named if n.hypothesis.name not in weighed.unsteady)
+    if not kept:
+        return selection, replace(weighed, least_bad=True)
+    selection = _only(problem, selection, kept)
+    assert selection.final is not None
+    again = weigh(problem, selection, selection.final, general, before)
+    least_bad = again.least_bad or bool(again.unsteady) or again.strain > STRAINED  # what went took up the strain: another cause is there
+    return selection, replace(again, remains=True, least_bad=least_bad, unsteady=weighed.unsteady)
+
+
+def _only(problem: Problem, selection: Selection, kept: tuple[Named, ...]) -> Selection:
+    """The selection with the causes ``kept`` alone, fitted again."""
+    final = selection.final
+    if final is None or not kept or len(kept) == len(selection.named):
+        return selection
+    return replace(selection, named=kept, final=jointly(problem, final, [n.hypothesis for n in kept]))
+
+
+def _probability(named: Named) -> float:
+    """Share of belief that the named effect has in its group, less the chance that detection itself was false."""
+    return float(named.group[0][1] * (1.0 - min(named.p_value, FALSE_ALARM)))

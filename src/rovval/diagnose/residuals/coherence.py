@@ -1,0 +1,23 @@
+"""TODO Can this log tell hypotheses apart? Coherence of their signatures, and groups that a paired bootstrap cannot split."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rovval.core.data import Array
+from rovval.diagnose.residuals.normal_equations import Products
+
+
+def coherence(data: Products, a: tuple[int, ...], b: tuple[int, ...]) -> float:
+    """Largest canonical correlation between the signatures of two hypotheses (0: orthogonal, 1: the same to this log)."""
+    both, k = np.concatenate([data.place(a), data.place(b)]), len(a)
+    A = data.A[:, both[:, None], both].sum(axis=0)
+    left, right = _root(A[:k, :k]), _root(A[k:, k:])
+    return float(np.clip(np.linalg.svd(left @ A[:k, k:] @ right, compute_uv=False).max(initial=0.0), 0.0, 1.0))
+
+
+def _root(A: Array) -> Array:
+    """Inverse symmetric root, directions without excitation left out."""
+    values, vectors = np.linalg.eigh(A)
+    keep = values > 1e-10 * max(float(values.max(initial=0.0)), 1e-300)
+    return np.asarray((vectors[:, keep] / np.sqrt(values[keep])) @ vectors[:, keep].T)

@@ -1,0 +1,152 @@
+"""Inner products of residual and sensitivities per window, in a weighted metric with the initial states marginalised.
+
+With V = diag(variance) + J Sigma0 J^T (variance: noise, slop and unexplained residual of a channel at a time in the window), every
+linear question, held-out gains, coherence, bootstrap, is answered from A = S^T V^-1 S, b = S^T V^-1 r and c = r^T V^-1 r of
+each window (Woodbury identity; `research`: efficient-score projection with a finite prior on the initial state).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import solve_triangular
+
+from rovval.core.data import Array
+from rovval.diagnose.residuals.sensitivities import Linear
+
+
+@dataclass(frozen=True, slots=True)
+class Products:
+    """Per window: ``A`` (m, k, k), ``b`` (m, k), ``c`` (m,); ``columns`` are the plant's slot numbers of the k parameters; ``offset`` (k,)
+    how far each is from where its prior stands (None: all at it)."""
+
+    A: Array
+    b: Array
+    c: Array
+    columns: tuple[int, ...]
+    offset: Array | None = None
+
+    def place(self, slots: tuple[int, ...]) -> np.ndarray:
+        """Positions of plant slots among the columns."""
+        where = {column: i for i, column in enumerate(self.columns)}
+        return np.array([where[s] for s in slots], dtype=int)
+
+    def __add__(self, other: Products) -> Products:
+        return Products(self.A + other.A, self.b + other.b, self.c + other.c, self.columns, self.offset)
+
+
+def joined(parts: list[Products]) -> Products:
+    """Windows of several runs behind one another."""
+    if len(parts) == 1:
+        return replace(parts[0], offset=None)
+    return Products(
+        np.concatenate([p.A for p in parts]),
+        np.concatenate([p.b for p in parts]),
+        np.concatenate([p.c for p in parts]),
+        parts[0].columns,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Scaled:
+    """A linearisation in the metric: residual ``r``, nuisances ``J``, ``columns`` and ``valid`` as in `Linear`; slopes ``x`` (m, n c, k) over the
+    standard errors, of which ``root`` (m, n c) is the inverse (0: no measurement); nuisances ``q`` (m, n c, s) turned so that
+    S^T V^-1 S = x^T x - y^T y =: ``A`` (m, k, k) with ``y`` = q^T x (m, s, k)."""
+
+    r: Array
+    J: Array
+    columns: tuple[int, ...]
+    valid: np.ndarray
+    root: Array
+    q: Array
+    x: Array
+    y: Array
+    A: Array
+
+    @property
+    def linear(self) -> Linear:
+        """The linearisation itself; slopes are 0 where nothing was measured."""
+        S = self.x / np.where(self.root > 0, self.root, 1.0)[..., None]
+        return Linear(self.r, S.reshape(*self.r.shape, len(self.columns)), self.J, self.columns, self.valid)
+
+    def products(self, r: Array) -> Products:
+        """Products of a residual ``r`` (m, n, c) with these slopes."""
+        scaled = r.reshape(self.root.shape) * self.root
+        z = _onto(self.q, scaled)
+        return Products(self.A, _onto(self.x, scaled) - _onto(self.y, z), (scaled**2).sum(axis=1) - (z**2).sum(axis=1), self.columns)
+
+
+def products(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> Products:
+    """Products of every window; ``variance`` (n, c), ``spread`` (s,) standard error of its first nuisances, which are marginalised."""
+    m, k = len(linear.r), linear.S.shape[-1]
+    A, b, c = np.zeros((m, k, k)), np.zeros((m, k)), np.zeros(m)
+    for w in range(m):
+        root, q, x, y = _window(linear, w, ok, variance, spread)
+        r = linear.r[w].reshape(-1) * root
+        z = q.T @ r
+        A[w], b[w], c[w] = x.T @ x - y.T @ y, x.T @ r - y.T @ z, r @ r - z @ z
+    return Products(A, b, c, linear.columns)
+
+
+def scaled(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> Scaled:
+    """A linearisation in the metric, kept for products with many residuals; arguments as for `products`."""
+    m, n, k = len(linear.r), linear.r[0].size, linear.S.shape[-1]
+    root, q, x, y = np.empty((m, n)), np.empty((m, n, len(spread))), _columns_first(m, n, k), np.empty((m, len(spread), k))
+    for w in range(m):
+        root[w], q[w], x[w], y[w] = _window(linear, w, ok, variance, spread)
+    return Scaled(linear.r, linear.J, linear.columns, linear.valid, root, q, x, y, _gram(x, x) - _gram(y, y))
+
+
+def beside(own: Linear, other: Scaled, columns: tuple[int, ...]) -> Scaled:
+    """A linearisation with further ``columns``, whose slopes are taken from another one nearby, and its nuisances with them."""
+    place, k, m = [other.columns.index(c) for c in columns], len(own.columns), len(own.r)
+    x = _columns_first(m, other.root.shape[1], k + len(place))
+    mine = x[..., :k] = own.S.reshape(*other.root.shape, k) * other.root[..., None]
+    x[..., k:] = other.x[..., place]
+    y = np.concatenate([_gram(other.q, mine), other.y[..., place]], axis=-1)
+    A = np.empty((m, k + len(place), k + len(place)))
+    A[:, k:, k:] = other.A[:, place][..., place]
+    A[:, :k] = _gram(mine, x) - _gram(y[..., :k], y)
+    A[:, k:, :k] = np.swapaxes(A[:, :k, k:], 1, 2)
+    J, q = other.J, other.q
+    if not own.valid.all():  # the other's slopes there are of a window that ran
+        J, q, x, y, A = (np.where(own.valid.reshape(-1, *[1] * (a.ndim - 1)), a, 0.0) for a in (J, q, x, y, A))
+    return Scaled(own.r, J, (*own.columns, *columns), own.valid, other.root, q, x, y, A)
+
+
+def _window(linear: Linear, w: int, ok: np.ndarray, variance: Array, spread: Array) -> tuple[Array, Array, Array, Array]:
+    """Of one window: inverse standard errors (n c,), turned nuisances (n c, s), scaled slopes (n c, k), and the product of the latter two."""
+    root = np.where(ok[w], 1.0 / np.sqrt(variance), 0.0).reshape(-1)
+    x = linear.S[w].reshape(len(root), -1) * root[:, None]
+    j = linear.J[w].reshape(len(root), -1)[:, : len(spread)] * root[:, None] * spread
+    q = solve_triangular(np.linalg.cholesky(np.eye(j.shape[1]) + j.T @ j), j.T, lower=True, check_finite=False).T
+    return root, q, x, q.T @ x
+
+
+def _onto(a: Array, b: Array) -> Array:
+    """a^T b of every window: (m, n, k), (m, n) -> (m, k)."""
+    return np.asarray((b[:, None, :] @ a)[:, 0])
+
+
+def _gram(a: Array, b: Array) -> Array:
+    """a^T b of every window: (m, n, k), (m, n, l) -> (m, k, l)."""
+    return np.asarray(np.swapaxes(a, 1, 2) @ b)
+
+
+def _columns_first(m: int, n: int, k: int) -> Array:
+    """Room for (m, n, k) in which a column lies in one piece: they are made, and taken from one another, one by one."""
+    return np.empty((m, k, n)).swapaxes(1, 2)
+
+
+def start_corrected(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> Array:
+    """Residual (m, n, c) with the best of the first nuisances of each window, as many as ``spread`` has, taken out."""
+    out = np.array(linear.r)
+    root = 1.0 / np.sqrt(variance)
+    for w in range(len(out)):
+        weight = np.where(ok[w], root, 0.0).reshape(-1, 1)
+        j = linear.J[w].reshape(len(weight), -1)[:, : len(spread)]
+        jw = j * weight * spread
+        x0 = np.linalg.solve(np.eye(jw.shape[1]) + jw.T @ jw, jw.T @ (linear.r[w].reshape(-1, 1) * weight))
+        out[w] = (linear.r[w].reshape(-1, 1) - (j * spread) @ x0).reshape(out[w].shape)
+    return np.where(ok, out, 0.0)

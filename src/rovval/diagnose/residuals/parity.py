@@ -1,0 +1,189 @@
+"""Parity: faults of the sensors shown by kinematics alone, without any dynamics.
+
+Measured velocities integrated through the measured attitude must give the measured pose: what they give less what was measured is the
+parity residual of a window (its mean taken out, since the pose at the window's start is itself only measured). Gyro bias,
+velocity scale, misalignment, lever arm, filter lag, compass and attitude bias each leave their own trace in it; no force does.
+The residual and those traces enter the contest of hypotheses as rows beside the dynamics: a sensor fault must explain both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import signal
+
+from rovval.core.data import Array, Flags
+from rovval.diagnose.residuals.dead_reckoning import RELATIONS, complete, drift, inside, measured
+from rovval.diagnose.residuals.delays import UNDONE, Traces, traced
+from rovval.diagnose.residuals.normal_equations import Products
+from rovval.diagnose.windows.shooting import Stretches
+from rovval.effects import load
+
+LEAST_SIGMA = (0.005, 0.005, 0.002, 0.001, 0.001, 0.001)  # m, rad: no sensor is believed below these (chosen)
+SMOOTH = 11  # samples of the quadratic by which motion is smoothed for traces: a delay's is a slope, which noise would drown and correlate
+FACTORS = ("dvl_scale",)  # faults that multiply what they measure
+DEAD_RECKONED = 0.5  # a position that follows the integrated velocity closer than half its noise allows was integrated from it
+
+
+@dataclass(frozen=True, slots=True)
+class Parity:
+    """Rows (m, q) in standard errors and their change (m, q, k) per parameter of ``columns``; ``gram`` their products of those columns
+    that leave a trace, ``factor`` which of them multiply what they measure, ``late`` which are delays; ``used`` relations, ``sigma`` of each, and
+    ``inflation`` of its score; ``of`` the motion that the traces are of. Zero rows where a window lacks pose or velocity."""
+
+    rows: Array
+    traces: Array
+    gram: Products
+    factor: Flags
+    late: Flags
+    columns: tuple[int, ...]
+    used: tuple[str, ...]
+    sigma: tuple[float, ...]
+    inflation: float
+    notes: tuple[str, ...]
+    of: Traces | None
+
+    def moved(self, beta: Array, columns: tuple[int, ...]) -> Moved:
+        """The same rows about another parameter point, for other columns."""
+        return Moved(self, beta, columns)
+
+    @property
+    def delays(self) -> tuple[int, ...]:
+        """Columns of sensors that are late."""
+        return tuple(c for c, late in zip(self.gram.columns, self.late, strict=True) if late)
+
+    def undone(self, beta: Array) -> tuple[Array, Array]:
+        """Rows (m, q) with what sensors that are late by ``beta`` (k,) make of them taken out, and traces (m, q, k) about these delays."""
+        late = {c: float(beta[c]) for c in self.delays if beta[c] != 0.0}
+        if not late or self.of is None:
+            return self.rows, self.traces
+        keep, traces = [RELATIONS.index(name) for name in self.used], self.traces.copy()
+        made, slopes = self.of.late(late)
+        for column, slope in slopes.items():
+            traces[..., self.columns.index(column)] = self._scaled(slope[..., keep])
+        return self.rows - self._scaled(made[..., keep]), traces
+
+    def _scaled(self, relations: Array) -> Array:
+        return np.asarray((relations / np.array(self.sigma)).reshape(self.rows.shape))
+
+
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """Parity about the parameters ``beta`` (k,) for ``columns``."""
+
+    parity: Parity
+    beta: Array
+    columns: tuple[int, ...]
+
+    def products(self, inflation: float) -> Products:
+        """Products of the rows, discounted so that one common ``inflation`` suits them and the dynamics. But for delays, rows are linear in the sensors'
+        parameters, r(beta) = r - T beta, so that with A = T'T, b = T'r and c = r'r at the null value b(beta) = b - A beta and
+        c(beta) = c - beta'(b + b(beta)); columns without a trace have zeros. Of a measured velocity that is 1 + s times the true one, s is not
+        s of it but s / (1 + s), with slope 1 / (1 + s)^2."""
+        null, m, k = self._about_delays(), len(self.parity.gram.c), len(self.columns)
+        given = np.where(self.parity.late, 0.0, self.beta[list(null.columns)])
+        beta = np.where(self.parity.factor, given / (1.0 + given), given)
+        slope = np.where(self.parity.factor, (1.0 + given) ** -2, 1.0)
+        b = null.b - null.A @ beta
+        c = null.c - (null.b + b) @ beta
+        place = {column: i for i, column in enumerate(null.columns)}
+        to = [i for i, column in enumerate(self.columns) if column in place]
+        of = [place[self.columns[i]] for i in to]
+        scale = inflation / self.parity.inflation
+        out = Products(np.zeros((m, k, k)), np.zeros((m, k)), scale * c, self.columns)
+        out.A[np.ix_(range(m), to, to)] = scale * null.A[np.ix_(range(m), of, of)] * np.outer(slope[of], slope[of])
+        out.b[:, to] = scale * b[:, of] * slope[of]
+        return out
+
+    def _about_delays(self) -> Products:
+        """Products of the columns that leave a trace about the delays of ``beta``, all else at its null value."""
+        columns = self.parity.gram.columns
+        if not self.beta[list(self.parity.delays)].any():
+            return self.parity.gram
+        rows, traces = self.parity.undone(self.beta)
+        return _gram(rows, traces[..., [self.parity.columns.index(c) for c in columns]], columns)
+
+
+def parity(stretches: Stretches, columns: tuple[int, ...]) -> Parity:
+    """Parity rows of every window and the trace that each sensor parameter among ``columns`` leaves in them."""
+    nu, eta, whole = measured(stretches)
+    nominal, usable = drift(inside(nu), inside(eta), stretches.run.dt), complete(stretches)
+    nu, eta = (signal.savgol_filter(a, SMOOTH, 2, axis=1) for a in (nu, eta))
+    of = traced(stretches, nu, eta, usable)
+    traces = np.zeros((*nominal.shape, len(columns)))
+    for i, column in enumerate(columns):
+        if load(stretches.plant.slots[column].effect).place == "sensor":
+            traces[..., i] = of.of(column)
+    keep = [i for i, name in enumerate(RELATIONS) if whole[i]]
+    nominal[~usable] = 0.0
+    return _weighted(of, nominal, traces, columns, keep)
+
+
+def _weighted(of: Traces, nominal: Array, traces: Array, columns: tuple[int, ...], keep: list[int]) -> Parity:
+    """Rows and traces in standard errors: what all sensor faults together leave is the noise of each relation."""
+    stretches, m, k = of.stretches, len(nominal), len(columns)
+    if not keep:
+        return _none(m, columns, ("no pose beside velocity in this log",))
+    seen = np.flatnonzero(np.abs(traces).max(axis=(0, 1, 2)) > 0)
+    slots = [stretches.plant.slots[c] for c in columns]
+    free = np.array([i for i in seen if not load(slots[i].effect).of_one_axis(slots[i].parameter.name)], dtype=int)  # not needed to find the noise
+    sigma = np.array([max(1.4826 * float(np.median(np.abs(nominal[..., i]))), LEAST_SIGMA[i]) for i in keep])
+    notes: list[str] = []
+    left = nominal[..., keep]
+    for _ in range(2 if len(free) else 0):  # noise from what the joint fit leaves, the fit weighted by that noise
+        G = traces[..., keep, :][..., free] / sigma[:, None]
+        X = G.reshape(-1, len(free))
+        y = (nominal[..., keep] / sigma).reshape(-1)
+        typical = np.array([slots[i].parameter.typical for i in free])
+        fitted = np.linalg.lstsq(np.vstack([X, np.diag(0.1 / typical)]), np.concatenate([y, np.zeros(len(free))]), rcond=None)[0]
+        left = (nominal[..., keep] / sigma - G @ fitted) * sigma
+        sigma = np.maximum(left.std(axis=(0, 1)), [LEAST_SIGMA[i] for i in keep])
+    keep, sigma = _independent(stretches, keep, sigma, notes)
+    if not keep:
+        return _none(m, columns, tuple(notes))
+    rows = (nominal[..., keep] / sigma).reshape(m, -1)
+    scaled = (traces[..., keep, :] / sigma[:, None]).reshape(m, rows.shape[1], k)
+    inflation = _inflation(rows, scaled, free)
+    gram = _gram(rows, scaled[..., seen], tuple(columns[i] for i in seen))
+    factor = np.array([slots[i].effect in FACTORS for i in seen], dtype=bool)
+    late = np.array([slots[i].parameter.name in UNDONE for i in seen], dtype=bool)
+    return Parity(rows, scaled, gram, factor, late, columns, tuple(RELATIONS[i] for i in keep), tuple(sigma.tolist()), inflation, tuple(notes), of)
+
+
+def _none(m: int, columns: tuple[int, ...], notes: tuple[str, ...]) -> Parity:
+    """No rows at all."""
+    rows, traces = np.zeros((m, 0)), np.zeros((m, 0, len(columns)))
+    nothing = np.zeros(0, dtype=bool)
+    return Parity(rows, traces, _gram(rows, traces[..., :0], ()), nothing, nothing, columns, (), (), 1.0, notes, None)
+
+
+def _gram(rows: Array, traces: Array, columns: tuple[int, ...]) -> Products:
+    turned = traces.swapaxes(1, 2)
+    return Products(turned @ traces, (turned @ rows[..., None])[..., 0], (rows**2).sum(axis=1), columns)
+
+
+def _independent(stretches: Stretches, keep: list[int], sigma: Array, notes: list[str]) -> tuple[list[int], Array]:
+    """Leave out horizontal positions that were integrated from the velocities they would check."""
+    noise = dict(zip(stretches.channels, stretches.noise, strict=True))
+    seconds = stretches.steps * stretches.run.dt
+    out = []
+    for i, s in zip(keep, sigma, strict=True):
+        expected = noise.get("u", 0.0) * np.sqrt(stretches.run.dt * seconds / 6.0)  # random walk of integrated white noise, mean taken out
+        if i < 2 and s < DEAD_RECKONED * expected:
+            notes.append(f"{RELATIONS[i]} follows the integrated velocity within {s:.3g} m: it is dead-reckoned and checks nothing")
+            continue
+        out.append(i)
+    return out, np.array([s for i, s in zip(keep, sigma, strict=True) if i in out])
+
+
+def _inflation(rows: Array, traces: Array, free: np.ndarray) -> float:
+    if not len(free):
+        return 1.0
+    G = traces[..., free]
+    H = np.einsum("wqi,wqj->ij", G, G)
+    step = np.linalg.lstsq(H + 1e-9 * np.eye(len(free)) * max(np.trace(H), 1e-12), np.einsum("wqi,wq->i", G, rows), rcond=None)[0]
+    score = np.einsum("wqi,wq->wi", G, rows - G @ step)
+    spread, white = (score**2).mean(axis=0), np.einsum("wqi,wqi->i", G, G) / len(rows)
+    usable = white > 0
+    return float(max(1.0, np.median(spread[usable] / white[usable]))) if usable.any() else 1.0

@@ -1,0 +1,87 @@
+"""Sensor faults as kinematics alone show them: each fitted to the parity rows by itself, with its interval."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import stats
+
+from rovval.core.data import Array
+from rovval.diagnose.residuals.parity import Parity
+from rovval.diagnose.windows.shooting import Stretches
+from rovval.effects import load
+from rovval.plant.slots import Slot
+
+STEPS, SETTLED = 6, 1e-9  # Gauss-Newton steps at most, and the share of the loss below which they end
+FREEDOM = 5  # windows more than parameters, from which their scatter says how sure a fault is: six for one (as `separate.FEW`)
+
+
+def faults(parity_rows: Parity, stretches: Stretches, origin: Array) -> list[dict[str, object]]:
+    """Each sensor effect, and the factor of each axis, fitted to the parity rows alone: value with 90 % interval, and whether it differs from
+    ``origin`` (k,), what the vehicle's file says of the sensors (``was``), significantly on its own. One that has hardly fewer parameters than
+    there are windows to check it fits whatever it likes, and is not told."""
+    found: list[dict[str, object]] = []
+    by_effect: dict[tuple[str, str], list[int]] = {}
+    for i, column in enumerate(parity_rows.columns):
+        if np.abs(parity_rows.traces[..., i]).max(initial=0.0) > 0:
+            by_effect.setdefault(_together(stretches.plant.slots[column]), []).append(i)
+    total, windows = float((_about(parity_rows, origin)[0] ** 2).sum()), int((np.abs(parity_rows.traces).max(axis=(1, 2), initial=0.0) > 0).sum())
+    for places in by_effect.values():
+        if windows < len(places) + FREEDOM:
+            continue
+        value, score, H, loss = _fitted(parity_rows, origin, places)
+        bread = np.linalg.inv(H)
+        error = np.sqrt(np.diag(bread @ (score.T @ score) @ bread))
+        t = float(stats.t.ppf(0.95, windows - len(places)))
+        share = 1.0 - loss / total if total > 0 else 0.0
+        for j, place in enumerate(places):
+            slot_id = parity_rows.columns[place]
+            slot = stretches.plant.slots[slot_id]
+            low, high, was = float(value[j] - t * error[j]), float(value[j] + t * error[j]), float(origin[slot_id])
+            found.append(
+                {
+                    "check": "measured velocity against measured pose",
+                    "fault": slot.key,
+                    "value": was + float(value[j]),
+                    "low": was + low,
+                    "high": was + high,
+                    "was": was,
+                    "unit": slot.parameter.unit,
+                    "share": share,
+                    "significant": bool(low > 0 or high < 0) and share > 0.05,
+                    "note": "fitted alone, by kinematics, without dynamics",
+                }
+            )
+    return found
+
+
+def _fitted(check: Parity, origin: Array, places: list[int]) -> tuple[Array, Array, Array, float]:
+    """Departure from ``origin`` (p,) at which faults fit the rows best, the score of every window there (m, p), their curvature (p, p) and the loss. Rows
+    bend with a delay: Gauss-Newton steps, as long as they fit better."""
+    beta, columns = origin.copy(), [check.columns[i] for i in places]
+    rows, traces = _about(check, beta)
+    for _ in range(STEPS):
+        score, H = _normal(rows, traces[..., places])
+        trial = beta.copy()
+        trial[columns] += np.linalg.solve(H, score.sum(axis=0))
+        there, slopes = _about(check, trial)
+        if (there**2).sum() >= (1.0 - SETTLED) * (rows**2).sum():
+            break
+        beta, rows, traces = trial, there, slopes
+    return (beta - origin)[columns], *_normal(rows, traces[..., places]), float((rows**2).sum())
+
+
+def _normal(rows: Array, G: Array) -> tuple[Array, Array]:
+    """Scores of the windows (m, p) and curvature (p, p) of traces (m, q, p)."""
+    return np.einsum("wqi,wq->wi", G, rows), np.einsum("wqi,wqj->ij", G, G) + 1e-12 * np.eye(G.shape[-1])
+
+
+def _about(check: Parity, beta: Array) -> tuple[Array, Array]:
+    """Rows and traces about ``beta`` (k,); of its columns only sensors leave a trace, delays one that bends."""
+    rows, traces = check.undone(beta)
+    straight = np.array([0.0 if c in check.delays else beta[c] for c in check.columns])
+    return rows - traces @ straight, traces
+
+
+def _together(slot: Slot) -> tuple[str, str]:
+    """What is fitted together: an effect's parameters, but for those that say the same of one axis only."""
+    return slot.hypothesis, slot.parameter.name if load(slot.effect).of_one_axis(slot.parameter.name) else ""

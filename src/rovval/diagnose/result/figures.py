@@ -1,0 +1,73 @@
+"""What the report draws of a diagnosis: heat map of axis by regime, the worst stretches before and after, the coherence matrix."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from rovval.core.data import Array
+from rovval.diagnose.decision.verdict import Judgement
+from rovval.diagnose.inference.gap import ANGULAR
+from rovval.diagnose.inference.hypothesis_fit import Confirmed
+from rovval.diagnose.inference.problem import Problem
+from rovval.diagnose.residuals.coherence import coherence
+from rovval.diagnose.residuals.sensitivities import residual
+from rovval.diagnose.result.attribution import slices
+from rovval.diagnose.search.forward import Selection
+from rovval.diagnose.windows.shooting import Stretches, axis_channels
+
+MOST_TRACES = 4
+MOST_COHERENCE = 10
+
+
+def heat_map(part: Stretches, error: Array, seed: int) -> dict[str, Any]:
+    """Share of each axis's gap in each regime, and the lift."""
+    found = slices(part, error, part.ok, seed)
+    axes = list(dict.fromkeys(s.axis for s in found))
+    regimes = list(dict.fromkeys(s.regime for s in found))
+    share, lift = np.zeros((len(axes), len(regimes))), np.zeros((len(axes), len(regimes)))
+    for s in found:
+        share[axes.index(s.axis), regimes.index(s.regime)] = s.share
+        lift[axes.index(s.axis), regimes.index(s.regime)] = s.lift
+    return {"axes": axes, "regimes": regimes, "share": share.round(4).tolist(), "lift": lift.round(3).tolist()}
+
+
+def traces(problem: Problem, final: Confirmed | None, before: list[Array]) -> list[dict[str, Any]]:
+    """Measured, nominal and corrected curves of the windows with the largest gap, at most one an axis."""
+    found = []
+    beta = problem.origin if final is None else final.beta
+    for number, part in enumerate(problem.parts):
+        nominal, corrected = residual(part, problem.origin)[0], residual(part, beta)[0]
+        for axis, channel in axis_channels(part).items():
+            weight = (np.where(part.ok[..., channel], before[number][..., channel] ** 2, 0.0) / problem.variance[:, channel]).sum(axis=1)
+            w = int(weight.argmax())
+            found.append((float(weight[w]), number, axis, channel, w, nominal, corrected))
+    found.sort(key=lambda item: -item[0])
+    return [_trace(problem.parts[number], axis, channel, w, nominal, corrected) for _, number, axis, channel, w, nominal, corrected in found[:MOST_TRACES]]
+
+
+def _trace(part: Stretches, axis: str, channel: int, w: int, nominal: Array, corrected: Array) -> dict[str, Any]:
+    ok, y = part.ok[w, :, channel], part.y[w, :, channel]
+    t = part.time()[w]
+    name = part.channels[channel]
+    pose = name in ("x", "y", "z", "phi", "theta", "psi")
+    return {
+        "title": f"{axis}, {t[0]:.0f} to {t[-1]:.0f} s of {part.run.id}",
+        "axis": axis,
+        "unit": ("rad" if axis in ANGULAR else "m") + ("" if pose else "/s"),
+        "t_s": t[ok].round(3).tolist(),
+        "measured": y[ok].tolist(),
+        "nominal": (y - nominal[w, :, channel])[ok].tolist(),
+        "corrected": (y - corrected[w, :, channel])[ok].tolist(),
+    }
+
+
+def coherence_matrix(problem: Problem, selection: Selection, judgement: Judgement) -> dict[str, Any]:
+    """Canonical correlation of the best-ranked hypotheses' signatures in this log."""
+    columns = set(problem.data.columns)
+    wanted = [name for n in judgement.named for name, _ in judgement.groups[n.hypothesis.name]] + [name for name, _ in selection.ranking]
+    names = [n for n in dict.fromkeys(wanted) if set(problem.plant.hypotheses[n]) <= columns][:MOST_COHERENCE]
+    slots = [problem.plant.hypotheses[n] for n in names]
+    matrix = [[coherence(problem.data, a, b) if a != b else 1.0 for b in slots] for a in slots]
+    return {"effects": names, "matrix": np.round(matrix, 3).tolist() if names else []}

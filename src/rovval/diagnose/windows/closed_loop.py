@@ -1,0 +1,53 @@
+"""Roll and pitch that an autopilot holds with the thrusters: how much more a replay of its answers errs than the vehicle ever did.
+
+In the water a small disturbance tilts the vehicle until righting moment and autopilot together balance it. The simulator gets the
+autopilot's answer without the disturbance, and tilts until the righting moment alone balances that: further by the gain of the loop.
+What replays show in roll and pitch is then worth that much less as evidence about the vehicle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from rovval.core.data import Array
+from rovval.diagnose.windows.shooting import Stretches
+from rovval.vehicle.model import allocation
+
+TILTS = {"roll": ("phi", "p", 3), "pitch": ("theta", "q", 4)}  # angle, its rate and the axis of the moment
+SHOWN = 0.05  # chosen: share of the moment's variance that angle and rate must account for
+
+
+def gains(parts: Sequence[Stretches]) -> dict[str, float]:
+    """Loop gain of roll and pitch, the mean over runs."""
+    return {axis: float(np.mean([loop_gain(part, *where) for part in parts])) for axis, where in TILTS.items()}
+
+
+def discount(parts: Sequence[Stretches], gain: Mapping[str, float]) -> Array:
+    """Factor (c,) on the variance of each residual channel: (1 + loop gain)^2 for roll and pitch, else 1."""
+    channels = parts[0].channels
+    by_channel = {c: (1.0 + gain[axis]) ** 2 for axis, (angle, rate, _) in TILTS.items() for c in (angle, rate)}
+    return np.array([by_channel.get(c, 1.0) for c in channels])
+
+
+
+
+def loop_gain(part: Stretches, angle: str, rate: str, axis: int) -> float:
+    """Moment that the thrusters give against an angle, over the righting moment; 0 where they do not answer it.
+
+    Least squares of the thrusters' moment (from the recorded speeds) on angle and rate: M = m0 - k angle - d rate.
+    """
+    run, vehicle = part.run, part.plant.vehicle
+    if not (run.measured(angle) and run.measured(rate)):
+        return 0.0
+    moment = part.plant.thrust(part.driven.inputs.speed) @ allocation(vehicle)[axis]
+    use = run.ok(angle) & run.ok(rate) & part.driven.known
+    if use.sum() < 10 or moment[use].std() == 0.0:
+        return 0.0
+    X = np.column_stack([np.ones(use.sum()), run.get(angle)[use], run.get(rate)[use]])
+    found, *_ = np.linalg.lstsq(X, moment[use], rcond=None)
+    shown = 1.0 - float(np.var(moment[use] - X @ found) / np.var(moment[use]))
+    height = abs(vehicle.body.centre_of_gravity[2] - vehicle.body.centre_of_buoyancy[2])
+    righting = vehicle.weight * height
+    return max(-float(found[1]), 0.0) / righting if shown > SHOWN and righting > 0 else 0.0

@@ -1,0 +1,107 @@
+"""What of a log is measurement: a sample at a sensor's stop is none, and a value repeated until the next ping is one sample, not many.
+
+Both would be read as an effect: a rate that clips as a bias of the gyro, velocities held between pings as a filter's lag.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from rovval.core.data import Array, Flags, Reason, Resampled, Run
+from rovval.core.errors import Finding
+from rovval.diagnose.windows.noise import white_noise
+
+NO_MEASUREMENT = ("saturated", "held")  # codes of the findings
+RATES = ("u", "v", "w", "p", "q", "r")  # channels that can reach the end of a sensor's range
+PINGED = ("u", "v", "w")  # one instrument measures them, so that they are new together
+FEWEST = 8  # samples at a stop that are no coincidence (chosen)
+OUTSTANDING = 5  # times as many as at any of the next three values (chosen)
+FINE = 100  # values that a channel takes at least: fewer, and the log is written in coarse steps (chosen)
+STEEP = 3.0  # times the sensor's noise by which a stop is reached in one sample: a steady state is neared slowly (chosen)
+LEAST_STEP = 1e-3  # m/s, rad/s: the same of a log without noise (chosen)
+REPEATED = 0.3  # of the samples: more is a slow sensor, written at the log's rate (chosen)
+SLOWEST, STEADY = 30, 0.9  # samples between pings, and share of the pings that keep such a beat (chosen)
+
+
+def sensed(run: Run) -> tuple[Run, tuple[Finding, ...]]:
+    """The run with samples at a stop masked and with held velocities drawn between pings, as a log at the pings' rate would be; and what
+    was found."""
+    values, reasons, resampled = dict(run.values), dict(run.reasons), dict(run.resampled)
+    found = list[Finding]()
+    for name in (c for c in RATES if run.measured(c)):
+        if _never_changes(run.get(name)):
+            reasons[name] = np.full_like(reasons[name], Reason.SATURATED)
+            found.append(Finding("saturated", name, f"says {np.nanmax(run.get(name)):.4g} (SI units) all along, which no sensor does, and was left out"))
+            continue
+        stop = at_stop(run.get(name))
+        if stop.any():
+            reasons[name] = np.where(stop, Reason.SATURATED, reasons[name]).astype(np.uint8)
+            levels = " and ".join(f"{x:.4g}" for x in np.unique(values[name][stop]))
+            detail = f"stands at the end of its sensor's range ({levels} in SI units) for {stop.sum() * run.dt:.0f} s, which were left out"
+            found.append(Finding("saturated", name, detail))
+    pinged = tuple(c for c in PINGED if run.measured(c))
+    beat, first = pings(run.stack(pinged)) if pinged else (1, 0)
+    if beat > 1:
+        period = beat * run.dt
+        for name in pinged:
+            values[name], resampled[name] = _between(run.get(name), beat, first), _slower(resampled, name, period, len(run) // beat)
+        detail = f"hold their values between pings, a new one every {period:.2g} s, and were drawn between these"
+        found.append(Finding("held", ", ".join(pinged), detail))
+    if not found:
+        return run, ()
+    return replace(run, values=values, reasons=reasons, resampled=resampled, findings=(*run.findings, *found)), tuple(found)
+
+
+def at_stop(values: Array) -> Flags:
+    """Samples (n,) that stand at the end of a sensor's range: the same extreme again and again, reached steeply."""
+    known = values[np.isfinite(values)]
+    stop = np.zeros(len(values), dtype=bool)
+    noise = white_noise(known, np.ones(len(known), dtype=bool))
+    for sign in (1.0, -1.0):
+        levels, counts = np.unique(sign * known, return_counts=True)
+        if len(levels) < FINE or counts[-1] < max(FEWEST, OUTSTANDING * counts[-4:-1].max()):
+            continue
+        here: Flags = np.asarray(sign * values == levels[-1])
+        first = np.flatnonzero(here[1:] & ~here[:-1])
+        rise = sign * (values[first + 1] - values[first])
+        if len(first) and float(np.nanmedian(rise)) > max(STEEP * noise, LEAST_STEP):
+            stop |= here
+    return stop
+
+
+def _never_changes(values: Array) -> bool:
+    """Whether a channel says the same thing other than 0 all along; a vehicle that keeps to one axis may well have zeros on another."""
+    known = values[np.isfinite(values)]
+    return bool(len(known) > 1 and np.ptp(known) == 0.0 and known[0] != 0.0)
+
+
+def pings(values: Array) -> tuple[int, int]:
+    """Beat (samples) at which channels (n, c) are new and the first such sample, where all repeat themselves to the last digit between; else (1, 0).
+
+    A vehicle at rest in a coarsely written log repeats itself, too, but at no beat.
+    """
+    change = np.diff(values, axis=0)
+    new = np.flatnonzero(((change != 0.0) & np.isfinite(change)).any(axis=1)) + 1
+    if len(new) < FEWEST or len(new) > (1.0 - REPEATED) * len(values):
+        return 1, 0
+    beats = range(SLOWEST, 1, -1)
+    on = {k: np.bincount(new % k, minlength=k) for k in beats}
+    return next(((k, int(count.argmax())) for k, count in on.items() if count.max() >= STEADY * len(new)), (1, 0))
+
+
+def _between(values: Array, beat: int, first: int) -> Array:
+    """Values (n,) drawn between pings; unknown ones, and what stands before the first and after the last, as they are."""
+    grid = np.arange(len(values))
+    at = grid[first::beat][np.isfinite(values[first::beat])]
+    inside = np.isfinite(values) & (grid >= at[0]) & (grid <= at[-1])
+    return np.where(inside, np.interp(grid, at, values[at]), values)
+
+
+def _slower(resampled: Mapping[str, Resampled], name: str, period_s: float, samples: int) -> Resampled:
+    before = resampled.get(name)
+    if before is None:
+        return Resampled("linear", samples, period_s, period_s, period_s, 1.0)
+    return replace(before, samples=samples, period_s=period_s, largest_gap_s=max(before.largest_gap_s, period_s))

@@ -1,0 +1,123 @@
+"""Fit: a chosen set of a vehicle's parameters tuned to logs by re-simulation, as the thesis does by hand in 6.5.
+
+The rest of the vehicle stays as its file says, within calibration slop. What these logs cannot determine is named, with the reason
+(not excited, or not told apart from what) and left where it was. Intervals hold under autocorrelated residuals.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rovval import __version__, effects
+from rovval.core.data import Array
+from rovval.diagnose.hypotheses.hypothesis import columns_of
+from rovval.diagnose.hypotheses.library import hypotheses
+from rovval.diagnose.inference.hypothesis_fit import Confirmed
+from rovval.diagnose.inference.identifiability import determinable, tuned, undetermined
+from rovval.diagnose.inference.problem import Problem, corrected_residuals, pose
+from rovval.diagnose.inference.refit import shrinkage_refitted
+from rovval.diagnose.inference.shrinkage import NONE, harm
+from rovval.diagnose.windows.shooting import cut_all
+from rovval.fit.tunable import chosen
+from rovval.plant import Plant
+from rovval.report.fit import text
+from rovval.vehicle.write import to_toml, with_effects
+
+if TYPE_CHECKING:
+    from rovval.core.data import Run
+    from rovval.vehicle.model import Vehicle
+
+
+@dataclass(frozen=True, slots=True)
+class FitResult:
+    """``vehicle``: TOML with the tuned parameters in its [effects]; ``document``: rovval.fit/1; ``text``: the same to be read."""
+
+    vehicle: str
+    document: dict[str, Any]
+    text: str
+
+
+def fit(
+    runs: Sequence[Run],
+    vehicle: Vehicle,
+    parameters: Sequence[str],
+    *,
+    model: str = "fossen",
+    window_s: float = 10.0,
+    calibration_slop: float = 0.05,
+    seed: int = 0,
+    progress: Callable[[str, float], None] | None = None,
+) -> FitResult:
+    """Tune ``parameters`` of ``vehicle`` to one or several of its logs.
+
+    ``parameters`` are parameters (``thruster_degraded[HFP].loss``), hypotheses (``quadratic_drag[surge]``), effects
+    (``quadratic_drag``), patterns with * or families (`tunable.FAMILIES`). ``calibration_slop`` is what the rest may be off by.
+
+    Raises:
+        UsageProblem: names every parameter that does not exist, or that needs `diagnose`, at once.
+        BadInput: too little of a log can be simulated, or thruster inputs are missing.
+    """
+    say = progress or (lambda text, share: None)
+    wanted = chosen(Plant(vehicle, model), parameters)
+    parts, left_out = cut_all(runs, vehicle, model, window_s)
+    library, missing = hypotheses(parts)
+    plant = parts[0].plant
+    why = {s: missing.get(plant.slots[s].hypothesis) or missing.get(plant.slots[s].key) for s in wanted}
+    out = {s: undetermined(reason) for s, reason in why.items() if reason}
+    able = tuple(s for s in wanted if s not in out)
+    say(f"simulating {len(able)} parameters on {sum(p.count for p in parts)} windows", 0.1)
+    names = {plant.slots[s].hypothesis for s in able}
+    kept = [h for h in library if not h.directions and (h.name in names or effects.load(h.name.partition("[")[0]).place == "sensor")]
+    problem = pose(parts, columns_of(kept), calibration_slop)
+    able, blind = determinable(problem, able)
+    out |= blind
+    say(f"tuning {len(able)} parameters by re-simulation", 0.4)
+    fitted, low, high, vague = tuned(problem, able)
+    out |= vague
+    say("asking how far the gap shrinks on held-out windows", 0.9)
+    document = _document(problem, fitted, low, high, {s: out[s] for s in wanted if s in out}, calibration_slop, seed)
+    document["left_out"] = list(left_out)
+    settings = document["settings"]
+    return FitResult(with_effects(vehicle, settings) if settings else to_toml(vehicle), document, text(document))
+
+
+def _document(
+    problem: Problem, fitted: Confirmed | None, low: Array, high: Array, out: dict[int, dict[str, Any]], slop: float, seed: int
+) -> dict[str, Any]:
+    plant, rows = problem.plant, dict[str, Any]()
+    shrunk = shrinkage_refitted(problem, fitted, corrected_residuals(problem), slop, seed) if fitted else dict(NONE)
+    for i, slot in enumerate(fitted.slots if fitted else ()):
+        assert fitted is not None
+        p, value, was = plant.slots[slot].parameter, float(fitted.beta[slot]), float(problem.origin[slot])
+        bottom, top = max(float(low[i]), p.low), min(float(high[i]), p.high)
+        rows[plant.slots[slot].key] = {
+            "value": value, "low": bottom, "high": top, "unit": p.unit, "was": was,
+            "at_bound": slot in fitted.at_bound, "differs": not bottom <= was <= top,
+        }  # fmt: skip
+    return {
+        "schema": "rovval.fit/1",
+        "rovval": __version__,
+        "run": ", ".join(part.run.id for part in problem.parts),
+        "vehicle": plant.vehicle.name,
+        "vehicle_hash": plant.vehicle.hash,
+        "model": plant.model,
+        "window_s": round((problem.parts[0].steps + 1) * problem.parts[0].run.dt, 6),
+        "windows": problem.blocks,
+        "calibration_slop": slop,
+        "parameters": rows,
+        "undetermined": [{"parameter": plant.slots[s].key, **why, "left_at": float(problem.origin[s])} for s, why in out.items()],
+        "shrinkage": shrunk,
+        "harm": harm(shrunk),
+        "settings": list(_settings(problem, fitted)) if fitted else [],
+    }
+
+
+def _settings(problem: Problem, fitted: Confirmed) -> tuple[str, ...]:
+    """Every tuned hypothesis as ``--effect`` takes it, with what the vehicle's file says of its other parameters."""
+    plant, found = problem.plant, []
+    for name in dict.fromkeys(plant.slots[s].hypothesis for s in fitted.slots):
+        own = [s for s in plant.hypotheses[name] if s in fitted.slots or fitted.beta[s] != plant.null[s]]
+        found.append(f"{name}:" + ",".join(f"{plant.slots[s].parameter.name}={float(fitted.beta[s])!r}" for s in own))
+    return tuple(found)

@@ -1,0 +1,56 @@
+"""The parameters that a fit may tune, by name, pattern or family."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Sequence
+
+from rovval import effects
+from rovval.core.errors import UsageProblem, all_at_once
+from rovval.plant import Plant
+
+FAMILIES = {
+    "drag": "linear_drag quadratic_drag", "thrust": "thruster_degraded", "allocation": "thruster_misaligned",
+    "mass": "added_mass inertia_error", "trim": "buoyancy_error cg_offset",
+}  # fmt: skip
+
+
+def chosen(plant: Plant, parameters: Sequence[str]) -> tuple[int, ...]:
+    """Slots that the names mean, in the plant's order.
+
+    Raises:
+        UsageProblem: names every unknown one with near matches, and those that are not a matter of tuning.
+    """
+    found, problems = set[int](), []
+    for asked in parameters:
+        slots = [s for one in FAMILIES.get(asked, asked).split() for s in _meant(plant, one)]
+        searched = sorted({plant.slots[s].hypothesis for s in slots if is_searched(plant, s)})
+        if not slots:
+            problems.append(f"{asked!r}: no such parameter{_near(plant, asked)}")
+        elif searched:
+            problems.append(f"{asked!r}: {', '.join(searched)} begins or turns at a place or time that is searched for, not tuned; see `rovval diagnose`")
+        found.update(slots)
+    if not parameters:
+        problems.append("none was named")
+    if problems:
+        hint = f"`rovval list effect` has the names; families: {', '.join(FAMILIES)}; * stands for any axis or thruster"
+        raise UsageProblem(all_at_once(problems, "parameters to tune"), hint)
+    return tuple(sorted(found))
+
+
+def _meant(plant: Plant, one: str) -> list[int]:
+    pattern = re.compile(".*".join(re.escape(part) for part in one.split("*")))
+    return [i for i, s in enumerate(plant.slots) if any(pattern.fullmatch(name) for name in (s.key, s.hypothesis, s.effect))]
+
+
+def is_searched(plant: Plant, slot: int) -> bool:
+    """Whether a slot belongs to what begins or turns at a time or place that `diagnose` searches for."""
+    effect = effects.load(plant.slots[slot].effect)
+    return bool(effect.grid) or effect.begins
+
+
+def _near(plant: Plant, asked: str) -> str:
+    names = dict.fromkeys([*FAMILIES, *(n for s in plant.slots for n in (s.effect, s.hypothesis, s.key))])
+    close = difflib.get_close_matches(asked, list(names), n=3, cutoff=0.6)
+    return f", perhaps {' or '.join(close)}" if close else ""

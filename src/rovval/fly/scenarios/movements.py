@@ -1,0 +1,87 @@
+"""Scenario 3 (thesis 4.4, tables 4.5 and 4.6): surge, sway, heave and yaw, both ways, 30 s each with 30 s of rest between.
+
+The tables expect nothing in particular. Section 6.4 says which thrusters push which way in each movement: that is held here
+for Merlin. For any vehicle, each movement goes the way that was commanded.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rovval.core.channels import AXES
+from rovval.core.data import Array
+from rovval.fly.scenarios import Check, Outcome
+from rovval.fly.scenarios.still_water import swim
+from rovval.vehicle.model import Vehicle, allocation
+
+MERLIN_RPM = 70.0  # thesis 4.3
+TABLE_SHARE = 0.25  # chosen: a quarter of the fastest speed in the vehicle's pulse table, where it has one
+MOVE_S, REST_S = 30.0, 30.0
+MOVEMENTS = tuple((axis, sign) for axis in ("surge", "sway", "heave", "yaw") for sign in (1, -1))
+# Thesis 6.4, T0..T6 = VFP VFS VAC HFP HFS HAP HAS: sign of each thrust. Its "upward" is heave -1 here, where z is down, and its
+# "rotate right" is yaw, although it prints roll.
+SECTION_6_4 = {
+    ("surge", 1): (0, 0, 0, 1, -1, -1, 1),
+    ("surge", -1): (0, 0, 0, -1, 1, 1, -1),
+    ("sway", 1): (0, 0, 0, 1, 1, 1, 1),
+    ("sway", -1): (0, 0, 0, -1, -1, -1, -1),
+    ("heave", 1): (1, -1, 1, 0, 0, 0, 0),
+    ("heave", -1): (-1, 1, -1, 0, 0, 0, 0),
+    ("yaw", 1): (0, 0, 0, 1, 1, -1, -1),
+    ("yaw", -1): (0, 0, 0, -1, -1, 1, 1),
+}
+
+
+def movements(vehicle: Vehicle, model: str) -> Outcome:
+    """Command each movement through the pseudo-inverse of the allocation, as a pilot's joystick mapping does."""
+    patterns = [_pattern(vehicle, axis, sign) for axis, sign in MOVEMENTS]
+    blocks = [np.vstack([np.tile(p, (round(MOVE_S * 10), 1)), np.zeros((round(REST_S * 10), len(p)))]) for p in patterns]
+    sim = swim(vehicle, np.vstack(blocks), model, "scenario-3")
+    length = round((MOVE_S + REST_S) * 10)
+    checks, rows = [], []
+    for k, ((axis, sign), pattern) in enumerate(zip(MOVEMENTS, patterns, strict=True)):
+        i = AXES.index(axis)
+        nu = sim.free.nu[k * length : k * length + round(MOVE_S * 10)]
+        thrust = sim.thrust[k * length + 1]
+        reached = float(nu[-1, i])
+        unit = "m/s" if i < 3 else "rad/s"
+        checks.append(
+            Check(
+                f"{axis} {sign:+d}: goes that way",
+                f"{reached:+.3f} {unit} after {MOVE_S:g} s",
+                bool(np.isfinite(reached) and reached * sign > 0),
+            )
+        )
+        if vehicle.name == "merlin":
+            signs = np.sign(np.where(np.abs(thrust) > 1e-9, thrust, 0.0))
+            agrees = bool((signs == np.array(SECTION_6_4[axis, sign])).all())
+            checks.append(
+                Check(
+                    f"{axis} {sign:+d}: thrusters push as in thesis 6.4",
+                    " ".join(f"{s:+.0f}" if s else "0" for s in signs),
+                    agrees,
+                )
+            )
+        rows.append(
+            {"axis": axis, "sign": sign, "rpm": pattern.tolist(), "thrust_n": thrust.tolist(), f"reached_{unit}": reached}
+        )
+    return Outcome(
+        3,
+        "movement protocol",
+        vehicle.name,
+        model,
+        tuple(checks),
+        document={"thrusters": list(vehicle.thrusters), "movements": rows},
+    )
+
+
+def _pattern(vehicle: Vehicle, axis: str, sign: int) -> Array:
+    """Speeds (k,) rpm that push along one axis, the fastest at 70 rpm (or a quarter of its table); a thruster that hardly helps stays still."""
+    wrench = np.zeros(6)
+    wrench[AXES.index(axis)] = float(sign)
+    share = np.linalg.pinv(allocation(vehicle)) @ wrench
+    share = np.where(np.abs(share) > 0.05 * np.abs(share).max(), share, 0.0)
+    gain = np.array([t.k_pos if s > 0 else t.k_neg for t, s in zip(vehicle.thruster, share, strict=True)])
+    rpm = np.sign(share) * np.sqrt(np.abs(share) / gain)
+    top = TABLE_SHARE * max(vehicle.pulse_table.rpm) if vehicle.pulse_table else MERLIN_RPM
+    return np.asarray(top * rpm / np.abs(rpm).max())

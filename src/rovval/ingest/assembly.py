@@ -1,0 +1,185 @@
+"""Signals as a source logs them -> a `RawLog`: SI, forward-starboard-down, north-east-down, each channel at its own stamps."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from rovval.core.channels import Rule
+from rovval.core.data import Array, Flags, RawLog, Series
+from rovval.core.errors import BadInput, Finding
+from rovval.core.frames import ENU_TO_NED, FLU_TO_FSD, euler_from_quaternion, rotation_from_euler, wrap
+from rovval.core.units import to_si
+from rovval.ingest.heading import with_heading_zero
+from rovval.ingest.profile import ATTITUDE, GEODETIC, WORLD_VELOCITY, Profile, Source
+
+SIDEWAYS_OR_DOWN = ("v", "w", "q", "r", "vdot", "wdot")  # change sign between forward-left-up and forward-starboard-down
+TO_NED = {"ned": np.eye(3), "enu": ENU_TO_NED, "nwu": FLU_TO_FSD}
+EULER = ("phi", "theta", "psi")
+SPIKE = 1.5  # rad
+WGS84_A, WGS84_E2 = 6378137.0, 6.69437999014e-3  # semi-major axis (m) and first eccentricity squared, NIMA TR8350.2, table 3.1
+
+
+@dataclass(frozen=True, slots=True)
+class Signal:
+    """One signal as logged: ``t`` (n,) s strictly increasing, ``values`` (n,) or (n, 4) in the source's unit, NaN where missing."""
+
+    t: Array
+    values: Array
+    stamp: str
+    source: Source
+
+
+def build(
+    profile: Profile,
+    signals: Mapping[str, Signal],
+    path: Path,
+    sha256: str,
+    t0_ns: int | None,
+    findings: Sequence[Finding],
+    properties: Mapping[str, str],
+) -> RawLog:
+    """The log out of its signals (channel name -> signal). Raises `BadInput` when no signal holds a value."""
+    found = list(findings)
+    facts = {"profile_sha256": profile.sha256, **properties}
+    series: dict[str, Series] = {}
+    for name, signal in signals.items():
+        present: Flags = np.asarray(np.isfinite(signal.values.reshape(len(signal.t), -1)).all(axis=1))
+        if signal.source.missing:
+            present = present & ~np.isin(signal.values, signal.source.missing)
+        if not present.any():
+            found.append(Finding("empty_channel", name, "holds no value"))
+        elif name == ATTITUDE:
+            series |= _attitude(signal, present)
+        else:
+            series[name] = Series(signal.t[present], _si(signal.values[present], signal.source), signal.stamp)
+    series = _geodetic(profile, series, facts)
+    series = _turned(profile, series)
+    series = _into_body(profile, series, found)
+    if profile.relative_heading and "psi" in series:
+        series, told = with_heading_zero(series)
+        found.append(told)
+    if not series:
+        raise BadInput(f"{path}: every channel of profile {profile.name!r} is empty", "see `rovval show profile`")
+    ordered = {name: _angles(name, series[name], found) for name in _in_order(profile, series)}
+    return RawLog(
+        source=str(path), sha256=sha256, profile=profile.name, vehicle=profile.vehicle_file, t0_ns=t0_ns, channels=ordered,
+        findings=tuple(found), properties=facts, rules={n: r for n in ordered if (r := _rule(profile, signals, n)) is not None},
+    )  # fmt: skip
+
+
+def _in_order(profile: Profile, series: Mapping[str, Series]) -> list[str]:
+    """Channels in the order of the profile, members of a pattern in the order of the log."""
+    families = [k.partition(":")[0] for k in profile.channels]
+    families = [n for f in families for n in (EULER if f == ATTITUDE else (f,))]
+    return sorted(series, key=lambda n: families.index(n.partition(":")[0]))
+
+
+def _si(raw: Array, source: Source) -> Array:
+    factor = source.sign / source.span * to_si(source.unit)
+    return np.asarray((raw - source.zero if source.zero else raw) * factor)
+
+
+def _attitude(signal: Signal, present: Flags) -> dict[str, Series]:
+    q = signal.values[present]
+    norm = np.linalg.norm(q, axis=1)
+    unit = np.abs(norm - 1.0) < 0.1
+    euler = euler_from_quaternion(q[unit] / norm[unit, None])
+    return {n: Series(signal.t[present][unit], euler[:, i], signal.stamp) for i, n in enumerate(EULER)}
+
+
+def _geodetic(profile: Profile, series: dict[str, Series], facts: dict[str, str]) -> dict[str, Series]:
+    """Latitude and longitude into metres north and east of the first sample, by the radii of curvature of WGS-84 there.
+
+    Radii: Groves, Principles of GNSS, Inertial and Multisensor Navigation, 2nd ed., equations 2.105 and 2.106.
+    """
+    if "x" not in series or "y" not in series or profile.channels["x"].unit != GEODETIC:
+        return {n: s for n, s in series.items() if n not in ("x", "y") or profile.channels["x"].unit != GEODETIC}
+    lat, lon = series["x"], series["y"]
+    lat0, lon0 = float(lat.values[0]), float(lon.values[0])
+    s2 = 1.0 - WGS84_E2 * np.sin(np.radians(lat0)) ** 2
+    north, east = WGS84_A * (1.0 - WGS84_E2) / s2**1.5, WGS84_A / np.sqrt(s2) * np.cos(np.radians(lat0))
+    facts |= {"origin_latitude_deg": repr(lat0), "origin_longitude_deg": repr(lon0)}
+    dlon = (lon.values - lon0 + 180.0) % 360.0 - 180.0
+    x = Series(lat.t, np.radians(lat.values - lat0) * north, lat.stamp)
+    return series | {"x": x, "y": Series(lon.t, np.radians(dlon) * east, lon.stamp)}
+
+
+def _turned(profile: Profile, series: dict[str, Series]) -> dict[str, Series]:
+    """Body components and world pose into forward-starboard-down and north-east-down (REP-103 to SNAME)."""
+    out = dict(series)
+    for name in SIDEWAYS_OR_DOWN:
+        declared = profile.channels[name].frame if name in profile.channels else None
+        if name in out and (declared or profile.frame) == "flu":
+            out[name] = _scaled(out[name], -1.0)
+    if profile.world == "ned":
+        return out
+    enu = profile.world == "enu"
+    geodetic = "x" in profile.channels and profile.channels["x"].unit == GEODETIC
+    if not geodetic:
+        x, y = ("y", "x") if enu else ("x", "y")
+        pose = {"x": series.get(x), "y": series.get(y)}
+        out |= {n: _scaled(s, -1.0 if n == "y" and not enu else 1.0) for n, s in pose.items() if s is not None}
+        out = {n: s for n, s in out.items() if n not in pose or pose[n] is not None}
+    for name, sign, offset in (("z", -1.0, 0.0), ("theta", -1.0, 0.0), ("psi", -1.0, np.pi / 2 if enu else 0.0)):
+        if name in series:
+            out[name] = Series(series[name].t, sign * series[name].values + offset, series[name].stamp)
+    return out
+
+
+def _into_body(profile: Profile, series: dict[str, Series], found: list[Finding]) -> dict[str, Series]:
+    """Velocity logged along world axes into the body, with the attitude interpolated at its stamps."""
+    if not any(n in profile.channels and profile.channels[n].frame == "world" for n in WORLD_VELOCITY):
+        return series
+    rest = {n: s for n, s in series.items() if n not in WORLD_VELOCITY}
+    if len(rest) == len(series):
+        return series
+    if not all(n in series for n in (*WORLD_VELOCITY, *EULER)):
+        found.append(Finding("no_velocity", "u, v, w", "velocity along world axes needs all three axes and the attitude"))
+        return rest
+    t = series["u"].t
+    inside = np.isin(t, series["v"].t) & np.isin(t, series["w"].t)
+    for name in EULER:
+        inside &= (t >= series[name].t[0]) & (t <= series[name].t[-1])
+    t = t[inside]
+    if len(t) < 1:
+        found.append(Finding("no_velocity", "u, v, w", "no attitude at the stamps of the velocity"))
+        return rest
+    ned = np.stack([s.values[np.isin(s.t, t)] for s in (series[n] for n in WORLD_VELOCITY)], axis=1) @ TO_NED[profile.world].T
+    euler = np.stack([np.interp(t, series[n].t, np.unwrap(series[n].values)) for n in EULER], axis=1)
+    body = np.einsum("nji,nj->ni", rotation_from_euler(euler), ned)
+    return rest | {n: Series(t, body[:, i], series[n].stamp) for i, n in enumerate(WORLD_VELOCITY)}
+
+
+def _scaled(series: Series, factor: float) -> Series:
+    return series if factor == 1.0 else Series(series.t, series.values * factor, series.stamp)
+
+
+def _angles(name: str, series: Series, found: list[Finding]) -> Series:
+    """Angles beyond half a turn brought into (-pi, pi]; the others keep every bit, and absurd ones stay to be masked.
+
+    A single sample far from two neighbours that agree is what averaging two angles across the wrap leaves: it is dropped.
+    """
+    if name not in EULER:
+        return series
+    beyond = (np.abs(series.values) > np.pi) & (np.abs(series.values) <= 7.0)
+    values = np.where(beyond, wrap(series.values), series.values)
+    step, over = np.abs(wrap(np.diff(values))), np.abs(wrap(values[2:] - values[:-2]))
+    spike = np.concatenate(([False], (step[:-1] > SPIKE) & (step[1:] > SPIKE) & (over < SPIKE / 3), [False]))
+    spike = spike[: len(values)] & (np.abs(values) <= np.pi)
+    if spike.any():
+        detail = f"{spike.sum()} single samples far from both neighbours, from t = {series.t[spike][0]:.1f} s; dropped"
+        found.append(Finding("angle_spike", name, detail))
+    return Series(series.t[~spike], values[~spike], series.stamp)
+
+
+def _rule(profile: Profile, signals: Mapping[str, Signal], name: str) -> Rule | None:
+    signal = signals.get(ATTITUDE if name in EULER and name not in signals else name)
+    if signal is None:
+        return None
+    s = signal.source
+    rule = Rule(s.resampling, s.longest_gap_s, s.stuck_s)
+    return rule if rule != Rule() else None

@@ -1,0 +1,69 @@
+"""Cells of text into numbers: what is blank is missing, what is neither is counted and named, nothing is guessed."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping
+
+import numpy as np
+import polars as pl
+
+from rovval.core.data import Array
+from rovval.core.errors import BadInput, Finding, all_at_once
+from rovval.ingest.text import Table, cells, some
+
+BLANK = ("", "nan", "-", "--", "null", "none", "n/a", "na", "#n/a", "-nan", "nan(ind)", "-nan(ind)")
+DECIMAL_COMMA = r"^[+-]?\d+,\d*([eE][+-]?\d+)?$"
+
+
+def frame(table: Table, columns: Mapping[str, int]) -> pl.DataFrame:
+    """The wanted columns (name -> position in the header) as text, stripped."""
+    text = "\n".join(table.rows).encode()
+    names = [f"c{i}" for i in range(len(table.header))]
+    quote = '"' if b'"' in text else None
+    try:
+        wide = pl.read_csv(
+            io.BytesIO(text), has_header=False, infer_schema=False, separator=table.separator, quote_char=quote, new_columns=names
+        )
+    except pl.exceptions.PolarsError:
+        wide = pl.DataFrame()
+    if wide.shape != (len(table.rows), len(names)):  # a stray quote makes rows run together: take them one by one
+        apart = [cells(row, table.separator) for row in table.rows]
+        wide = pl.DataFrame({n: [row[i] if i < len(row) else None for row in apart] for i, n in enumerate(names)}, schema=dict.fromkeys(names, pl.String))
+    return wide.select(pl.col(f"c{at}").str.strip_chars().alias(name) for name, at in columns.items())
+
+
+def numbers(text: pl.DataFrame, table: Table, path: str) -> tuple[dict[str, Array], tuple[Finding, ...]]:
+    """Every column as float with NaN where a cell is blank or not a number, and what was found of either.
+
+    Raises `BadInput` naming every column of which more than half of the written cells are not numbers.
+    """
+    values, findings, hopeless = {}, [], []
+    lines = np.array(table.lines)
+    for column in text.iter_columns():
+        name = column.name
+        blank = (column.is_null() | column.str.to_lowercase().is_in(BLANK)).to_numpy()
+        value = _cast(column)
+        bad = ~blank & ~np.isfinite(value)
+        value[blank | bad] = np.nan
+        values[name] = value
+        if blank.any():
+            findings.append(Finding("blank_cell", name, f"{blank.sum()} cells are blank, from line {lines[blank][0]}; taken as missing"))
+        if bad.any():
+            examples = ", ".join(repr(c) for c in column.filter(pl.Series(bad))[:3])
+            where = some(lines[bad].tolist())
+            findings.append(Finding("not_a_number", name, f"{bad.sum()} cells are not numbers ({examples}; {where}); dropped"))
+            if bad.sum() > 0.5 * (~blank).sum():
+                hopeless.append(f"column {name!r}: {bad.sum()} of {(~blank).sum()} cells are not numbers, such as {examples} ({where})")
+    if hopeless:
+        hint = "are separator and decimal sign mixed, or is this another column than the profile means?"
+        raise BadInput(all_at_once(hopeless, f"{path}: unreadable"), hint)
+    return values, tuple(findings)
+
+
+def _cast(column: pl.Series) -> Array:
+    value = column.cast(pl.Float64, strict=False)
+    failed = column.filter(value.is_null())
+    if failed.str.contains(DECIMAL_COMMA).any() and not column.str.contains(r"\d\.\d").any():
+        value = column.str.replace(",", ".", literal=True).cast(pl.Float64, strict=False)
+    return np.array(value.fill_null(np.nan).to_numpy(), dtype=float)

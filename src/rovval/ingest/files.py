@@ -1,0 +1,43 @@
+"""What every reader does with a path first: is it there, is there something in it, and what is its digest."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+from rovval.core.errors import BadInput
+
+
+def parts(path: Path) -> tuple[Path, ...]:
+    """The files that make up a log: itself, or what a folder (a ROS 2 bag) holds, in order of name."""
+    return tuple(sorted(p for p in path.rglob("*") if p.is_file())) if path.is_dir() else (path,)
+
+
+def refuse_unusable(path: Path) -> None:
+    """Raises `BadInput` for a path that is not there, cannot be read, or holds nothing."""
+    if not path.exists():
+        raise BadInput(f"{path}: no such file", "check the path")
+    if not (path.is_file() or path.is_dir()):
+        raise BadInput(f"{path}: neither a file nor a folder", "check the path")
+    try:
+        size = sum(part.stat().st_size for part in parts(path))
+        with parts(path)[0].open("rb") as file:
+            file.read(1)
+    except IndexError:
+        raise BadInput(f"{path}: the folder is empty", "give a log file, or a folder that is a ROS 2 bag") from None
+    except OSError as error:
+        raise BadInput(f"{path}: cannot be read: {error.strerror}", "check its permissions") from None
+    if size == 0:
+        raise BadInput(f"{path}: the file is empty", "was the export interrupted?")
+
+
+def sha256(path: Path) -> str:
+    """Digest of a log's content; of a folder, of the names and contents of its files."""
+    digest = hashlib.sha256()
+    for part in parts(path):
+        if path.is_dir():
+            digest.update(part.relative_to(path).as_posix().encode() + b"\0")
+        with part.open("rb") as file:
+            while block := file.read(1 << 20):
+                digest.update(block)
+    return digest.hexdigest()

@@ -1,0 +1,176 @@
+"""ArduSub logs: DataFlash .BIN and MAVLink .tlog, by message type and field (``XKF1[0]`` is instance 0, which is the default).
+
+Stamps: ``header`` is the autopilot's clock since it started (TimeUS, time_boot_ms), put on the ground station's time by the median
+difference where a .tlog has both; ``record`` is when the ground station wrote.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import re
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rovval.core.data import Array, RawLog
+from rovval.core.errors import BadInput, Finding, RovvalError, UsageProblem, all_at_once
+from rovval.ingest.clock import settle
+from rovval.ingest.files import sha256
+from rovval.ingest.profile import ATTITUDE, Profile, Source
+
+SUFFIXES = (".bin", ".tlog")
+DATAFLASH = b"\xa3\x95"  # every DataFlash packet begins so
+MAVLINK = (0xFE, 0xFD)  # first byte of a MAVLink 1 and 2 packet, after the 8 bytes of stamp that a .tlog adds
+LOOKED_AT = 20_000  # messages looked at to say which types a log has
+
+
+def sniff(path: Path) -> bool:
+    """Whether the file begins as DataFlash or as a .tlog does."""
+    with path.open("rb") as file:
+        head = file.read(9)
+    return head.startswith(DATAFLASH) or (len(head) == 9 and head[8] in MAVLINK)
+
+
+def missing(path: Path, profile: Profile) -> tuple[str, ...]:
+    """Required message types of ``profile`` that the beginning of the log has not."""
+    seen: set[str] = set()
+    with _opened(path) as log:
+        for _ in range(LOOKED_AT):
+            message = log.recv_match()
+            if message is None:
+                break
+            seen.add(message.get_type())
+    wanted = dict.fromkeys(_type(s)[0] for s in profile.channels.values() if not s.optional)
+    return (*(w for w in wanted if w not in seen), *(f"not {a}" for a in profile.absent if a in seen))
+
+
+def read(path: Path, profile: Profile) -> RawLog:
+    """The log of ``path``. Raises `BadInput` naming every missing message and field, `UsageProblem` without pymavlink."""
+    from rovval.ingest.assembly import Signal, build
+
+    wanted: dict[tuple[str, int], _Messages] = {}
+    for name, source in profile.channels.items():
+        wanted.setdefault(_type(source), _Messages()).channels[name] = source
+    bad = _collect(path, wanted, profile)
+    gone = [f"{kind}[{i}]" if i else kind for (kind, i), m in wanted.items() if not m.record and not all(s.optional for s in m.channels.values())]
+    if gone:
+        raise BadInput(all_at_once(gone, f"{path}: missing messages of profile {profile.name!r}"), "see `rovval show profile`, or give another")
+    findings = [Finding("bad_packet", str(path), f"{bad} packets are damaged; left out")] if bad else []
+    logged = {key: m for key, m in wanted.items() if m.record}
+    lead = [r - b for m in logged.values() for r, b in zip(m.record, m.boot, strict=True) if np.isfinite(b)]
+    offset = float(np.median(lead)) if lead else 0.0
+    own = profile.time.kind == "header"
+    stamps = {k: np.where(np.isfinite(m.boot), np.array(m.boot) + offset, m.record) if own else np.array(m.record) for k, m in logged.items()}
+    t0 = min(float(s.min()) for s in stamps.values())
+    signals: dict[str, Any] = {}
+    for key, m in logged.items():
+        try:
+            rows, t, found = settle(stamps[key] - t0, np.arange(1, len(m.record) + 1), key[0])
+        except BadInput as error:
+            findings.append(Finding("unusable_topic", key[0], error.message))
+            continue
+        findings += [Finding(f.code, key[0], f.detail.replace("line", "message").replace("row", "message")) for f in found]
+        stamp = "header" if own and np.isfinite(m.boot).all() else "record"
+        for name, source in m.channels.items():
+            column: Array = np.array(m.columns[name], dtype=float)
+            signals[name] = Signal(t, column[rows], stamp, source)
+    t0_ns = round(t0 * 1e9) if t0 > 1e9 else None  # smaller: seconds since the autopilot started
+    return build(profile, signals, path, sha256(path), t0_ns, findings, {"messages": ", ".join(k for k, _ in logged)})
+
+
+@dataclass(slots=True)
+class _Messages:
+    """What is collected of one message type and instance: both clocks (s), and a column per channel."""
+
+    channels: dict[str, Source] = field(default_factory=dict)
+    boot: list[float] = field(default_factory=list)
+    record: list[float] = field(default_factory=list)
+    columns: dict[str, list[Any]] = field(default_factory=dict)
+
+
+def _collect(path: Path, wanted: dict[tuple[str, int], _Messages], profile: Profile) -> int:
+    """Fill ``wanted`` from the log; returns the number of damaged packets. Raises `BadInput` with every unknown field."""
+    count: Counter[str] = Counter()
+    wrong: dict[str, None] = {}
+    types = [*{kind for kind, _ in wanted}, "BAD_DATA"]
+    with _opened(path) as log:
+        while (message := log.recv_match(type=types)) is not None:
+            kind = message.get_type()
+            count[kind] += 1
+            if (messages := wanted.get((kind, _instance(message)))) is None:
+                continue
+            values, unknown = _values(message, messages)
+            wrong |= dict.fromkeys(f"{kind} has no number {f!r}" for f in unknown)
+            if not unknown:
+                messages.record.append(float(message._timestamp))
+                messages.boot.append(_boot(message))
+                for name, value in values.items():
+                    messages.columns.setdefault(name, []).append(value)
+    if wrong:
+        raise BadInput(all_at_once(list(wrong), f"{path}: fields that profile {profile.name!r} names"), "mend the profile's field")
+    return count["BAD_DATA"]
+
+
+def _values(message: Any, messages: _Messages) -> tuple[dict[str, Any], list[str]]:
+    values, unknown = {}, []
+    for name, source in messages.channels.items():
+        fields = [f"{source.field}{i}" for i in (1, 2, 3, 4)] if name == ATTITUDE else [str(source.field)]
+        try:
+            found = [_number(message, f) for f in fields]
+            values[name] = tuple(found) if name == ATTITUDE else found[0]
+        except (AttributeError, IndexError, TypeError, ValueError):
+            unknown.append(str(source.field))
+    return values, unknown
+
+
+def _number(message: Any, address: str) -> float:
+    name, _, index = address.partition("[")
+    value = getattr(message, name)
+    return float(value[int(index.rstrip("]"))] if index else value)
+
+
+def _type(source: Source) -> tuple[str, int]:
+    """``XKF1[1]`` -> message type and instance."""
+    found = re.fullmatch(r"(.*?)(?:\[(\d+)\])?", str(source.topic))
+    return (found.group(1), int(found.group(2) or 0)) if found else (str(source.topic), 0)
+
+
+def _instance(message: Any) -> int:
+    name = getattr(getattr(message, "fmt", None), "instance_field", None) or getattr(message, "_instance_field", None)
+    return int(getattr(message, name, 0)) if name else 0
+
+
+def _boot(message: Any) -> float:
+    for name, unit in (("TimeUS", 1e-6), ("time_boot_ms", 1e-3), ("time_usec", 1e-6)):
+        if (value := getattr(message, name, None)) is not None:
+            return float(value) * unit
+    return float("nan")
+
+
+@contextlib.contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    """pymavlink's reader, silent: it prints of damage where results are printed; a refusal says it instead."""
+    try:
+        from pymavlink import DFReader, mavutil
+    except ImportError:
+        raise UsageProblem(f"{path}: an autopilot log needs pymavlink", "pip install 'rovval[autopilot]'") from None
+    log = None
+    try:
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+            with path.open("rb") as file:
+                dataflash = file.read(2) == DATAFLASH
+            log = DFReader.DFReader_binary(str(path)) if dataflash else mavutil.mavlogfile(str(path))
+            yield log
+    except (RovvalError, KeyboardInterrupt):
+        raise
+    except Exception as error:
+        said = str(error).splitlines()[0] if str(error) else ""
+        raise BadInput(f"{path}: damaged or foreign: {type(error).__name__}: {said}", "is the file whole?") from None
+    finally:
+        if log is not None and hasattr(log, "close"):
+            log.close()

@@ -1,0 +1,125 @@
+"""The compiled kernel of a `Spec`: written to a cache folder under the hash of all that it is made of, imported, run by threads.
+
+Threads share the blocks through a plain pool and the kernel gives up Python's lock. numba's own parallel loops would compile
+slower, share one cache entry between a serial and a parallel version, and break worker processes that are forked (OpenMP).
+"""
+
+from __future__ import annotations
+
+import atexit
+import hashlib
+import importlib.util
+import os
+import shutil
+import sys
+import tempfile
+import time
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from rovval.plant.codegen import source as template
+from rovval.plant.codegen import spec as compose
+
+ROOT = Path(__file__).parent
+
+
+def cache_folder() -> Path:
+    """Where kernels are kept: ROVVAL_CACHE, else the user's cache folder, else a folder of this process alone."""
+    return _lasting_folder() or _own_folder()
+
+
+def _lasting_folder() -> Path | None:
+    """The folder that the next run finds again, or None where it cannot be written."""
+    wanted = Path(os.environ.get("ROVVAL_CACHE") or Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "rovval")
+    try:
+        wanted.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=wanted):
+            return wanted
+    except OSError:
+        return None
+
+
+@cache
+def _own_folder() -> Path:
+    folder = Path(tempfile.mkdtemp(prefix="rovval-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
+
+
+@cache
+def _fingerprint(spec: compose.Spec) -> str:
+    """Hash of all that the kernel's machine code depends on: its text with every effect in it, helpers, versions."""
+    import numba
+
+    digest = hashlib.sha256(f"{numba.__version__} {sys.version}\n{template.render(spec)}".encode())
+    digest.update((ROOT / "runtime.py").read_bytes())
+    return digest.hexdigest()[:16]
+
+
+@cache
+def module(spec: compose.Spec) -> ModuleType:
+    """The generated module of that spec, compiled or from the cache; says so when compilation takes longer than a second."""
+    name = f"kernel_{spec.name}_{_fingerprint(spec)}"
+    path = cache_folder() / f"{name}.py"
+    if not path.exists():
+        _write(path, template.render(spec))
+    return _imported(name, path)
+
+
+def _imported(name: str, path: Path) -> ModuleType:
+    description = importlib.util.spec_from_file_location(name, path)
+    assert description is not None and description.loader is not None
+    loaded = importlib.util.module_from_spec(description)
+    sys.modules[name] = loaded
+    description.loader.exec_module(loaded)
+    return loaded
+
+
+def _write(path: Path, content: str) -> None:
+    """Beside its place and renamed into it: several processes may do this at once."""
+    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
+    with os.fdopen(handle, "w", encoding="utf-8") as file:
+        file.write(content)
+    Path(temporary).replace(path)
+
+
+def threads() -> int:
+    """Threads of one call: ROVVAL_THREADS, else the processors that this process may use."""
+    if wanted := os.environ.get("ROVVAL_THREADS"):
+        return max(1, int(wanted))
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1)
+
+
+_compiled: set[str] = set()
+
+
+def run(spec: compose.Spec, blocks: int, arguments: tuple[Any, ...]) -> None:
+    """Run the kernel over all blocks; ``arguments`` are those of ``run`` in the template after ``first, last``."""
+    function = module(spec).run
+    if spec.name not in _compiled:
+        _warm(function, spec, arguments)
+    workers = min(threads(), blocks)
+    if workers <= 1:
+        function(0, blocks, *arguments)
+        return
+    size = max(1, blocks // (workers * 4))
+    pieces = [(b, min(b + size, blocks)) for b in range(0, blocks, size)]
+    with ThreadPoolExecutor(workers) as pool:
+        for future in [pool.submit(function, first, last, *arguments) for first, last in pieces]:
+            future.result()
+
+
+def _warm(function: Any, spec: compose.Spec, arguments: tuple[Any, ...]) -> None:
+    """Compile (or load) by a call over no block at all, with a word on stderr if it is going to take a while."""
+    start = time.monotonic()
+    cached = any(cache_folder().glob(f"__pycache__/kernel_{spec.name}_{_fingerprint(spec)}.run-*.nbc"))
+    if not cached:
+        often = "once for this machine" if _lasting_folder() else "in every run, for want of a folder to keep it: name one in ROVVAL_CACHE"
+        print(f"rovval: compiling the {spec.name} plant, {often} (some seconds) ...", file=sys.stderr, flush=True)  # noqa: T201
+    function(0, 0, *arguments)
+    if not cached:
+        print(f"rovval: compiled in {time.monotonic() - start:.1f} s", file=sys.stderr, flush=True)  # noqa: T201
+    _compiled.add(spec.name)

@@ -1,0 +1,127 @@
+"""The 3-D part of a recording: tracks, the vehicle as measured and as simulated, and its thrusts."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rovval.core.channels import POSE
+from rovval.core.data import Array, Comparison, SimResult
+from rovval.core.frames import quaternion_from_euler
+from rovval.report.common import words
+
+if TYPE_CHECKING:
+    from rovval.vehicle.model import Vehicle
+
+COLOURS = {
+    "measured": (225, 230, 235),
+    "windows": (255, 150, 60),
+    "free run": (90, 170, 250),
+    "other": (199, 146, 224),
+    "corrected": (80, 205, 140),
+}
+ARROW_SHARE = 1.2  # the strongest thrust is drawn this many vehicle lengths long
+
+
+def is_placed(c: Comparison) -> bool:
+    """Whether the measured vehicle has a place in the world."""
+    return all(c.run.measured(n) for n in ("x", "y", "z"))
+
+
+def draw(stream: Any, clock: list[Any], c: Comparison, vehicle: Vehicle, corrected: SimResult | None) -> list[str]:
+    """Trajectories, the vehicle as measured and as simulated, and its thrusts; returns what had to be left out."""
+    import rerun as rr
+
+    run, notes = c.run, []
+    stream.log("/world", rr.ViewCoordinates.RIGHT_HAND_Z_DOWN, static=True)
+    placed = is_placed(c)
+    tracks = {"free run": c.sim.free.eta[:, :3]}
+    bodies = {"free run": c.sim.free.eta}
+    if placed:
+        measured = run.stack(POSE)
+        level = [n for n in ("phi", "theta", "psi") if not run.measured(n)]
+        for n in level:
+            measured[:, POSE.index(n)] = 0.0
+        if level:
+            notes.append(f"Not measured: {words.listed(words.TITLES[n] for n in level)}; the vehicle is drawn with zero there.")
+        tracks = {"measured": measured[:, :3], "windows": c.sim.windowed.eta[:, :3], **tracks}
+        bodies = {"measured": measured, **bodies}
+        if corrected is not None:
+            tracks["corrected"] = corrected.windowed.eta[:, :3]
+    else:
+        missing = [n for n in ("x", "y", "z") if not run.measured(n)]
+        notes.append(f"{words.listed(missing)} not measured: 3-D shows the simulated free run alone.")
+    _compass(stream, next(iter(tracks.values())))
+    for name, points in tracks.items():
+        stretch = c.sim.windowed.stretch if name in ("windows", "corrected") else np.zeros(len(run), np.int64)
+        strips = _strips(points, stretch)
+        stream.log(f"/world/track/{_slug(name)}", rr.LineStrips3D(strips, colors=[COLOURS[name]], radii=-1.5), static=True)
+    for name, eta in bodies.items():
+        _body(stream, clock, f"/world/{_slug(name)}", eta, vehicle, COLOURS[name], solid=name == next(iter(bodies)))
+    _thrusts(stream, clock, f"/world/{_slug(next(iter(bodies)))}/thrust", c.sim, vehicle)
+    return notes
+
+
+def _compass(stream: Any, track: Array) -> None:
+    """North, east and down where the track begins, so that the view frames the dive and not the way to the surface."""
+    import rerun as rr
+
+    there = np.flatnonzero(np.isfinite(track).all(axis=1))
+    start = track[there[0]] if len(there) else np.zeros(3)
+    length = max(0.5, 0.12 * float(np.ptp(track[there], axis=0).max())) if len(there) else 0.5
+    axes = rr.Arrows3D(origins=[start] * 3, vectors=length * np.eye(3), labels=["north", "east", "down"], radii=-1.0)
+    stream.log("/world/compass", axes, static=True)
+
+
+def _slug(name: str) -> str:
+    return name.replace(" ", "_")
+
+
+def _strips(points: Array, stretch: Any) -> list[Array]:
+    """Unbroken pieces of a track: cut where it is missing and where a window begins."""
+    there = np.isfinite(points).all(axis=1) & (stretch >= 0)
+    cut = np.flatnonzero((there[1:] != there[:-1]) | (stretch[1:] != stretch[:-1])) + 1
+    pieces = zip(np.split(points, cut), np.split(there, cut), strict=True)
+    return [piece.astype(np.float32) for piece, ok in pieces if ok[0] and len(piece) > 1]
+
+
+def _body(
+    stream: Any, clock: list[Any], path: str, eta: Array, vehicle: Vehicle, colour: tuple[int, int, int], solid: bool
+) -> None:
+    """The vehicle's box along a pose; it shrinks to nothing where the pose is missing."""
+    import rerun as rr
+
+    fill = rr.components.FillMode.TransparentFillMajorWireframe if solid else rr.components.FillMode.MajorWireframe
+    half = np.array(vehicle.body.size) / 2.0
+    stream.log(path, rr.ViewCoordinates.RIGHT_HAND_Z_DOWN, static=True)
+    stream.log(path, rr.Boxes3D(half_sizes=[half], colors=[colour], fill_mode=fill), static=True)
+    there = np.asarray(np.isfinite(eta).all(axis=1))
+    known = np.where(there[:, None], eta, 0.0)
+    w_first = quaternion_from_euler(known[:, 3:])
+    columns = rr.Transform3D.columns(
+        translation=known[:, :3],
+        quaternion=w_first[:, [1, 2, 3, 0]],
+        scale=np.repeat(there.astype(float)[:, None], 3, axis=1),
+    )
+    stream.send_columns(path, clock, columns)
+
+
+def _thrusts(stream: Any, clock: list[Any], path: str, sim: SimResult, vehicle: Vehicle) -> None:
+    """Arrows at the thrusters, in the body frame of the entity above."""
+    import rerun as rr
+
+    known = {t.name: t for t in vehicle.thruster}
+    columns = [j for j, name in enumerate(sim.thrusters) if name in known]
+    if not columns:
+        return
+    units = [np.array(known[sim.thrusters[j]].direction) for j in columns]
+    directions = np.stack([u / np.linalg.norm(u) for u in units])
+    force = np.nan_to_num(sim.thrust[:, columns])
+    longest = float(np.abs(force).max()) or 1.0
+    vectors = force[:, :, None] * directions * (ARROW_SHARE * max(vehicle.body.size) / longest)
+    origins = [known[sim.thrusters[j]].position for j in columns]
+    still = rr.Arrows3D.from_fields(origins=origins, colors=[(255, 90, 80)], radii=[0.015])
+    stream.log(path, still, static=True)
+    lanes = np.full(len(force), len(columns))
+    stream.send_columns(path, clock, rr.Arrows3D.columns(vectors=vectors.reshape(-1, 3)).partition(lanes))

@@ -1,0 +1,176 @@
+"""What drives the plant in a run: thruster speeds, from the best channel that the log holds, and the states to start from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rovval.core.channels import VELOCITIES
+from rovval.core.data import Array, Flags, Run
+from rovval.core.errors import BadInput
+from rovval.core.frames import rotation_from_euler, wrap
+from rovval.plant import Inputs
+from rovval.vehicle.model import Mixer, PulseTable, Vehicle
+
+SLOPE_HALF_WIDTH = 5  # samples: a velocity that was not logged starts as the slope of its pose over +-0.5 s (chosen)
+
+
+@dataclass(frozen=True, slots=True)
+class Drive:
+    """Inputs of the plant on the run's grid, where they are known (n,), from which channels, and what was assumed."""
+
+    inputs: Inputs
+    known: Flags
+    source: str
+    assumptions: tuple[str, ...]
+
+NAMES = {"n": "measured speed", "n_cmd": "speed set-point", "pwm": "pulse width", "stick": "pilot's sticks"}
+
+
+def drive(run: Run, vehicle: Vehicle) -> Drive:
+    """Thruster speeds (n, k) rev/s of a run: measured speed, else set-point, else pulse width, else pilot's sticks.
+
+    Raises:
+        BadInput: no family of channels covers every thruster of the vehicle; says what the log holds.
+    """
+    partly: list[str] = []
+    for family, convert in (("n", _speeds), ("n_cmd", _speeds), ("pwm", _pulses), ("stick", _sticks)):
+        wanted = _wanted(family, vehicle)
+        if wanted and all(run.measured(name) for name in wanted):
+            known = np.all([run.ok(name) for name in wanted], axis=0)
+            values = np.where(known[:, None], run.stack(wanted), 0.0)
+            speed, assumptions = convert(values, vehicle)
+            return Drive(
+                inputs=Inputs(
+                    dt=run.dt,
+                    speed=np.where(known[:, None], speed, 0.0),
+                    hold=family != "n",
+                    t=run.t,
+                    altitude=_optional(run, "altitude"),
+                    wall_distance=_optional(run, "wall_distance"),
+                    voltage=_optional(run, "voltage"),
+                    tether_length=_optional(run, "tether_length"),
+                ),
+                known=known,
+                source=NAMES[family],
+                assumptions=(*(f"{lack}, so the {NAMES[family]} drives all thrusters" for lack in partly), *assumptions),
+            )
+        gone = [name.partition(":")[2] for name in wanted if not run.measured(name)]
+        if len(gone) < len(wanted):
+            partly.append(f"{NAMES[family]} is missing for {', '.join(gone)}")
+    held = sorted(n for n in run.values if n.partition(":")[0] in ("n", "n_cmd", "pwm", "stick"))
+    why = "; ".join(partly) or f"the log holds {', '.join(held) or 'none'}"
+    raise BadInput(
+        f"run {run.id}: no thruster input for {vehicle.name} ({', '.join(vehicle.thrusters)}); {why}",
+        "map a speed, set-point, pulse width or stick channel for every thruster in the profile, or choose the right --vehicle",
+    )
+
+
+def start_states(run: Run, at: NDArray[np.int64]) -> tuple[Array, Array, tuple[str, ...]]:
+    """Measured velocities and poses (m, 6) at grid points ``at``; what was not logged is derived or taken as zero, and said."""
+    assumptions = []
+    nu = np.stack([run.get(name)[at] for name in VELOCITIES], axis=1)
+    eta = np.stack([run.get(name)[at] for name in ("x", "y", "z", "phi", "theta", "psi")], axis=1)
+    derived = _velocity_from_pose(run, at)
+    for i, name in enumerate(VELOCITIES):
+        if not run.measured(name):
+            usable = np.isfinite(derived[:, i])
+            nu[:, i] = np.where(usable, derived[:, i], 0.0)
+            how = "the slope of the measured pose" if usable.any() else "zero"
+            assumptions.append(f"{name} was not logged: each stretch starts with it at {how}")
+    for i, name in enumerate(("x", "y", "z", "phi", "theta", "psi")):
+        if not run.measured(name):
+            assumptions.append(f"{name} was not logged: each stretch starts with it at zero")
+        eta[:, i] = np.where(np.isfinite(eta[:, i]), eta[:, i], 0.0)
+    return nu, eta, tuple(assumptions)
+
+
+def startable(run: Run) -> Flags:
+    """Grid points (n,) at which every logged velocity, attitude and depth holds a value, so that a stretch may start there."""
+    needed = [n for n in (*VELOCITIES, "z", "phi", "theta", "psi") if run.measured(n)]
+    if not needed:
+        raise BadInput(f"run {run.id}: neither velocity nor pose was logged", "map navigation channels in the profile")
+    return np.asarray(np.all([run.ok(name) for name in needed], axis=0))
+
+
+def _wanted(family: str, vehicle: Vehicle) -> tuple[str, ...]:
+    if family == "stick":
+        return tuple(f"stick:{axis}" for axis in vehicle.mixer.factors) if vehicle.mixer and vehicle.pulse_table else ()
+    if family == "pwm" and not vehicle.pulse_table:
+        return ()
+    return tuple(f"{family}:{name}" for name in vehicle.thrusters)
+
+
+def _speeds(values: Array, vehicle: Vehicle) -> tuple[Array, tuple[str, ...]]:
+    return values, ()
+
+
+def _pulses(values: Array, vehicle: Vehicle) -> tuple[Array, tuple[str, ...]]:
+    table = vehicle.pulse_table
+    assert table is not None
+    return _equivalent_speed(values, vehicle, table), (f"thrust from pulse width by the table at {table.voltage:g} V",)
+
+
+def _sticks(values: Array, vehicle: Vehicle) -> tuple[Array, tuple[str, ...]]:
+    mixer, table = vehicle.mixer, vehicle.pulse_table
+    assert mixer is not None
+    assert table is not None
+    said = f"pulse widths from the pilot's sticks by the vehicle's mixer (manual mode), thrust by the table at {table.voltage:g} V"
+    return _equivalent_speed(mix(values, mixer), vehicle, table), (said,)
+
+
+def mix(sticks: Array, mixer: Mixer) -> Array:
+    """Pulse widths (n, k) us of sticks (n, m) in the mixer's order; the sum for a motor is limited to +-1 as the autopilot does."""
+    demand = sticks @ np.array(list(mixer.factors.values()))
+    return np.asarray(mixer.neutral_us + mixer.span_us * np.clip(demand, -1.0, 1.0))
+
+
+def _equivalent_speed(pwm: Array, vehicle: Vehicle, table: PulseTable) -> Array:
+    """Speed (rev/s) at which the thruster's quadratic law gives the table's thrust: the table stays exact, the law simple.
+
+    Raises BadInput for a pulse width outside the table: nothing is extrapolated.
+    """
+    low, high = table.pwm_us[0], table.pwm_us[-1]
+    if (outside := (pwm < low) | (pwm > high)).any():
+        raise BadInput(f"{int(outside.sum())} pulse widths outside the thruster table ({low:g} to {high:g} us), worst {pwm[outside].max():g}")
+    thrust = np.interp(pwm, table.pwm_us, table.thrust)
+    gain = np.where(thrust >= 0, [t.k_pos for t in vehicle.thruster], [t.k_neg for t in vehicle.thruster])
+    return np.asarray(np.sign(thrust) * np.sqrt(np.abs(thrust) / gain) / 60.0)
+
+
+def _optional(run: Run, name: str) -> Array | None:
+    """A side channel with its gaps held from the last value before (it varies slowly), or None where it was not logged."""
+    if not run.measured(name):
+        return None
+    ok, values = run.ok(name), run.get(name)
+    last = np.maximum.accumulate(np.where(ok, np.arange(len(run)), -1))
+    first = int(np.argmax(ok))
+    return np.asarray(values[np.where(last < 0, first, last)])
+
+
+def _velocity_from_pose(run: Run, at: NDArray[np.int64]) -> Array:
+    """Body velocities (m, 6) as the slope of the pose about each point; NaN where the pose is missing there."""
+    before, after = np.maximum(at - SLOPE_HALF_WIDTH, 0), np.minimum(at + SLOPE_HALF_WIDTH, len(run) - 1)
+    seconds = ((after - before) * run.dt)[:, None]
+    position, attitude = run.stack(("x", "y", "z")), run.stack(("phi", "theta", "psi"))
+    rate = (position[after] - position[before]) / seconds
+    euler = attitude[at]
+    level = np.where(np.isfinite(euler), euler, 0.0)
+    turn = wrap(attitude[after] - attitude[before]) / seconds
+    missing_xy = np.isnan(rate[:, :2]).all(axis=1, keepdims=True)
+    world = np.where(np.isnan(rate) & np.concatenate([missing_xy, missing_xy, np.zeros_like(missing_xy)], axis=1), 0.0, rate)
+    linear = np.einsum("mji,mj->mi", rotation_from_euler(level), world)
+    phi, theta = level[:, 0], level[:, 1]
+    angular = np.stack(
+        [
+            turn[:, 0] - np.sin(theta) * turn[:, 2],
+            np.cos(phi) * turn[:, 1] + np.sin(phi) * np.cos(theta) * turn[:, 2],
+            -np.sin(phi) * turn[:, 1] + np.cos(phi) * np.cos(theta) * turn[:, 2],
+        ],
+        axis=1,
+    )  # inverse of `euler_rates` (Fossen 2021, 2.40)
+    return np.concatenate([linear, angular], axis=1)
+
+

@@ -1,0 +1,164 @@
+"""The archive: one immutable folder a run, ``run.parquet`` (values and reasons) and ``manifest.json`` (everything else).
+
+A folder is written beside its place and renamed into it, so that a kill leaves either nothing or a whole run.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import shutil
+import sys
+import uuid
+from contextlib import suppress
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+
+import rovval
+from rovval.alignment import align
+from rovval.alignment.checks import check
+from rovval.core.data import ClockReport, Resampled, Run
+from rovval.core.errors import BadInput, Finding
+from rovval.ingest import read
+from rovval.storage import atomic as whole
+
+SCHEMA = "rovval.run/1"
+REASON = "reason:"
+ARCHIVE = Path("archive")
+
+
+def open_run(source: str | Path, profile: str | None = None, archive: Path = ARCHIVE) -> Run:
+    """A log file (ingested on the fly), a run's folder, or the id of a run in ``archive`` -> the run.
+
+    Raises `BadInput` or `UsageProblem` as `read`, `align` and `load` do.
+    """
+    path = Path(source)
+    if (path / "manifest.json").is_file() or (not path.exists() and (Path(archive) / str(source)).is_dir()):
+        return load(source, archive)
+    if not path.exists():
+        near = ", ".join(runs(archive)[:5])
+        hint = f"runs in {archive}: {near}" if near else f"check the path; {archive} holds no runs"
+        raise BadInput(f"{source}: no such log file, and no such run in {archive}", hint)
+    raw = read(path, profile)
+    return align(replace(raw, findings=tuple(dict.fromkeys((*raw.findings, *check(raw))))))
+
+
+def save(run: Run, archive: Path = ARCHIVE, overwrite: bool = False) -> Path:
+    """Write a run; the same run already there is left alone. Another one of its id (other code read the log, or found more in it)
+    gives way if ``overwrite``; else `BadInput` is raised."""
+    place = Path(archive) / run.id
+    table, manifest = _bytes(run)
+    if place.exists():
+        try:
+            old = _same(place, run)
+        except BadInput:
+            if not overwrite:
+                raise
+            _move_away(place)
+        else:
+            if not overwrite or old.findings == run.findings:
+                return place
+            _move_away(place)
+    draft = place.with_name(f".{run.id}.{uuid.uuid4().hex[:8]}.part")
+    try:
+        draft.mkdir(parents=True)
+        (draft / "run.parquet").write_bytes(table)
+        (draft / "manifest.json").write_text(json.dumps(manifest, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+        try:
+            draft.rename(place)
+        except OSError:
+            if not place.exists():
+                raise
+            return save(run, archive, overwrite)  # another process was faster
+    except OSError as error:
+        raise whole.refusal(place, error) from None
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
+    return place
+
+
+def _same(place: Path, run: Run) -> Run:
+    """The run that stands at ``place``; raises `BadInput` where it is not ``run``."""
+    try:
+        old = load(place, place.parent)
+    except BadInput as error:
+        raise BadInput(f"{place}: holds a damaged run: {error.message}", "move that folder away and ingest again") from None
+    if _digest(old) != _digest(run):
+        raise BadInput(f"{place}: holds another run of the same id", "move that folder away, or use another --archive")
+    return old
+
+
+def _move_away(place: Path) -> None:
+    """Out of its place in one step, then gone; another process may have been faster."""
+    old = place.with_name(f".{place.name}.{uuid.uuid4().hex[:8]}.part")
+    with suppress(FileNotFoundError):
+        place.rename(old)
+    shutil.rmtree(old, ignore_errors=True)
+
+
+def load(id_or_folder: str | Path, archive: Path = ARCHIVE) -> Run:
+    """A run by its id or folder, exactly as saved. Raises `BadInput` where it is not there or damaged."""
+    folder = Path(id_or_folder)
+    if not (folder / "manifest.json").is_file():
+        folder = Path(archive) / str(id_or_folder)
+    try:
+        manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
+        table = (folder / "run.parquet").read_bytes()
+    except FileNotFoundError:
+        near = ", ".join(runs(archive)[:5]) or "none"
+        raise BadInput(f"{id_or_folder}: no such run in {archive}", f"runs there: {near}") from None
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{folder}: damaged: {error}", "ingest the log again") from None
+    if manifest.get("schema") != SCHEMA:
+        raise BadInput(f"{folder}: schema {manifest.get('schema')!r}, this version reads {SCHEMA!r}", "ingest the log again")
+    if manifest.get("table_sha256") != hashlib.sha256(table).hexdigest():
+        raise BadInput(f"{folder}: run.parquet is not the table that the manifest describes", "ingest the log again")
+    return _run(manifest, pl.read_parquet(io.BytesIO(table)))
+
+
+def runs(archive: Path = ARCHIVE) -> tuple[str, ...]:
+    """Ids of the runs in an archive, sorted; () where there is none."""
+    return tuple(sorted(p.parent.name for p in Path(archive).glob("*/manifest.json") if not p.parent.name.startswith(".")))
+
+
+def _bytes(run: Run) -> tuple[bytes, dict[str, Any]]:
+    columns = {name: pl.Series(v) for name, v in run.values.items()} | {REASON + n: pl.Series(r) for n, r in run.reasons.items()}
+    buffer = io.BytesIO()
+    pl.DataFrame(columns).write_parquet(buffer, compression="zstd")
+    table = buffer.getvalue()
+    facts = {k: getattr(run, k) for k in ("id", "source", "sha256", "profile", "vehicle", "t0_ns", "dt")}
+    versions = {"rovval": rovval.__version__, "python": sys.version.split()[0], "numpy": np.__version__, "polars": pl.__version__}
+    return table, {
+        "schema": SCHEMA, **facts, "samples": len(run), "duration_s": run.duration_s, "clock": asdict(run.clock),
+        "resampled": {n: asdict(r) for n, r in run.resampled.items()}, "findings": [asdict(f) for f in run.findings],
+        "properties": dict(run.properties), "channels": list(run.values), "table_sha256": hashlib.sha256(table).hexdigest(),
+        "versions": versions,
+    }  # fmt: skip
+
+
+def _run(manifest: dict[str, Any], table: pl.DataFrame) -> Run:
+    try:
+        names = manifest["channels"]
+        return Run(
+            **{k: manifest[k] for k in ("id", "source", "sha256", "profile", "vehicle", "t0_ns", "dt", "properties")},
+            values={n: table[n].to_numpy() for n in names},
+            reasons={n: table[REASON + n].to_numpy() for n in names},
+            resampled={n: Resampled(**r) for n, r in manifest["resampled"].items()},
+            clock=ClockReport(**manifest["clock"]),
+            findings=tuple(Finding(**f) for f in manifest["findings"]),
+        )
+    except (KeyError, TypeError, pl.exceptions.PolarsError) as error:
+        raise BadInput(f"run {manifest.get('id')}: damaged manifest: {error}", "ingest the log again") from None
+
+
+def _digest(run: Run) -> str:
+    """What makes two runs the same: their values, masks and origin; not where the file lay or which version wrote it."""
+    digest = hashlib.sha256(repr((run.id, run.sha256, run.profile, run.dt, run.t0_ns, list(run.values))).encode())
+    for name in run.values:
+        digest.update(run.values[name].tobytes() + run.reasons[name].tobytes())
+    return digest.hexdigest()

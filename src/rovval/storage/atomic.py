@@ -1,0 +1,66 @@
+"""Files that appear whole or not at all: written beside their place, then renamed into it."""
+
+from __future__ import annotations
+
+import errno
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from rovval.core.errors import Unwritable, UsageProblem
+
+LEFTOVER = ".*.part"  # what a kill leaves behind is named so
+FULL = (errno.ENOSPC, errno.EDQUOT)
+CLOSED = (errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO)
+
+
+@contextmanager
+def drafts(*places: Path) -> Iterator[list[Path]]:
+    """Where to write what will stand at ``places``: beside each, under names that no glob for logs or reports takes up.
+
+    All of them are renamed into place when the block ends, and none where it fails. Raises `Unwritable` where the disk is full or
+    closed to us, `UsageProblem` where a place cannot be a file's.
+    """
+    beside = [place.with_name(f".{place.name}.{os.getpid()}.part") for place in places]
+    try:
+        for place in places:
+            place.parent.mkdir(parents=True, exist_ok=True)
+            if place.is_dir():
+                raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+        yield beside
+        for draft, place in zip(beside, places, strict=True):
+            _sync(draft)
+            draft.replace(place)
+    except OSError as error:
+        raise refusal(places[0] if len(places) == 1 else places[0].parent, error) from None
+    finally:
+        for draft in beside:
+            with suppress(OSError):
+                draft.unlink(missing_ok=True)
+
+
+def check(*places: Path | None) -> None:
+    """Refuse places that cannot be written before the work of hours, not after it; None is no place."""
+    for place in places:
+        if place is None:
+            continue
+        if place.is_dir():
+            raise refusal(place, IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR)))
+        there = next(parent for parent in place.absolute().parents if parent.exists())
+        if not there.is_dir() or not os.access(there, os.W_OK):
+            code = errno.EACCES if there.is_dir() else errno.ENOTDIR
+            raise refusal(place, OSError(code, os.strerror(code)))
+
+
+def refusal(place: Path, error: OSError) -> UsageProblem:
+    """Why ``place`` cannot be written, and what to do."""
+    kind = Unwritable if error.errno in FULL + CLOSED else UsageProblem
+    hint = "free space on its disk" if error.errno in FULL else "mend the path or its permissions"
+    return kind(f"{place}: cannot be written: {error.strerror or error}", f"{hint}, or write elsewhere")
+
+
+def _sync(path: Path) -> None:
+    """On disk before it is renamed, so that a power cut leaves the old file or the new one."""
+    with path.open("rb") as file:
+        os.fsync(file.fileno())

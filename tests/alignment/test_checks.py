@@ -1,0 +1,90 @@
+"""Checks: each kind of fault gives its finding, and a sound log gives none."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rovval.alignment.checks import check
+from rovval.core.data import RawLog, Series
+from rovval.core.frames import euler_rates, rotation_from_euler, wrap
+
+
+def log(**channels):
+    named = {k.replace("__", ":"): v for k, v in channels.items()}
+    return RawLog("x.csv", "ab" * 32, "test", "", None, {n: Series(t, v, "row") for n, (t, v) in named.items()})
+
+
+def moving(n=1200, **spoil):
+    """A consistent motion: attitude integrates p q r, position integrates u v w."""
+    t = np.arange(n) * 0.05
+    euler = np.stack([0.2 * np.sin(0.7 * t), 0.15 * np.sin(0.5 * t + 1), 0.3 * t + 0.4 * np.sin(0.3 * t)], axis=1)
+    rate = np.gradient(euler, t, axis=0)
+    phi, theta = euler[:, 0], euler[:, 1]
+    p = rate[:, 0] - np.sin(theta) * rate[:, 2]
+    q = np.cos(phi) * rate[:, 1] + np.sin(phi) * np.cos(theta) * rate[:, 2]
+    r = -np.sin(phi) * rate[:, 1] + np.cos(phi) * np.cos(theta) * rate[:, 2]
+    assert np.allclose(euler_rates(euler, np.stack([p, q, r], axis=1)), rate)
+    body = np.stack([0.5 + 0.3 * np.sin(0.4 * t), 0.2 * np.sin(0.6 * t), 0.1 * np.sin(0.9 * t)], axis=1)
+    world = np.einsum("nij,nj->ni", rotation_from_euler(euler), body)
+    way = np.concatenate((np.zeros((1, 3)), np.cumsum(0.5 * (world[1:] + world[:-1]) * 0.05, axis=0)))
+    columns = dict(zip("xyz", way.T, strict=True)) | dict(zip("uvw", body.T, strict=True)) | {"p": p, "q": q, "r": r}
+    columns |= {"phi": wrap(euler[:, 0]), "theta": wrap(euler[:, 1]), "psi": wrap(euler[:, 2])}
+    return log(**{k: (t, spoil[k](v) if k in spoil else v) for k, v in columns.items()})
+
+
+def test_a_sound_log_has_no_findings():
+    assert check(moving()) == ()
+
+
+@pytest.mark.parametrize(("channel", "partner"), [("w", "z"), ("z", "z"), ("r", "psi"), ("p", "phi"), ("q", "theta")])
+def test_a_wrong_sign_is_named(channel, partner):
+    found = [f for f in check(moving(**{channel: np.negative})) if f.code == "sign"]
+    assert any(partner in f.where for f in found)
+
+
+def test_a_wrong_unit_is_named():
+    found = [f for f in check(moving(r=np.degrees)) if f.code == "scale"]
+    assert any("psi" in f.where for f in found)
+
+
+def test_gaps_are_counted_and_the_longest_told():
+    t = np.concatenate([np.arange(0, 10, 0.1), np.arange(12, 20, 0.1), np.arange(25, 30, 0.1)])
+    (finding,) = check(log(u=(t, np.sin(t))))
+    assert finding.code == "gap" and "2 gaps longer than 0.5 s" in finding.detail and "5.10 s from t = 19.9 s" in finding.detail
+
+
+def test_a_rate_that_changes_is_told():
+    t = np.concatenate([np.arange(0, 30, 0.1), np.arange(30, 60, 0.05)])
+    (finding,) = check(log(u=(t, np.sin(t))))
+    assert finding.code == "rate_change" and "from 10 to 20 Hz" in finding.detail
+
+
+def test_constant_and_stuck_are_two_things():
+    t = np.arange(0, 60, 0.1)
+    stuck = np.sin(t)
+    stuck[200:260] = stuck[200]
+    codes = {f.where: f.code for f in check(log(u=(t, stuck), v=(t, np.full(len(t), 0.3)), n__A=(t, np.zeros(len(t)))))}
+    assert codes == {"u": "stuck", "v": "constant"}
+
+
+def test_a_slow_or_coarse_sensor_is_not_stuck():
+    """Depth in steps of 10 cm stands still for seconds on end by its resolution."""
+    t = np.arange(0, 120, 0.1)
+    assert check(log(z=(t, np.round(10 + np.sin(0.05 * t), 1)))) == ()
+
+
+def test_what_is_true_of_many_channels_is_one_finding():
+    t = np.concatenate([np.arange(0, 10, 0.1), np.arange(12, 20, 0.1)])
+    (finding,) = check(log(u=(t, np.sin(t)), v=(t, np.cos(t))))
+    assert finding.where == "u, v"
+
+
+@pytest.mark.parametrize(("factor", "code", "says"), [(1 / 60, "scale", "0.0167 times"), (-1, "sign", "against its set-point"), (0.8, None, "")])
+def test_a_thruster_far_from_its_set_point_has_a_wrong_unit_or_sign(factor, code, says):
+    """A governor that droops by a fifth does not."""
+    t = np.arange(0, 60, 0.1)
+    wanted = 5.0 * np.sin(0.2 * t)
+    found = check(log(n_cmd__HFP=(t, wanted), n__HFP=(t, factor * wanted)))
+    assert [f.code for f in found] == [code] * bool(code)
+    assert all(says in f.detail and f.where == "n:HFP, n_cmd:HFP" for f in found)

@@ -1,0 +1,160 @@
+"""A small sealed set, made, answered and scored from nothing: floors that the engine must reach, and tests that chance scores chance.
+
+24 logs of 240 s of the Merlin, by the plant that shares no code with the simulator; about two minutes on two cores. The floors stand a
+good way below what was measured (the numbers are beside them), so that they fall when something breaks and not when a number moves.
+The full set is `rovval blind make sets/a --size full && rovval blind answer sets/a && rovval blind score sets/a` (hours, two cores).
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rovval import vehicle
+from rovval.blind.scoring import history
+from rovval.blind.scoring.score import marked, score
+from rovval.blind.sealed import sealing
+from rovval.blind.sealed.answer import answer
+from rovval.blind.sealed.folder import Folder
+from rovval.blind.sealed.make import make
+
+SEED = 20261
+MERLIN = vehicle.LIBRARY / "merlin.toml"
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory) -> Folder:
+    root = tmp_path_factory.mktemp("blind") / "small"
+    place = make(root, MERLIN, SEED, "small")
+    answer(root, floors=False)
+    return place
+
+
+@pytest.fixture(scope="module")
+def result(small: Folder) -> dict[str, Any]:
+    return score(small.root, kept=small.root.parent / "history.jsonl")
+
+
+@pytest.fixture(scope="module")
+def opened(small: Folder, result: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any], dict[str, Any]]:
+    """Labels, answers and oracles, once the score has opened the seal."""
+    labels = json.loads(sealing.unseal(small.labels.read_bytes(), sealing.read_key(small.key)))["logs"]
+    answers = {row["log"]: row for row in (json.loads(p.read_text()) for p in small.answer_files())}
+    return labels, answers, json.loads((small.root / "oracle.json").read_text())["logs"]
+
+
+def test_the_oracle_says_of_two_effects_what_each_closes(opened):
+    labels, _, oracles = opened
+    two = [best for name, best in oracles.items() if len(labels[name]["effects"]) == 2 and best]
+    assert two
+    assert all(best["each"] <= 1.0 for best in two)
+    assert not [name for name, best in oracles.items() if len(labels[name]["effects"]) == 1 and "each" in best]
+
+
+def value(result: dict[str, Any], stratum: str, mark: str) -> float:
+    return float(result["strata"][stratum][mark]["value"])
+
+
+def test_every_log_was_answered(result: dict[str, Any]):
+    assert len(result["logs"]) == 24
+    assert result["flights_failed"] == 0
+    assert not [row for row in result["logs"] if row["verdict"] == "failed"]
+
+
+# Measured with this seed on 2026-11-21: 0.93, 0.89, 0.92, 1.00, 1.00, 1.00 and below 0, 0.21, 1.2, 0.05.
+FLOORS = [
+    ("single, distinguishable", "top_1", 0.7),
+    ("single, distinguishable, same form", "top_1", 0.7),
+    ("single", "group_hit", 0.7),
+    ("single", "of_oracle", 0.8),
+    ("two", "share_found", 0.5),
+    ("single", "coverage_90", 0.6),
+]
+CEILINGS = [
+    ("null", "blamed", 0.25),
+    ("single", "errors", 0.8),
+    ("single", "group_size", 3.0),
+    ("single", "parameter_error", 0.2),
+]
+
+
+@pytest.mark.parametrize(("stratum", "mark", "least"), FLOORS)
+def test_floor(result: dict[str, Any], stratum: str, mark: str, least: float):
+    assert value(result, stratum, mark) >= least, why(result)
+
+
+@pytest.mark.parametrize(("stratum", "mark", "most"), CEILINGS)
+def test_ceiling(result: dict[str, Any], stratum: str, mark: str, most: float):
+    assert value(result, stratum, mark) <= most, why(result)
+
+
+def test_a_log_takes_seconds(result: dict[str, Any]):
+    """The target is a minute for five minutes of log; CPU time, so that a loaded machine does not fail it."""
+    assert np.median([row["cpu_s"] for row in result["logs"]]) < 60.0
+
+
+def test_the_unsealing_is_in_the_history(small: Folder, result: dict[str, Any]):
+    [line] = history.read(small.root.parent / "history.jsonl")
+    assert line["seed"] == SEED
+    assert line["engine"] == result["engine"]
+    assert line["summary"]["single"]["n"] == 14
+
+
+def test_shuffled_labels_score_chance(opened):
+    """Labels dealt at random to the same answers: top-1 falls to how often answers and labels agree by chance."""
+    labels, answers, _ = opened
+    single = [
+        n
+        for n, label in labels.items()
+        if len(label["effects"]) == 1 and not label["left_out"] and label["effects"][0]["place"] != "foreign"
+    ]
+    rng, found = np.random.default_rng(0), []
+    for _ in range(40):
+        mixed = dict(zip(single, [labels[n] for n in rng.permutation(single)], strict=True))
+        found.append(marked(mixed, answers, {}, str(MERLIN))["strata"]["single"]["top_1"]["value"])
+    assert np.mean(found) < 2.0 / len(single)
+
+
+def test_file_metadata_score_chance(small: Folder, opened):
+    """Nearest neighbour on everything that a listing shows, each log left out in turn: no better than the commonest kind."""
+    labels, _, _ = opened
+    names = sorted(labels)
+    kinds = [kind(labels[n]) for n in names]
+    x = np.array([metadata(small.logs / n, i) for i, n in enumerate(names)], dtype=float)
+    spread = x.std(axis=0)
+    assert (spread[2:] == 0.0).all(), "size, time, rows or columns differ between logs"
+    x = x[:, spread > 0] / spread[spread > 0]
+    far = np.linalg.norm(x[:, None] - x[None], axis=2) + np.diag(np.full(len(x), np.inf))
+    hits = sum(kinds[int(j)] == kinds[i] for i, j in enumerate(far.argmin(axis=1)))
+    share = Counter(kinds).most_common(1)[0][1] / len(kinds)
+    chance = sum((c / len(kinds)) ** 2 for c in Counter(kinds).values())
+    assert hits / len(kinds) <= max(share, chance) + 2.0 * (share * (1 - share) / len(kinds)) ** 0.5
+
+
+def metadata(path: Path, place: int) -> list[float]:
+    stat, text = path.stat(), path.read_text()
+    return [
+        float(place),
+        float(int(path.stem, 16)),
+        float(stat.st_size),
+        float(stat.st_mtime_ns),
+        float(len(text.strip().splitlines())),
+        float(len(text.partition("\n")[0])),
+    ]
+
+
+def kind(label: dict[str, Any]) -> str:
+    """Healthy, one effect by place, or several: classes that are large enough to be learnt from 24 logs."""
+    if not label["effects"]:
+        return "null"
+    return "several" if len(label["effects"]) > 1 else str(label["effects"][0]["place"])
+
+
+def why(result: dict[str, Any]) -> str:
+    lines = [f"{w['kind']}: {w['truth']} -> {w['named'] or w['verdict']} (oracle {w['oracle']})" for w in result["wrong"]]
+    return "wrong answers:\n" + "\n".join(lines)

@@ -1,0 +1,31 @@
+"""HTML pages as tests look at them."""
+
+from html.parser import HTMLParser
+
+VOID = {"meta", "br", "link", "input", "img"}
+
+
+class Balance(HTMLParser):
+    """Refuses tags that are not closed in order, and collects what the page would fetch."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.fetched: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.fetched += [v or "" for k, v in attrs if k in ("src", "href", "srcset") and not (v or "").startswith("#")]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """`<line/>` of SVG opens and closes itself."""
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open and self.open.pop() == tag, f"</{tag}> at {self.getpos()}"
+
+
+def check_html(text: str) -> None:
+    parser = Balance()
+    parser.feed(text)
+    assert parser.open == [] and parser.fetched == []

@@ -1,0 +1,318 @@
+"""Each command on a short log, by what a script sees: exit code, stdout, stderr, files."""
+
+import json
+import re
+import shutil
+import sys
+from pathlib import Path
+from types import ModuleType, SimpleNamespace
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from rovval import demo, ingest
+from rovval.cli.app import app
+from rovval.core.errors import BadInput, RovvalError, UsageProblem
+from rovval.demo import make
+from rovval.simulation import file as simfile
+from rovval.simulation import simulate
+from rovval.storage import archive as store
+from rovval.vehicle import load
+
+RUNNER = CliRunner()
+SECONDS = 40
+
+
+@pytest.fixture(scope="session")
+def short_log(tmp_path_factory) -> Path:
+    """The first 40 s of the sample dive as a Merlin log."""
+    whole = demo.unpack(tmp_path_factory.mktemp("sample"))
+    short = whole.with_name("short.csv")
+    short.write_text("".join(whole.read_text().splitlines(keepends=True)[: SECONDS * 10 + 1]))
+    return short
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch, short_log):
+    """An empty working directory with the short log in it."""
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(short_log, tmp_path / "dive.csv")
+    return tmp_path
+
+
+def run(*args: str, code: int = 0):
+    done = RUNNER.invoke(app, list(args))
+    if isinstance(done.exception, RovvalError):
+        raise done.exception
+    assert done.exit_code == code, done.output
+    return done
+
+
+def test_ingest_then_use_the_id(here):
+    done = run("ingest", "dive.csv")
+    name = done.stdout.strip()
+    assert store.runs(Path("archive")) == (name,)
+    assert run("list", "run").stdout.split() == [name]
+    assert name in run("show", "run", name).stdout
+    shown = json.loads(run("show", "run", name, "--json").stdout)
+    assert shown["seconds"] == pytest.approx(SECONDS - 0.1)
+    by_id = json.loads(run("compare", name, "--json").stdout)
+    by_file = json.loads(run("compare", "dive.csv", "--json").stdout)
+    assert by_id["axes"] == by_file["axes"]
+    assert not Path("reports").exists(), "--json without --out writes nothing"
+
+
+def test_ingest_of_a_folder_goes_on_after_a_bad_log(here):
+    Path("logs/deep").mkdir(parents=True)
+    shutil.move("dive.csv", "logs/deep/dive.csv")
+    Path("logs/bad.csv").write_text("no log\n")
+    Path("logs/notes.md").write_text("not looked at\n")
+    done = run("ingest", "logs", "--profile", "merlin", "--json", code=3)
+    rows = json.loads(done.stdout)["logs"]
+    assert [(Path(r["log"]).name, r["run"] is None) for r in rows] == [("bad.csv", True), ("dive.csv", False)]
+    assert "bad.csv" in done.stderr
+    assert len(store.runs(Path("archive"))) == 1
+
+
+def test_compare_prints_the_table_and_writes_the_report(here):
+    done = run("compare", "dive.csv", "--out", "out")
+    for word in ("surge", "m/s", "RMSE", "no motion", "report.html"):
+        assert word in done.stdout
+    assert {p.name for p in Path("out").iterdir()} == {"report.json", "report.md", "report.html", "run.rrd"}
+    document = json.loads(Path("out/report.json").read_text())
+    assert document["schema"] == "rovval.comparison/1"
+    for axis in ("surge", "sway", "heave", "roll", "pitch", "yaw"):
+        assert {"unit", "mean_error", "iae", "mae", "rmse", "n", "coverage"} <= set(document["axes"][axis])
+        assert {"rms", "iae"} <= set(document["window"]["axes"][axis])
+    assert document["window"]["seconds"] == 10
+
+
+def test_out_leaves_what_else_stands_in_the_folder(here):
+    Path("out").mkdir()
+    Path("out/mine.txt").write_text("x")
+    run("compare", "dive.csv", "--out", "out")
+    assert Path("out/mine.txt").read_text() == "x"
+
+
+def test_fail_above(here):
+    kept = run("compare", "dive.csv", "--json", "--fail-above", "surge=10")
+    done = run("compare", "dive.csv", "--json", "--fail-above", "surge=1e-6", "--fail-above", "sway=10", code=1)
+    assert done.stdout == kept.stdout, "the result is printed whole before the tolerance speaks"
+    assert "surge.rmse" in done.stderr
+    assert "sway" not in done.stderr
+
+
+def test_an_effect_moves_the_simulation_towards_the_log_that_has_it(here):
+    nominal = json.loads(run("compare", "dive.csv", "--json").stdout)
+    mended = json.loads(run("compare", "dive.csv", "--json", "--effect", demo.EFFECT).stdout)
+    assert mended["window"]["axes"]["surge"]["rms"] < 0.5 * nominal["window"]["axes"]["surge"]["rms"]
+
+
+def test_simulate_writes_what_it_says_and_compare_takes_it(here):
+    summary = json.loads(
+        run("simulate", "dive.csv", "--out", "deep/sim.parquet", "--effect", demo.EFFECT, "--json", "-q").stdout
+    )
+    assert summary["file"] == "deep/sim.parquet"
+    assert summary["simulated"] == SECONDS * 10
+    beside = json.loads(run("compare", "dive.csv", "--with", "deep/sim.parquet", "--json").stdout)
+    assert beside["other"]["axes"]["surge"]["rmse"] < beside["axes"]["surge"]["rmse"]
+
+
+def test_a_simulation_file_round_trips_exactly(here):
+    sim = simulate(store.open_run("dive.csv"), load("merlin"), effects=(demo.EFFECT,))
+    simfile.save(sim, Path("s.parquet"))
+    back = simfile.load(Path("s.parquet"))
+    for name in sim.__dataclass_fields__:
+        one, two = getattr(sim, name), getattr(back, name)
+        if name in ("free", "windowed"):
+            assert all(np.array_equal(getattr(one, f), getattr(two, f), equal_nan=True) for f in one.__dataclass_fields__)
+        elif isinstance(one, np.ndarray):
+            assert np.array_equal(one, two, equal_nan=True)
+        else:
+            assert one == two
+
+
+def test_another_simulators_velocities_are_laid_on_our_grid_by_their_clock(here):
+    """A file that begins 5 s later is compared on the rows that the two have in common, not from its own start."""
+    lines = Path("dive.csv").read_text().splitlines(keepends=True)
+    Path("other.csv").write_text("".join([lines[0], *lines[51:]]))
+    beside = json.loads(run("compare", "dive.csv", "--with", "other.csv", "--with-profile", "merlin", "--json").stdout)
+    assert beside["other"]["axes"]["surge"]["n"] == SECONDS * 10 - 50
+    assert beside["other"]["axes"]["surge"]["rmse"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_simulations_whose_clocks_cannot_be_related_are_refused(here):
+    lines = [line.split(",", 4)[4] for line in Path("dive.csv").read_text().splitlines()]
+    rows = ["t," + lines[0], *(f"{i / 10},{line}" for i, line in enumerate(lines[1:]))]
+    profile = (ingest.profile.FOLDER / "merlin.toml").read_text().replace('"time_of_day"', '"elapsed"')
+    Path("p.toml").write_text(
+        re.sub(r'columns = \["Hour.*', 'columns = ["t"]', profile).replace('name = "merlin"', 'name = "p"')
+    )
+    Path("same.csv").write_text("\n".join(rows))
+    Path("short.csv").write_text("\n".join(rows[:101]))
+    same = json.loads(run("compare", "dive.csv", "--with", "same.csv", "--with-profile", "p.toml", "--json").stdout)
+    assert same["other"]["axes"]["surge"]["rmse"] == pytest.approx(0.0, abs=1e-9)
+    with pytest.raises(BadInput, match="no clock that both know"):
+        run("compare", "dive.csv", "--with", "short.csv", "--with-profile", "p.toml", "--json")
+
+
+def test_the_two_platforms_differ(here):
+    one, two = (
+        json.loads(run("compare", "dive.csv", "--json", "--model", m).stdout)["axes"]["surge"]["rmse"]
+        for m in ("fossen", "freefloating")
+    )
+    assert one != two
+
+
+def test_view_without_opening_writes_the_recording(here):
+    done = run("view", "dive.csv", "--no-open", "--out", "v")
+    assert Path(done.stdout.strip()) == Path("v/run.rrd")
+    assert Path("v/run.rrd").stat().st_size > 10_000
+
+
+def test_diagnose_writes_the_contract(here):
+    done = run("diagnose", "dive.csv", "--json", "d.json", "--write-vehicle", "mended.toml")
+    document = json.loads(Path("d.json").read_text())
+    assert document["schema"] == "rovval.diagnosis/1"
+    keys = {
+        "run",
+        "vehicle",
+        "model",
+        "window_s",
+        "calibration_slop",
+        "verdict",
+        "gap",
+        "causes",
+        "shrinkage",
+        "ranking",
+        "not_testable",
+    }
+    assert keys <= set(document)
+    assert document["verdict"] in done.stdout
+    assert not Path("reports").exists()
+    if document["causes"]:
+        assert load("mended.toml").effects
+        run("compare", "dive.csv", "--vehicle", "mended.toml", "--json")
+    else:
+        assert "not written" in done.stderr
+
+
+@pytest.mark.parametrize("number", ["1", "2", "3"])
+@pytest.mark.parametrize("name", ["merlin", "bluerov2_heavy"])
+def test_scenarios_meet_the_thesis(number, name):
+    document = json.loads(run("scenario", number, "--vehicle", name, "--json").stdout)
+    assert document["passed"]
+    assert all(check["holds"] for check in document["checks"])
+
+
+def test_scenario_2_is_table_6_1():
+    rows = json.loads(run("scenario", "2", "--json").stdout)["table_6_1"]
+    assert [round(r["thrust_n"], 1) for r in rows] == [82.7, 31.3, 83.8, 87.0, 35.2, 86.7, 31.4]
+
+
+def test_scenario_says_when_it_is_not_met(tmp_path):
+    """A vehicle that is trimmed far too light does not lie still."""
+    text = Path("src/rovval/vehicle/library/merlin.toml")
+    source = (Path(__file__).parents[2] / text).read_text().replace("volume = 2.86341", "volume = 3.2")
+    (tmp_path / "light.toml").write_text(source)
+    done = run("scenario", "1", "--vehicle", str(tmp_path / "light.toml"), code=1)
+    assert "FAIL" in done.stdout
+    assert "NOT passed" in done.stdout
+
+
+def test_scenario_4_lists_the_channels_and_5_compares(here):
+    four = json.loads(run("scenario", "4", "dive.csv", "--json").stdout)
+    assert all(c["holds"] for c in four["checks"])
+    assert {"u", "n:HFP", "n_cmd:HFP", "udot"} <= {c["channel"] for c in four["channels"]}
+    five = json.loads(run("scenario", "5", "dive.csv", "--json").stdout)
+    assert five["table_6_2"]["yaw"]["unit"] == "deg/s"
+
+
+@pytest.mark.parametrize(
+    ("args", "kind", "words"),
+    [
+        (["compare", "nowhere.csv"], BadInput, "nowhere.csv"),
+        (["compare", "dive.csv", "--profile", "nope"], UsageProblem, "merlin"),
+        (["compare", "dive.csv", "--vehicle", "nope"], UsageProblem, "bluerov2_heavy"),
+        (["compare", "dive.csv", "--effect", "nope:x=1"], UsageProblem, "nope"),
+        (["compare", "dive.csv", "--with", "nowhere.parquet"], UsageProblem, "nowhere.parquet"),
+        (["compare", "dive.csv", "--with", "empty.parquet"], BadInput, "empty.parquet"),
+        (["compare", "empty.csv", "--profile", "merlin"], BadInput, "empty.csv"),
+        (["compare", "narrow.csv", "--profile", "merlin"], BadInput, "LinVelX"),
+        (["ingest", "nowhere"], BadInput, "nowhere"),
+        (["show", "run", "nope"], BadInput, "nope"),
+    ],
+    ids=lambda a: " ".join(a) if isinstance(a, list) else "",
+)
+def test_bad_input_is_one_message_and_nothing_half_written(here, args, kind, words):
+    Path("empty.csv").touch()
+    Path("empty.parquet").touch()
+    lines = [line.split(",") for line in Path("dive.csv").read_text().splitlines()]
+    gone = lines[0].index("LinVelX")
+    Path("narrow.csv").write_text("\n".join(",".join(c for i, c in enumerate(cells) if i != gone) for cells in lines))
+    before = sorted(Path().rglob("*"))
+    with pytest.raises(kind) as refused:
+        run(*args)
+    assert words in str(refused.value)
+    assert sorted(Path().rglob("*")) == before
+
+
+def test_demo_is_labelled_and_its_maker_is_deterministic(here):
+    done = run("demo", "--no-diagnose", "--out", "demo")
+    assert "SYNTHETIC" in done.stdout
+    assert demo.EFFECT in done.stdout
+    assert {p.name for p in Path("demo").iterdir()} == {
+        "SYNTHETIC_merlin_dive.csv",
+        "report.json",
+        "report.md",
+        "report.html",
+        "run.rrd",
+    }
+    for name in ("report.md", "report.html", "report.json"):
+        assert "synthetic" in Path("demo", name).read_text().lower()
+    make.main(Path("again.csv.gz"))
+    assert demo.SAMPLE.stat().st_size < 300_000
+    first, second = (np.genfromtxt(p, delimiter=",", skip_header=1) for p in (demo.SAMPLE, "again.csv.gz"))
+    np.testing.assert_allclose(first, second, atol=0.011)
+
+
+def test_demo_names_the_effect_that_was_left_in(here):
+    document = json.loads(run("demo", "--json", "--out", "demo", "-q").stdout)
+    assert [cause["effect"] for cause in document["diagnosis"]["causes"]] == [demo.EFFECT.partition(":")[0]]
+    assert all(Path(p).exists() for p in document["files"].values())
+
+
+def test_fit_passes_on_what_was_asked_for(here, monkeypatch):
+    """The command alone, with the fit itself replaced."""
+    asked: dict[str, object] = {}
+
+    def fit(runs, vehicle, parameters, **options):
+        asked.update(runs=len(runs), vehicle=vehicle.name, parameters=list(parameters), **options)
+        return SimpleNamespace(vehicle="name = 'tuned'\n", document={"schema": "rovval.fit/1"}, text="tuned")
+
+    module = ModuleType("rovval.fit")
+    monkeypatch.setattr(module, "fit", fit, raising=False)
+    monkeypatch.setitem(sys.modules, "rovval.fit", module)
+    done = run("fit", "dive.csv", "--parameters", "quadratic_drag[surge],linear_drag[yaw]", "--out", "tuned.toml", "--json")
+    assert json.loads(done.stdout) == {"schema": "rovval.fit/1"}
+    assert asked == {
+        "runs": 1,
+        "vehicle": "merlin",
+        "parameters": ["quadratic_drag[surge]", "linear_drag[yaw]"],
+        "model": "fossen",
+        "window_s": 10.0,
+    }
+    assert Path("tuned.toml").read_text() == "name = 'tuned'\n"
+
+
+def test_blind_make(here):
+    Path("cases.json").write_text(
+        '[{"mission": "rich", "effects": [{"name": "buoyancy_error", "severity": 1.0}], "duration_s": 30, "seed": 7}]'
+    )
+    done = run("blind", "make", "cases", "--cases", "cases.json", "--seed", "1", "--workers", "1")
+    assert done.stdout.startswith("1 logs in cases/logs; labels sealed, SHA-256 ")
+    [log] = Path("cases/logs").iterdir()
+    assert Path("cases.key").is_file()
+    assert b"buoyancy_error" not in Path("cases/labels.sealed").read_bytes()
+    run("compare", str(log), "--json", "--vehicle", "merlin")

@@ -1,0 +1,111 @@
+"""What the commands say of the logs that they were given, before any number about them."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from merlin_case import write
+from typer.testing import CliRunner
+
+from rovval.cli import logs
+from rovval.cli.app import app
+from rovval.core.errors import BadInput, Finding, UsageProblem
+from rovval.storage import archive as store
+
+RUNNER = CliRunner()
+
+
+def spoilt(cells):
+    cells["Depth"][100:200] = ["99999"] * 100
+
+
+@pytest.mark.parametrize("command", ["compare", "simulate"])
+def test_what_was_found_in_a_log_is_said_beside_its_result(tmp_path, monkeypatch, command):
+    """A depth of 100 km is masked: the table alone would not tell."""
+    monkeypatch.chdir(tmp_path)
+    write(tmp_path, edit=spoilt)
+    done = RUNNER.invoke(app, [command, "dive.csv", "--profile", "merlin", "--json"])
+    assert done.exit_code == 0, done.output
+    assert "out_of_range: z: 100 samples" in done.stderr
+    assert json.loads(done.stdout)["run"] in done.stderr
+    quiet = RUNNER.invoke(app, [command, "dive.csv", "--profile", "merlin", "--json", "--quiet"])
+    assert "out_of_range" not in quiet.stderr
+
+
+def test_many_findings_are_counted_not_poured_out(tmp_path, capsys):
+    run = store.open_run(write(tmp_path), "merlin")
+    logs.tell(replace(run, findings=tuple(Finding("gap", f"c{k}", "long") for k in range(50))))
+    said = capsys.readouterr().err.splitlines()
+    assert said[0] == f"{run.id}: 50 findings in this log"
+    assert len(said) == logs.SHOWN + 2
+    assert "and 44 more" in said[-1]
+    logs.tell(replace(run, findings=()))
+    assert not capsys.readouterr().err
+
+
+def test_ingest_says_whose_findings_they_are(tmp_path):
+    path = write(tmp_path, edit=spoilt)
+    done = RUNNER.invoke(app, ["ingest", str(path), "--profile", "merlin", "--archive", str(tmp_path / "a")])
+    assert done.stderr.startswith(f"{done.stdout.strip()}: ")
+
+
+def test_a_log_given_twice_is_no_second_log(tmp_path):
+    """Taken as two, it would narrow every interval by the square root of two."""
+    path = write(tmp_path)
+    copy = tmp_path / "again" / "dive.csv"
+    copy.parent.mkdir()
+    copy.write_bytes(path.read_bytes())
+    with pytest.raises(UsageProblem, match="given twice"):
+        logs.together([str(path), str(copy)], None, "merlin", Path("archive"))
+
+
+def test_logs_of_two_vehicles_are_not_taken_for_one(tmp_path, monkeypatch):
+    path, other = write(tmp_path), write(tmp_path, 200, "other.csv")
+    opened = store.open_run
+
+    def of_another(source, *rest):
+        run = opened(source, *rest)
+        return replace(run, vehicle="minerva") if "other" in str(source) else run
+
+    monkeypatch.setattr(store, "open_run", of_another)
+    both = [str(path), str(other)]
+    with pytest.raises(UsageProblem, match=r"(?s)dive.csv is of merlin.*other.csv is of minerva"):
+        logs.together(both, None, "merlin", Path("archive"))
+    assert len(logs.together(both, "merlin", "merlin", Path("archive"))) == 2
+
+
+def without(*gone):
+    def edit(cells):
+        for name in gone:
+            cells[name][:] = ["nan"] * len(cells[name])
+
+    return edit
+
+
+def test_a_thruster_without_input_is_named(tmp_path):
+    from rovval.simulation.actuation import drive
+    from rovval.vehicle import load
+
+    run = store.open_run(write(tmp_path, edit=without("HFP_PV", "HFP_SP")), "merlin")
+    with pytest.raises(BadInput, match="measured speed is missing for HFP; speed set-point is missing for HFP"):
+        drive(run, load("merlin"))
+    run = store.open_run(write(tmp_path, edit=without("HFP_PV")), "merlin")
+    assert drive(run, load("merlin")).assumptions == ("measured speed is missing for HFP, so the speed set-point drives all thrusters",)
+
+
+def test_an_effect_is_shown_under_the_name_that_reports_give_it():
+    shown = RUNNER.invoke(app, ["show", "effect", "quadratic_drag[surge]"])
+    assert shown.exit_code == 0
+    assert shown.stdout == RUNNER.invoke(app, ["show", "effect", "quadratic_drag"]).stdout
+
+
+@pytest.mark.parametrize("command", [("fit", "--parameters", "inflow_loss", "--out"), ("diagnose", "--write-vehicle")])
+def test_a_vehicle_is_not_written_over_the_one_it_is_made_from(tmp_path, monkeypatch, command):
+    monkeypatch.chdir(tmp_path)
+    (mine := tmp_path / "mine.toml").write_text("# my comments\n")
+    write(tmp_path)
+    done = RUNNER.invoke(app, [command[0], "dive.csv", "--profile", "merlin", "--vehicle", "mine.toml", *command[1:], str(mine)])
+    assert isinstance(done.exception, UsageProblem)
+    assert "mine.toml: is the vehicle that was asked for" in str(done.exception)
+    assert mine.read_text() == "# my comments\n"

@@ -1,0 +1,94 @@
+"""The contract of every file in metrics/, and hand-worked values."""
+
+import numpy as np
+import pytest
+
+from rovval.comparison import metrics
+from rovval.core.data import Array
+from rovval.core.errors import BadInput, UsageProblem
+
+RNG = np.random.default_rng(3)
+MEASURED = RNG.normal(0.2, 0.5, 400)
+ERROR = RNG.normal(0.05, 0.1, 400)
+OK = np.ones(400, bool)
+
+
+@pytest.mark.parametrize("name", metrics.names())
+class TestContract:
+    def test_declares_itself(self, name: str) -> None:
+        m = metrics.get(name)
+        assert m.name == name and m.title and m.meaning and m.unit in ("same", "times_s", "1")
+
+    def test_perfect_for_identical_input(self, name: str) -> None:
+        m = metrics.get(name)
+        assert m.compute(np.zeros(400), OK, 0.1, MEASURED) == m.perfect
+
+    def test_scales_as_it_says(self, name: str) -> None:
+        m = metrics.get(name)
+        once, twice = m.compute(ERROR, OK, 0.1, MEASURED), m.compute(2 * ERROR, OK, 0.1, MEASURED)
+        assert (twice == pytest.approx(2 * once)) is m.scales or not m.scales
+
+    def test_turns_with_its_sign_or_does_not(self, name: str) -> None:
+        m = metrics.get(name)
+        here, there = m.compute(ERROR, OK, 0.1, MEASURED), m.compute(-ERROR, OK, 0.1, -MEASURED)
+        assert abs(here) == pytest.approx(abs(there), rel=1e-9)
+
+    def test_ignores_masked_samples(self, name: str) -> None:
+        m = metrics.get(name)
+        keep = OK.copy()
+        keep[50:90] = False
+        spoiled, truth = ERROR.copy(), MEASURED.copy()
+        spoiled[~keep], truth[~keep] = np.nan, 1e9
+        assert m.compute(spoiled, keep, 0.1, truth) == m.compute(ERROR[keep], OK[keep], 0.1, MEASURED[keep])
+
+    def test_refuses_when_none_are_left(self, name: str) -> None:
+        with pytest.raises(BadInput, match="no sample is left"):
+            metrics.get(name).compute(ERROR, ~OK, 0.1, MEASURED)
+
+    def test_refuses_nan_that_is_not_masked(self, name: str) -> None:
+        with pytest.raises(BadInput, match="not a finite number"):
+            metrics.get(name).compute(np.where(OK, np.nan, 0.0), OK, 0.1, MEASURED)
+
+    def test_does_not_change_its_input(self, name: str) -> None:
+        e, k, m = ERROR.copy(), OK.copy(), MEASURED.copy()
+        metrics.get(name).compute(e, k, 0.1, m)
+        assert (e == ERROR).all() and (k == OK).all() and (m == MEASURED).all()
+
+
+def test_values_by_hand() -> None:
+    e, ok = np.array([1.0, -3.0, 100.0]), np.array([True, True, False])
+    got = {n: metrics.get(n).compute(e, ok, 0.1) for n in ("mean_error", "iae", "mae", "rmse", "max_error")}
+    assert got == pytest.approx({"mean_error": -1.0, "iae": 0.4, "mae": 2.0, "rmse": np.sqrt(5.0), "max_error": 3.0})
+
+
+def test_theil_shares_add_to_one() -> None:
+    shares = [metrics.get(f"theil_{k}").compute(ERROR, OK, 0.1, MEASURED) for k in ("bias", "variance", "covariance")]
+    assert sum(shares) == pytest.approx(1.0, abs=1e-12) and min(shares) >= 0
+
+
+@pytest.mark.parametrize(
+    ("simulated", "share"), [(MEASURED + 0.3, "bias"), (1.5 * MEASURED - 0.5 * MEASURED.mean(), "variance")]
+)
+def test_theil_names_offset_and_size(simulated: Array, share: str) -> None:
+    error = simulated - MEASURED
+    assert metrics.get(f"theil_{share}").compute(error, OK, 0.1, MEASURED) == pytest.approx(1.0, abs=1e-9)
+
+
+def test_fit_is_zero_for_the_mean_and_refused_without_motion() -> None:
+    fit = metrics.get("fit_percent").compute
+    assert fit(MEASURED.mean() - MEASURED, OK, 0.1, MEASURED) == pytest.approx(0.0, abs=1e-9)
+    with pytest.raises(BadInput, match="never moved"):
+        fit(ERROR, OK, 0.1, np.full(400, 0.1))
+
+
+@pytest.mark.parametrize("name", ["fit_percent", "theil_variance", "theil_covariance"])
+def test_refuses_without_the_measured_values_it_needs(name: str) -> None:
+    with pytest.raises(BadInput, match="needs the measured values"):
+        metrics.get(name).compute(ERROR, OK, 0.1)
+
+
+def test_units_and_unknown_names() -> None:
+    assert [metrics.get("iae").unit_of(u) for u in ("m/s", "rad/s", "m")] == ["m", "rad", "m*s"]
+    assert metrics.get("rmse").unit_of("m/s") == "m/s" and metrics.get("fit_percent").unit_of("m") == "1"
+    with pytest.raises(UsageProblem, match="no metric named"):
+        metrics.get("vibes")

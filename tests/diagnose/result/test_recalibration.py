@@ -1,0 +1,141 @@
+"""A vehicle's file that is off in many coefficients at once: told with what it shrinks, never as a cause, and not told of one effect."""
+
+from __future__ import annotations
+
+import functools
+import shlex
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from diagnose_case import LIBRARY, foreign, merlin, own
+from real_data import real
+from report_cases import make_diagnosis
+
+from rovval import vehicle
+from rovval.blind.cases.flight import fly
+from rovval.blind.cases.log import write_csv
+from rovval.comparison import compare
+from rovval.core.data import Run
+from rovval.diagnose import diagnose
+from rovval.fit import fit
+from rovval.report.comparison import table
+from rovval.report.diagnosis import html as diagnosis_html
+from rovval.report.diagnosis import markdown as diagnosis_markdown
+from rovval.report.diagnosis.calibration_words import calibration
+from rovval.report.diagnosis.sentence import sentence
+from rovval.simulation import simulate
+from rovval.storage import archive as store
+from rovval.vehicle.model import Vehicle
+from rovval.vehicle.write import to_toml
+
+DRAG, THRUST, LIFT = (0.5, 0.6, 1.6, 1.0, 1.0, 1.5), (0.6, 0.6, 0.7, 0.7, 0.7, 0.65, 0.7), 1.004  # times what Merlin's file says
+
+
+def another() -> Vehicle:
+    """The vehicle that really flew: quadratic drag, thrust and trim far from what Merlin's file says."""
+    v = vehicle.load(str(LIBRARY / "merlin.toml"))
+    drag = tuple(f * float(x) for f, x in zip(DRAG, np.ravel(v.body.quadratic_drag), strict=True))
+    body = v.body.model_copy(update={"quadratic_drag": drag, "volume": LIFT * v.body.volume})
+    thrusters = tuple(t.model_copy(update={"k_pos": f * t.k_pos, "k_neg": f * t.k_neg}) for f, t in zip(THRUST, v.thruster, strict=True))
+    return v.model_copy(update={"body": body, "thruster": thrusters})
+
+
+@functools.cache
+def flown(folder: Path, seed: int) -> Run:
+    """A log of the independent plant with that vehicle."""
+    file, log = folder / "another.toml", folder / f"flown{seed}.csv"
+    file.write_text(to_toml(another()), encoding="utf-8")
+    write_csv(fly(file, "rich", [], seed, 150.0, 0.0), log)
+    return store.open_run(log, "merlin", folder / "archive")
+
+
+@functools.cache
+def told(folder: Path) -> dict[str, Any]:
+    return diagnose([flown(folder, 11)], merlin()).document
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("another")
+
+
+def test_a_file_off_in_many_coefficients_is_told_and_is_no_cause(folder: Path):
+    d = told(folder)
+    found = d["calibration"]
+    assert d["verdict"] == "unknown" and d["causes"] == []
+    assert {"quadratic_drag[surge].scale", "quadratic_drag[heave].scale", "quadratic_drag[yaw].scale"} <= set(found["beyond"])
+    for axis, right in (("surge", -0.5), ("heave", 0.6), ("yaw", 0.5)):
+        assert found["parameters"][f"quadratic_drag[{axis}].scale"]["value"] == pytest.approx(right, abs=0.1)
+    off = [abs(found["parameters"][name]["tolerances"]) for name in found["beyond"]]
+    assert off == sorted(off, reverse=True) and min(off) > 1.0
+    assert found["held_out"] == "windows" and found["shrinkage"]["low"] > 0.8
+    assert calibration(d) in d["sentence"] and d["answer"].endswith(calibration(d))
+    assert "No one effect: " in d["sentence"] and "on windows left out of the fit" in d["sentence"]
+
+
+def test_the_command_writes_a_vehicle_that_is_nearer_on_another_dive(folder: Path):
+    words = shlex.split(told(folder)["calibration"]["command"])
+    assert words[:2] == ["rovval", "fit"] and words[2] == flown(folder, 11).id
+    names = words[words.index("--parameters") + 1].split(",")
+    tuned = vehicle.parse(fit([flown(folder, 11)], merlin(), names).vehicle, "tuned")
+    run = flown(folder, 12)
+    before, after = (compare(run, simulate(run, v)).windowed for v in (merlin(), tuned))
+    for axis in ("surge", "sway", "heave", "yaw"):
+        assert after[axis].rmse < 0.5 * before[axis].rmse, axis
+
+
+@pytest.mark.parametrize("planted", [(), ("inflow_loss:loss=0.3",), ("quadratic_drag[surge]:scale=0.6",)])
+def test_a_healthy_log_and_one_cause_are_not_a_matter_of_calibration(planted: tuple[str, ...]):
+    d = diagnose([own(planted, 5, 100.0)], merlin()).document
+    assert d["calibration"] is None and calibration(d) == ""
+    assert bool(d["causes"]) == bool(planted)
+
+
+def test_nor_are_they_of_an_independent_plant(tmp_path_factory: pytest.TempPathFactory):
+    folder = tmp_path_factory.getbasetemp() / "calibration"
+    folder.mkdir()
+    for seed, planted in ((41, ()), (42, (("thruster_degraded", "HFP", 1.0),))):
+        assert diagnose([foreign(folder, planted, seed, 150.0, 0.03)], merlin()).document["calibration"] is None
+
+
+def test_the_tank_runs_are_a_matter_of_calibration_on_the_run_left_out():
+    runs = [store.open_run(real(f"bluerov2_tank/run_{name}.csv")) for name in "abc"]
+    found = diagnose(runs, vehicle.load("bluerov2_heavy")).document["calibration"]
+    assert found["held_out"] == "runs" and found["shrinkage"]["low"] > 0.4
+    assert {"quadratic_drag[surge].scale", *(f"thruster_degraded[T{i}].loss" for i in (1, 2, 3, 4))} <= set(found["beyond"])
+
+
+ROW = {"low": -0.95, "high": -0.7, "unit": "1", "was": 0.0, "tolerance": 0.05, "beyond": True, "at_bound": False, "of_cause": False}
+
+
+def off(causes: bool) -> dict[str, Any]:
+    """A document with many coefficients off, beside a cause or none."""
+    d = make_diagnosis()
+    rows = {f"quadratic_drag[{axis}].scale": ROW | {"value": -0.845, "tolerances": -16.9} for axis in ("surge", "sway", "heave", "yaw")}
+    shrunk = {"total": 0.68, "low": 0.61, "high": 0.72, "axes": {"surge": 0.7, "sway": -0.41}, "axes_interval": {"surge": {"low": 0.6, "high": 0.8}}}
+    d["calibration"] = {
+        "parameters": rows, "beyond": list(rows), "shrinkage": shrunk, "held_out": "runs", "harm": [{"axis": "sway", "change": 0.41}],
+        "command": "rovval fit dive <a> --parameters 'x'",
+    }  # fmt: skip
+    return d if causes else d | {"verdict": "unknown", "causes": []}
+
+
+@pytest.mark.parametrize("causes", [True, False])
+def test_every_format_tells_it_and_says_that_it_is_no_cause(causes: bool):
+    d = off(causes)
+    said = sentence(d)
+    assert ("No one effect is shown to explain the rest: 4 coefficients" in said) is causes
+    assert ("inflow_loss among them" in said) is causes
+    assert "quadratic_drag[surge].scale = -0.845 [-0.95, -0.7] (17 times its tolerance)" in said
+    assert "shrinks by 68 % [61, 72] on runs left out of the fit (worse: sway by 41 %)" in said
+    for text in (diagnosis_html.text(d), diagnosis_markdown.text(d), table.diagnosis_text(d)):
+        assert "any coefficients off together" in text and "17 times its tolerance" in text and "68 % (61 % to 72 %)" in text
+    assert "rovval fit dive &lt;a&gt;" in diagnosis_html.text(d)
+
+
+def test_without_it_nothing_is_said():
+    for d in (make_diagnosis(), make_diagnosis() | {"calibration": None}):
+        for text in (sentence(d), diagnosis_html.text(d), diagnosis_markdown.text(d), table.diagnosis_text(d)):
+            assert "off together" not in text

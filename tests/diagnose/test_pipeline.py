@@ -1,0 +1,162 @@
+"""The diagnosis from log to document: verdicts, the contract's schema, the mended vehicle, repeatability."""
+
+from __future__ import annotations
+
+import functools
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+from diagnose_case import bare, foreign, merlin, own
+
+from rovval import demo
+from rovval.comparison import compare
+from rovval.core.channels import AXES
+from rovval.core.data import Run
+from rovval.diagnose import Diagnosis, diagnose
+from rovval.report.diagnosis.sentence import sentence
+from rovval.simulation import simulate
+from rovval.vehicle import parse
+
+PLANTED = "inflow_loss:loss=0.3"
+
+
+@functools.cache
+def explained() -> tuple[Run, Diagnosis]:
+    run = own((PLANTED,), 5, 100.0)
+    return run, diagnose([run], merlin())
+
+
+@functools.cache
+def healthy() -> Diagnosis:
+    return diagnose([own((), 5, 100.0)], merlin())
+
+
+@functools.cache
+def strange() -> Diagnosis:
+    """A gap of no effect: the surge speed jumps to and fro every second, and only while the vehicle moves sideways."""
+    run = own((), 6, 100.0)
+    n = len(run)
+    wave = np.sign(np.sin(2 * np.pi * run.t / 2.0))
+    values = {c: np.array(x) for c, x in run.values.items()}
+    values["u"] = values["u"] + 0.15 * np.convolve(wave * (np.abs(values["v"]) > 0.02), np.ones(5) / 5, mode="same")[:n]
+    return diagnose([bare(values, merlin(), "strange")], merlin())
+
+
+def check_schema(d: dict[str, Any]) -> None:
+    """Keys and types of the contract in design.md."""
+    assert json.loads(json.dumps(d, allow_nan=False)) == json.loads(json.dumps(d))
+    assert d["schema"] == "rovval.diagnosis/1"
+    assert d["verdict"] in ("no_gap", "explained", "partly_explained", "unknown")
+    kinds = {"run": str, "vehicle": str, "model": str, "window_s": float, "calibration_slop": float, "causes": list, "ranking": list}
+    for key, kind in (kinds | {"not_testable": list}).items():
+        assert isinstance(d[key], kind), key
+    assert set(d["gap"]["axes"]) <= set(AXES)
+    for row in d["gap"]["axes"].values():
+        assert row["unit"] in ("m/s", "rad/s", "m", "rad")
+        assert all(isinstance(row[k], float) for k in ("rms", "iae", "floor_rms", "share"))
+    assert sum(row["share"] for row in d["gap"]["axes"].values()) == pytest.approx(1.0)
+    for row in d["gap"]["where"]:
+        assert row["axis"] in AXES
+        assert all(isinstance(row[k], float) for k in ("share", "time_share", "lift"))
+    assert all(isinstance(t, float) for t in d["gap"]["change_points_s"])
+    for cause in d["causes"]:
+        assert cause["group"][0] == cause["effect"]
+        assert 0.0 <= cause["probability"] <= 1.0
+        assert cause["onset_s"] is None or isinstance(cause["onset_s"], float)
+        assert all(p["low"] <= p["value"] <= p["high"] and isinstance(p["unit"], str) for p in cause["parameters"].values())
+        check_shrinkage(cause["shrinkage"])
+    check_shrinkage(d["shrinkage"])
+    assert d["shrinkage"]["held_out"] is True
+    assert all(isinstance(r["effect"], str) and isinstance(r["score"], float) for r in d["ranking"])
+    assert [r["score"] for r in d["ranking"]] == sorted((r["score"] for r in d["ranking"]), reverse=True)
+    assert all(isinstance(r["effect"], str) and isinstance(r["why"], str) for r in d["not_testable"])
+    plan = d["next_experiment"]
+    assert plan is None or (isinstance(plan["manoeuvre"], str) and len(plan["separates"]) > 1)
+    assert bool(d["causes"]) == (d["verdict"] in ("explained", "partly_explained"))
+
+
+def check_shrinkage(s: dict[str, Any]) -> None:
+    assert all(isinstance(s[k], float) for k in ("total", "low", "high", "of_explainable"))
+    assert s["low"] <= s["total"] <= s["high"] or s["total"] == 0.0
+    assert set(s["axes"]) <= set(AXES)
+
+
+@pytest.mark.parametrize("case", [lambda: explained()[1], healthy, strange], ids=["explained", "no_gap", "strange"])
+def test_documents_keep_the_contract(case):
+    document = case().document
+    check_schema(document)
+    assert document["sentence"] == sentence(document)
+
+
+def test_a_planted_effect_is_named_with_its_size():
+    _, found = explained()
+    cause = found.document["causes"][0]
+    assert found.document["verdict"] == "explained"
+    assert cause["effect"] == "inflow_loss"
+    assert cause["parameters"]["loss"]["low"] <= 0.3 <= cause["parameters"]["loss"]["high"]
+    assert cause["shrinkage"]["total"] > 0.9
+    assert "inflow_loss" in found.document["sentence"] and "held-out" in found.document["sentence"]
+
+
+def test_a_healthy_log_has_no_gap_and_nothing_to_mend():
+    found = healthy()
+    assert found.document["verdict"] == "no_gap"
+    assert found.document["causes"] == [] and found.settings == () and found.vehicle_fixed == ""
+    assert "No gap beyond noise" in found.document["sentence"]
+
+
+def test_a_gap_of_no_known_effect_is_not_blamed():
+    """No cause that closes much of it: a full explanation would be invented."""
+    document = strange().document
+    assert document["verdict"] != "explained" or document["shrinkage"]["total"] < 0.3
+
+
+def test_the_mended_vehicle_closes_the_gap_that_compare_sees():
+    """In `compare`'s own terms, squared window errors per axis, which keep the errors of the start states."""
+    run, found = explained()
+    mended = parse(found.vehicle_fixed, "mended")
+    assert mended.effects["inflow_loss"]["loss"] == pytest.approx(0.3, abs=0.05)
+    before, after = (compare(run, simulate(run, v)).windowed for v in (merlin(), mended))
+    for axis in ("surge", "yaw"):
+        said = found.document["causes"][0]["shrinkage"]["axes"][axis]
+        assert 1 - (after[axis].rmse / before[axis].rmse) ** 2 == pytest.approx(said, abs=0.1)
+
+
+def test_diagnosing_the_mended_vehicle_finds_nothing_left():
+    run, found = explained()
+    assert diagnose([run], parse(found.vehicle_fixed, "mended")).document["verdict"] == "no_gap"
+
+
+def test_the_same_log_and_seed_give_the_same_document():
+    again = diagnose([own((), 5, 100.0)], merlin())
+    assert json.dumps(again.document) == json.dumps(healthy().document)
+
+
+@pytest.mark.slow
+def test_the_same_log_and_seed_give_the_same_cause():
+    run, found = explained()
+    again = diagnose([run], merlin())
+    assert json.dumps(again.document) == json.dumps(found.document)
+    assert again.settings == found.settings
+
+
+@pytest.mark.slow
+def test_an_effect_left_out_of_the_library_is_not_named():
+    run, _ = explained()
+    document = diagnose([run], merlin(), without=["inflow_loss"]).document
+    assert "inflow_loss" not in {c["effect"] for c in document["causes"]} | {r["effect"] for r in document["ranking"]}
+
+
+@pytest.mark.slow
+def test_the_sample_names_what_was_left_in():
+    assert diagnose([demo.sample()], merlin()).document["causes"][0]["effect"] == "inflow_loss"
+
+
+@pytest.mark.slow
+def test_the_independent_plant(tmp_path):
+    run = foreign(tmp_path, (("thruster_degraded", "HFP", 1.0),), 11, 150.0)
+    document = diagnose([run], merlin()).document
+    check_schema(document)
+    assert any(name.endswith("[HFP]") for name in document["causes"][0]["group"])

@@ -1,0 +1,108 @@
+"""What is no measurement: samples at a sensor's stop and values held between pings; and that healthy logs are left as they are."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from diagnose_case import merlin, own
+
+from rovval.core.data import Array, Run
+from rovval.diagnose import diagnose
+from rovval.diagnose.windows.noise import cleaned, grain
+from rovval.diagnose.windows.saturation import at_stop, pings, sensed
+
+
+def with_values(run: Run, **values: Array) -> Run:
+    return replace(run, values={**run.values, **values})
+
+
+def held(run: Run, every: int, step: float = 0.0) -> Run:
+    """The run with its velocities new at every ``every``-th sample only, in steps of ``step`` m/s."""
+    rows = np.arange(len(run)) // every * every
+    new = {c: run.get(c)[rows] for c in "uvw"}
+    return with_values(run, **{c: np.round(x / step) * step if step else x for c, x in new.items()})
+
+
+def test_a_healthy_log_is_left_as_it_is():
+    run = own((), 5, 100.0)
+    assert sensed(run) == (run, ())
+    coarse = with_values(run, **{c: np.round(run.get(c), 2) for c in "uvwpqr"})
+    assert sensed(coarse)[1] == (), "written in steps, and at rest now and then, is not held"
+
+
+@pytest.mark.parametrize("noise", [0.0, 1.0])
+def test_a_steady_speed_is_no_stop(noise: float):
+    t = np.arange(3000) * 0.1
+    speed = 0.8 * np.tanh(5.0 * np.sin(0.05 * t)) + noise * 0.004 * np.random.default_rng(0).normal(size=len(t))
+    assert not at_stop(np.round(speed, 4)).any()
+
+
+def test_a_rate_that_clips_is_masked_where_it_does_and_said():
+    run = own((), 5, 100.0)
+    r, limit = run.get("r"), 0.6 * np.nanmax(run.get("r"))
+    clipped = np.minimum(r, limit)
+    mended, (finding,) = sensed(with_values(run, r=clipped))
+    assert (np.isnan(mended.get("r")) == (clipped == limit)).all() and np.isnan(mended.get("r")).any()
+    assert finding.code == "saturated" and finding.where == "r" and f"{limit:.4g}" in finding.detail
+    assert np.array_equal(mended.get("u"), run.get("u"))
+
+
+@pytest.mark.parametrize("every", [2, 5, 8])
+def test_held_velocities_are_drawn_between_pings(every: int):
+    run = own((), 5, 100.0)
+    mended, (finding,) = sensed(held(run, every))
+    at = np.arange(0, len(run) - every, every)
+    assert finding.code == "held" and finding.where == "u, v, w"
+    assert np.array_equal(mended.get("u")[at], run.get("u")[at]), "a ping is what it was"
+    assert mended.resampled["u"].period_s == pytest.approx(0.1 * every)
+    truth = own((), 5, 100.0, noise=0.0).get("u")
+    assert np.abs(mended.get("u") - truth).mean() < 0.5 * np.abs(held(run, every).get("u") - truth).mean() or every == 2
+
+
+def test_commands_that_repeat_and_a_vehicle_at_rest_are_no_pings():
+    rng = np.random.default_rng(1)
+    resting = np.round(0.004 * rng.normal(size=(2000, 3)), 2)
+    assert pings(resting) == (1, 0)
+
+
+@pytest.mark.parametrize(("effects", "verdict"), [((), "no_gap"), (("thruster_degraded[HFP]:loss=0.5",), "explained")])
+def test_held_velocities_are_no_filter_and_hide_no_cause(effects: tuple[str, ...], verdict: str):
+    document = diagnose([held(own(effects, 5, 160.0), 8, 0.02)], merlin()).document
+    assert document["sentence"].endswith("Of the log: u, v, w hold their values between pings, a new one every 0.8 s, and were drawn between these.")
+    assert [row["finding"] for row in document["log"]] == ["held"]
+    assert document["verdict"] == verdict
+    assert [c["effect"] for c in document["causes"]] == [e.partition(":")[0] for e in effects]
+
+
+@pytest.mark.parametrize("step", [0.02, 0.1])
+def test_a_channel_in_coarse_steps_is_no_better_than_its_rounding(step: float):
+    """A slow vehicle repeats its values, of which no difference shows noise; what rounding really does is measured against the log it was made of."""
+    slow = 0.4 * np.sin(0.03 * np.arange(3000) * 0.1 + 0.3)
+    coarse = np.round(slow / step) * step
+    run = with_values(own((), 5, 300.0), u=coarse)
+    _, _, (noise,), _ = cleaned(run, ("u",))
+    assert grain(coarse) == pytest.approx(step, rel=1e-6)
+    assert noise == pytest.approx(np.sqrt(np.mean((coarse - slow) ** 2)), rel=0.2)
+
+
+def test_values_that_lie_on_no_grid_have_no_grain():
+    rng = np.random.default_rng(0)
+    assert grain(rng.normal(size=2000)) == 0.0, "a fine channel"
+    assert grain(np.zeros(2000)) == 0.0, "one that never moves"
+    assert grain(np.repeat(rng.normal(size=200), 10)) == 0.0, "held, but on no grid"
+
+
+def test_a_rate_that_contradicts_its_angle_is_said_and_no_coefficient_is_blamed():
+    """A gyro that reads too little of fast turns, softly, so that no sample stands at a stop: inertia, drag or thrusters would else take the blame."""
+    run = own((), 5, 160.0)
+    document = diagnose([with_values(run, r=0.3 * np.tanh(run.get("r") / 0.3))], merlin()).document
+    assert not document["causes"] and document["verdict"] == "unknown"
+    assert [(row["channel"], row["finding"]) for row in document["log"]] == [("psi", "contradicted")]
+    assert "psi and r contradict each other by" in document["sentence"]
+
+
+def test_a_faulty_sensor_of_the_library_is_no_contradiction():
+    document = diagnose([own(("gyro_bias:r=0.02", "thruster_degraded[HFP]:loss=0.5"), 5, 160.0)], merlin()).document
+    assert {c["effect"] for c in document["causes"]} == {"gyro_bias", "thruster_degraded[HFP]"} and not document["log"]

@@ -1,0 +1,218 @@
+"""The reports of a comparison: json, md, html, the terminal's table, and how they are written."""
+
+import json
+import math
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from page_case import check_html
+from report_cases import make_run, make_sim, motion
+
+from rovval import report, vehicle
+from rovval.comparison import compare
+from rovval.core.data import Array, Comparison
+from rovval.core.errors import Finding, UsageProblem
+from rovval.report.common import plots, words
+from rovval.report.common.files import write_all
+from rovval.report.comparison import html, markdown, table
+from rovval.report.comparison import json as report_json
+
+MERLIN = vehicle.load("merlin")
+
+
+def case(n: int = 600, stop: int | None = None, **more: Any) -> Comparison:
+    run = make_run(n, **more)
+    return compare(run, make_sim(run, stop=stop), motion(n)[0] * 0.7, "unity")
+
+
+def leaves(value: Any) -> Iterator[Any]:
+    for item in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
+        yield from leaves(item)
+    yield value
+
+
+def test_json_is_the_contract_of_the_design() -> None:
+    c = case(absent=("q",))
+    d = json.loads(report_json.text(report_json.document(c)))
+    assert (d["schema"], d["run"], d["vehicle"], d["model"]) == ("rovval.comparison/1", "dive-0007", "merlin", "fossen")
+    assert list(d["axes"]) == ["surge", "sway", "heave", "roll", "yaw"] and d["not_measured"] == ["pitch"]
+    surge = d["axes"]["surge"]
+    assert {"unit", "mean_error", "iae", "mae", "rmse", "n", "coverage"} <= set(surge) and surge["unit"] == "m/s"
+    assert d["window"]["seconds"] == 10 and {"rms", "iae"} <= set(d["window"]["axes"]["yaw"])
+    assert surge["rmse"] == c.free["surge"].rmse and d["window"]["axes"]["surge"]["rms"] == c.windowed["surge"].rmse
+    yaw = d["axes"]["yaw"]
+    assert yaw["unit_deg"] == "deg/s" and yaw["iae_deg"] == pytest.approx(math.degrees(yaw["iae"])) and yaw["iae_unit"] == "rad"
+    assert "iae_deg" not in surge and "fit_percent_deg" not in yaw and surge["iae_unit"] == "m"
+    assert d["other"]["name"] == "unity" and d["other"]["axes"]["yaw"]["ours_mae_deg"] == pytest.approx(math.degrees(yaw["mae"]))
+    assert d["window"]["horizon"]["surge"]["seconds"] == pytest.approx([1, 2, 5, 9.9])
+    assert d["versions"]["rovval"] and d["clock"]["offset_s"] == 0.12 and d["vehicle_hash"] == MERLIN.hash
+    assert all(math.isfinite(v) for v in leaves(d) if isinstance(v, float))
+
+
+def test_all_four_files_are_written_and_nothing_else(tmp_path: Path) -> None:
+    files = report.write(case(), tmp_path / "deep" / "out", MERLIN)
+    assert set(files) == {"report.json", "report.md", "report.html", "run.rrd"}
+    assert {p.name for p in (tmp_path / "deep" / "out").iterdir()} == set(files)
+    assert all(p.stat().st_size > 1000 for p in files.values())
+
+
+def test_a_failure_leaves_the_old_report_alone(tmp_path: Path) -> None:
+    (tmp_path / "report.md").write_text("old")
+
+    def fails(path: Path) -> None:
+        path.write_text("half")
+        raise OSError("disk full")
+
+    with pytest.raises(UsageProblem, match="disk full"):
+        write_all(tmp_path, {"report.md": "new", "run.rrd": fails})
+    assert [p.name for p in tmp_path.iterdir()] == ["report.md"] and (tmp_path / "report.md").read_text() == "old"
+
+
+@pytest.mark.parametrize("absent", [(), ("q",), ("q", "theta", "z", "x", "y"), ("u", "v", "w"), ("p", "q", "r", "phi", "theta", "psi", "z")])
+def test_every_format_says_what_was_not_measured(absent: tuple[str, ...]) -> None:
+    c = case(absent=absent)
+    page = html.text(c)
+    check_html(page)
+    for text in (page, markdown.text(c), table.text(c)):
+        assert "nan" not in re.sub(r"[A-Za-z0-9+/]{60,}={0,2}|<script>.*?</script>", "", text, flags=re.S).lower().split()
+        for axis in c.not_measured:
+            assert axis in text
+    assert ("Not measured in this log" in page) == bool(c.not_measured)
+
+
+def test_synthetic_data_is_said_so_in_every_format() -> None:
+    c = case(synthetic="made by a test <b>")
+    assert "SYNTHETIC DATA: made by a test &lt;b&gt;" in html.text(c)
+    assert "SYNTHETIC DATA: made by a test" in markdown.text(c) and "SYNTHETIC DATA: made by a test" in table.text(c)
+    assert report_json.document(c)["synthetic"] == "made by a test <b>"
+    assert "SYNTHETIC" not in html.text(case())
+
+
+def test_the_page_cannot_be_broken_by_what_a_log_is_called() -> None:
+    run = make_run(200)
+    c = compare(run, make_sim(run), motion(200)[0], "</script><img src=x>")
+    check_html(html.text(c))
+
+
+def test_the_page_of_ten_minutes_is_below_a_megabyte_and_a_long_one_not_larger() -> None:
+    ten, long = html.text(case(6001)), html.text(case(12801))
+    assert len(ten) < 1_000_000 and len(long) < 1_050_000
+    assert "lowest and highest" in long and "lowest and highest" not in ten
+
+
+def test_thinned_curves_keep_peaks_and_holes() -> None:
+    values = np.zeros(20000)
+    values[12345], values[777], values[5000:6000] = 9.0, -4.0, np.nan
+    thin = plots.thin(values)
+    assert len(thin) == plots.times(20000, 0.1)["n"] <= plots.MOST_POINTS + 2
+    assert np.nanmax(thin) == 9.0 and np.nanmin(thin) == -4.0 and np.isnan(thin).sum() > 250
+    assert plots.times(20000, 0.1)["dt"] * len(thin) == pytest.approx(2000, rel=1e-3)
+
+
+def test_packed_curves_come_back() -> None:
+    values = np.array([0.5, np.nan, -1.25, 3.0])
+    assert decoded(plots.encode(values)) == pytest.approx(values, abs=4.25 / 131068 * 1.01, nan_ok=True)
+    assert np.isnan(decoded(plots.encode(np.full(3, np.nan)))).all()
+    assert decoded(plots.encode(np.full(3, 2.5))) == pytest.approx([2.5] * 3)
+
+
+def decoded(e: dict[str, Any]) -> Array:
+    import base64
+
+    steps = np.frombuffer(base64.b64decode(e["b"]), "<u2")
+    return np.where(steps == plots.MISSING, np.nan, e["lo"] + steps * (e["hi"] - e["lo"]) / 65534)
+
+
+def test_verdict_names_the_largest_gap_and_says_when_it_is_worse_than_nothing() -> None:
+    run = make_run(600)
+    good = words.verdict(compare(run, make_sim(run)))
+    assert good.startswith("Over windows of 10 s") and "in surge (" in good and "in yaw (" in good
+    assert "better than predicting no motion on every measured axis" in good
+    bad = words.verdict(compare(run, make_sim(run, gap=(0.06, 0.4, 0.01, 0.002, 0.001, 0.03))))
+    assert "in sway (" in bad and "worse than predicting no motion in sway and better in surge, heave" in bad
+
+
+def test_table_is_aligned_and_carries_degrees() -> None:
+    lines = table.text(case(absent=("q",))).splitlines()
+    surge = next(k for k, line in enumerate(lines) if line.startswith("surge"))
+    assert re.search(r"\d \(100 %\)$", lines[surge]) and len({len(line) for line in lines[surge : surge + 3]}) == 1
+    assert any(line.strip().startswith("deg/s") for line in lines) and "not measured: pitch" in lines
+    assert max(map(len, lines)) <= 120
+
+
+def test_stops_are_reported() -> None:
+    c = case(stop=300)
+    for text in (html.text(c), markdown.text(c), table.text(c)):
+        assert "pitch beyond 80 deg" in text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.0712, "0.0712"), (12.345, "12.3"), (1240.4, "1240"), (0.0, "0"), (9.996, "10.0"), (2e-7, "2.00e-07"), (None, "-"), (-0.5, "-0.500")],
+)
+def test_numbers(value: float | None, text: str) -> None:
+    assert words.number(value) == text
+
+
+def test_nothing_heavy_is_imported_with_the_package() -> None:
+    code = "import sys, rovval.report, rovval.report.comparison.table, rovval.report.html; print([m for m in ('rerun','polars','scipy') if m in sys.modules])"
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert out.strip() == "[]"
+
+
+def test_the_assets_carry_their_licence() -> None:
+    assets = Path(report.__file__).parent / "assets"
+    assert "Leon Sorokin" in (assets / "uPlot.LICENSE").read_text() and "Leon Sorokin" in html.text(case(200))
+
+
+def test_a_log_without_velocities_has_no_empty_table_and_no_empty_plots() -> None:
+    c = case(absent=("u", "v", "w", "p", "q", "r"))
+    said = table.text(c)
+    assert "free run" not in said
+    assert "depth (" in said and "roll angle" in said and "phi" not in said
+    assert ">Velocities<" not in html.text(c) and ">Velocities<" in html.text(case())
+    for said in (html.text(c), markdown.text(c)):
+        assert said.count(words.NO_VELOCITY) == 1 and ">not measured<" not in said and "| not measured" not in said
+    assert words.NO_VELOCITY not in html.text(case(absent=("q",)))
+
+
+def test_findings_are_counted_in_the_head_with_the_way_to_them() -> None:
+    c = case()
+    found = (Finding("repeated_row", "t", "twice"), Finding("gap", "u", "1 s"), Finding("gap", "v", "2 s"))
+    page = html.text(replace(c, run=replace(c.run, findings=found)))
+    check_html(page)
+    assert '<a href="#findings">3 findings in this log</a>: repeated row, gap (2).' in page.partition("<section")[0]
+    assert '<section id="findings">' in page
+    assert 'href="#findings"' not in html.text(replace(c, run=replace(c.run, findings=())))
+
+
+def windowed(n: int, window_s: float, **more: Any) -> Comparison:
+    """Simulated in windows of what length there is."""
+    run = make_run(n, **more)
+    sim = make_sim(run)
+    stretch = np.arange(n) // round(window_s / run.dt)
+    return compare(run, replace(sim, window_s=window_s, windowed=replace(sim.windowed, stretch=stretch)))
+
+
+def test_a_log_shorter_than_its_window_says_what_was_done() -> None:
+    """It said "Over windows of 10 s" of a log of five."""
+    c = windowed(50, 10.0)
+    for said in (table.text(c), markdown.text(c), html.text(c)):
+        flat = " ".join(said.split())
+        assert "ver one window of 4.9 s" in flat and "shorter than a window of 10 s" in flat and "indows of 10 s," not in flat
+    assert report_json.document(c)["window"]["longest_s"] == pytest.approx(4.9)
+    assert "windows of 10 s" in words.verdict(windowed(250, 10.0)) and "asked" not in words.verdict(windowed(250, 10.0))
+
+
+def test_broken_stretches_shorter_than_a_window_are_said() -> None:
+    c = windowed(600, 10.0)
+    stretch = np.arange(600) // 40
+    c = replace(c, sim=replace(c.sim, windowed=replace(c.sim.windowed, stretch=stretch)))
+    assert "windows of at most 3.9 s" in words.verdict(c) and "No unbroken stretch" in words.verdict(c)

@@ -1,0 +1,107 @@
+"""The rerun recording, written and read back."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from report_cases import make_run, make_sim
+
+from rovval import vehicle
+from rovval.comparison import compare
+from rovval.core.data import Array, Comparison
+from rovval.report.recording import world
+from rovval.report.recording import write as recording
+
+MERLIN = vehicle.load("merlin")
+
+
+def read(c: Comparison, path: Path, **more: Any) -> tuple[Mapping[str, Array], set[str], str, int]:
+    """Scalars by entity (n, k), all entities, the notes, and the number of blueprints of a recording of ``c``."""
+    from rerun.chunk import RrdReader
+
+    recording.write(c, path, MERLIN, **more)
+    reader, scalars, entities, notes = RrdReader(str(path)), {}, set(), ""
+    for chunk in reader.stream():
+        entities.add(chunk.entity_path)
+        batch = chunk.to_record_batch()
+        if "Scalars:scalars" in batch.schema.names:
+            column = batch.column("Scalars:scalars")
+            scalars[chunk.entity_path] = np.asarray(column.flatten()).reshape(len(column), -1)
+        if "TextDocument:text" in batch.schema.names:
+            notes = batch.column("TextDocument:text").flatten()[0].as_py()
+    return scalars, entities, notes, len(reader.blueprints())
+
+
+def test_what_was_compared_is_what_is_read_back(tmp_path: Path) -> None:
+    run = make_run(300)
+    sim = make_sim(run)
+    scalars, entities, notes, blueprints = read(compare(run, sim), tmp_path / "run.rrd")
+    real, windows, free = scalars["/velocity/surge"].T
+    np.testing.assert_allclose(real, run.get("u"))
+    np.testing.assert_allclose(windows, sim.windowed.nu[:, 0])
+    np.testing.assert_allclose(free, sim.free.nu[:, 0])
+    np.testing.assert_allclose(scalars["/velocity/yaw"][:, 0], np.degrees(run.get("r")))
+    np.testing.assert_allclose(scalars["/error/sway"][:, 1], sim.free.nu[:, 1] - run.get("v"))
+    np.testing.assert_allclose(scalars["/thruster/speed"], sim.thruster_speed * 60)
+    np.testing.assert_allclose(scalars["/thruster/force"], sim.thrust)
+    tracks = {"/world/track/measured", "/world/track/windows", "/world/track/free_run"}
+    assert tracks | {"/world", "/world/measured", "/world/measured/thrust", "/world/free_run"} <= entities
+    assert blueprints == 1 and "not measured" not in notes
+
+
+def test_a_corrected_simulation_is_a_further_trace(tmp_path: Path) -> None:
+    run = make_run(300)
+    better = make_sim(run, gap=(0.0,) * 6)
+    scalars, entities, _, _ = read(compare(run, make_sim(run)), tmp_path / "run.rrd", corrected=better)
+    assert scalars["/velocity/surge"].shape == (300, 4) and "/world/track/corrected" in entities
+    np.testing.assert_allclose(scalars["/velocity/surge"][:, 3], better.windowed.nu[:, 0])
+
+
+def test_another_simulator_is_a_further_trace(tmp_path: Path) -> None:
+    run = make_run(300)
+    scalars, *_ = read(compare(run, make_sim(run), {"u": np.zeros(300)}, "unity"), tmp_path / "run.rrd")
+    assert scalars["/velocity/surge"].shape == (300, 4) and scalars["/velocity/sway"].shape == (300, 3)
+
+
+def test_what_was_not_measured_is_left_out_and_said(tmp_path: Path) -> None:
+    run = make_run(300, absent=("x", "y", "p", "phi"), synthetic="a test")
+    scalars, entities, notes, _ = read(compare(run, make_sim(run)), tmp_path / "run.rrd")
+    assert "/world/measured" not in entities and "/world/track/measured" not in entities and "/world/free_run/thrust" in entities
+    assert "/error/roll" not in scalars and scalars["/velocity/roll"].shape == (300, 2) and "/pose/roll_angle" not in scalars
+    assert "x and y not measured" in notes and "Not measured in this log: roll" in notes and "SYNTHETIC DATA: a test" in notes
+
+
+def test_attitude_that_was_not_measured_is_drawn_as_zero_and_said(tmp_path: Path) -> None:
+    run = make_run(300, absent=("phi", "theta"))
+    _, entities, notes, _ = read(compare(run, make_sim(run)), tmp_path / "run.rrd")
+    assert "/world/measured" in entities and "roll angle and pitch angle; the vehicle is drawn with zero there" in notes
+
+
+def test_holes_stops_and_a_log_without_epoch(tmp_path: Path) -> None:
+    run = replace(make_run(300, holes={"u": slice(0, 50), "x": slice(100, 150)}), t0_ns=None)
+    scalars, *_ = read(compare(run, make_sim(run, stop=120)), tmp_path / "run.rrd")
+    assert np.isnan(scalars["/velocity/surge"][:50, 0]).all() and np.isnan(scalars["/velocity/surge"][120:, 2]).all()
+
+
+@pytest.mark.parametrize("cut", [0, 10])
+def test_tracks_are_cut_where_they_are_missing(cut: int) -> None:
+    points = np.arange(60.0).reshape(20, 3)
+    points[cut] = np.nan
+    pieces = world._strips(points, np.repeat([0, 1], 10))
+    assert [len(p) for p in pieces] == ([9, 10] if cut == 0 else [10, 9])
+
+
+def test_a_recording_that_could_not_be_written_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """rerun writes in a thread of its own, whose failure is no OSError: it came out as an internal error."""
+    import rerun as rr
+
+    def stopped(self: object) -> None:
+        raise RuntimeError("File-writer thread shut down prematurely")
+
+    monkeypatch.setattr(rr.RecordingStream, "flush", stopped)
+    run = make_run(50)
+    with pytest.raises(OSError, match="want of space"):
+        recording.write(compare(run, make_sim(run)), tmp_path / "run.rrd", MERLIN)
