@@ -14,9 +14,10 @@ from rovval.core.channels import AXES, CHANNELS
 from rovval.core.frames import wrap
 from rovval.effects import thruster_deadband
 from rovval.effects._lanes import jet_on_hull
+from rovval.effects._log import Log
 from rovval.plant import Inputs, Plant
 from rovval.plant.codegen import spec as compose
-from rovval.plant.sensors import Log, observe
+from rovval.plant.sensors import observe
 
 LIBRARY = """added_mass linear_drag quadratic_drag cross_drag current_constant current_shear current_varying waves density_gradient
 ground_effect wall_suction tether_drag tether_tension tether_snag buoyancy_error cg_offset payload_change inertia_error thruster_degraded

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rovval.core.frames import wrap
 from rovval.effects import Effect, Parameter
 from rovval.effects._lanes import Array
-
-if TYPE_CHECKING:
-    from rovval.plant.sensors import Log
+from rovval.effects._log import Log
 
 SOURCE = "1 to 20 degrees (diagnosis.md S7)"
 HALVINGS = 52  # of at most 3.8 rad: to rounding

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rovval.core.frames import rotation_from_euler
 from rovval.effects import Effect, Parameter
 from rovval.effects._lanes import Array
-
-if TYPE_CHECKING:
-    from rovval.plant.sensors import Log
+from rovval.effects._log import Log
 
 SOURCE = "0.5 to 10 degrees; 45 seen (diagnosis.md S3)"
 

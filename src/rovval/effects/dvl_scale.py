@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rovval.effects import Effect, Parameter
 from rovval.effects._lanes import Array
-
-if TYPE_CHECKING:
-    from rovval.plant.sensors import Log
+from rovval.effects._log import Log
 
 AXES = ("surge", "sway", "heave")
 

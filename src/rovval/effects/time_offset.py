@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,9 +11,7 @@ from rovval.core.frames import wrap
 from rovval.effects import Effect, Parameter
 from rovval.effects._delay import delayed
 from rovval.effects._lanes import Array, Lanes
-
-if TYPE_CHECKING:
-    from rovval.plant.sensors import Log
+from rovval.effects._log import Log
 
 EFFECT = Effect(
     name="time_offset",

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rovval.effects import Effect, Parameter
 from rovval.effects._delay import delayed
 from rovval.effects._lanes import Array
-
-if TYPE_CHECKING:
-    from rovval.plant.sensors import Log
+from rovval.effects._log import Log
 
 EFFECT = Effect(
     name="velocity_filter_lag",

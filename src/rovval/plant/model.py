@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rovval.core.errors import UsageProblem
 from rovval.core.frames import quaternion_from_euler
 from rovval.effects._lanes import Lanes, nominal
+from rovval.effects._log import Log
 from rovval.plant import geometry, sensors, slots
 from rovval.plant import sensor_delay as late
 from rovval.plant.arguments import checked
@@ -107,7 +108,7 @@ class Plant:
         out, first = np.concatenate([before, out], axis=1) if delays else out, before.shape[1]
         seen = sensors.overwritten(
             self.vehicle, self.index, self.null, beta,
-            sensors.Log(out[..., :6], out[..., 6:], inputs.dt, nu0, eta0, first),
+            Log(out[..., :6], out[..., 6:], inputs.dt, nu0, eta0, first),
         )  # fmt: skip
         stopped = np.where(stopped > steps, -1, stopped)
         why = tuple(f"lane {b} stopped at {stopped[b] * inputs.dt:.1f} s: {REASONS[codes[b]]}" for b in np.flatnonzero(stopped >= 0))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from types import MappingProxyType
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval import effects
+from rovval.effects._log import Log
 from rovval.plant import slots
 from rovval.plant.sensor_delay import Delay
 from rovval.vehicle.model import Vehicle
@@ -23,19 +24,6 @@ ORDER = (
     "dvl_lever_arm", "dvl_misalignment", "dvl_scale", "gyro_bias", "attitude_bias", "compass_deviation", "velocity_filter_lag",
     "time_offset",
 )
-
-
-@dataclass(frozen=True, slots=True)
-class Log:
-    """A motion on its way through the sensors: ``nu`` and ``eta`` (B, T + 1, 6), ``dt`` s, and what was measured, ``nu0`` and ``eta0`` (B, 6), at
-    its sample ``first``: before and after the window is what late and early sensors show in it."""
-
-    nu: Array
-    eta: Array
-    dt: float
-    nu0: Array
-    eta0: Array
-    first: int = 0
 
 
 @cache

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval.core.frames import euler_from_quaternion, quaternion_from_euler
+from rovval.effects._log import Log
 from rovval.plant import sensor_delay as late
 from rovval.plant import sensors
 from rovval.plant.codegen.source import RATE_LIMIT, SPEED_LIMIT
@@ -48,7 +49,7 @@ def simulate(
     true_nu, true_eta, stopped = _integrate(plant, lowered, inputs, prepared, start, which, gain, nu, eta, steps + early)
     true_nu, true_eta = np.concatenate([before[..., :6], true_nu], axis=1), np.concatenate([before[..., 6:], true_eta], axis=1)
     m = before.shape[1]
-    seen = sensors.observe(plant.vehicle, plant.index, plant.null, beta, sensors.Log(true_nu, true_eta, inputs.dt, nu0, eta0, m))
+    seen = sensors.observe(plant.vehicle, plant.index, plant.null, beta, Log(true_nu, true_eta, inputs.dt, nu0, eta0, m))
     stopped = np.where(stopped > steps, -1, stopped)
     window = slice(m, m + steps + 1)
     return Motion(seen.nu[:, window], seen.eta[:, window], stopped, tuple(f"lane {b}" for b in np.flatnonzero(stopped >= 0)))
