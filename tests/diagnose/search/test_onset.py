@@ -80,7 +80,7 @@ def test_the_windows_before_deny_what_they_do_not_hold() -> None:
 def test_a_part_that_cannot_be_simulated_leaves_the_answer_of_the_whole(monkeypatch: pytest.MonkeyPatch):
     parts, _ = cut_all([own((), 5, 100.0)], merlin(), "fossen", 10.0)
     whole: Any = SimpleNamespace(
-        selection=SimpleNamespace(began=Beginning(40.0, 500.0), rounds=()), judgement=SimpleNamespace(named=())
+        selection=SimpleNamespace(began=Beginning(40.0, 500.0), rounds=()), decision=SimpleNamespace(causes=())
     )
     asked = list[int]()
 
@@ -114,8 +114,8 @@ def test_what_follows_a_change_has_to_outdo_what_the_whole_log_shows(
         named = (SimpleNamespace(hypothesis=SimpleNamespace(name=name, effect=SimpleNamespace(begins=False))),) if causes else ()
         selection: Any = SimpleNamespace(began=began, rounds=(first,), healthy=None)
         problem: Any = None
-        judgement: Any = SimpleNamespace(named=named, causes=causes, final=object())
-        return Finding(problem, {}, selection, [], judgement)
+        decision: Any = SimpleNamespace(causes=named, evidence=causes, fit=object())
+        return Finding(problem, {}, selection, [], decision)
 
     found = iter((finding("voltage_sag", causes, Beginning(40.0, 70.0)), finding("reverse_asymmetry", 80.0, None)))
     monkeypatch.setattr("rovval.diagnose.decision.finding._searched", lambda *_: next(found))
@@ -123,7 +123,7 @@ def test_what_follows_a_change_has_to_outdo_what_the_whole_log_shows(
     monkeypatch.setattr("rovval.diagnose.decision.finding.switched", lambda problem, late, since, healthy: evidence if since == 40.0 else 0.0)
     one = find(parts, (), 0.05, 0, lambda *_: None)
     assert one.since == (40.0 if told else None)
-    assert [n.hypothesis.name for n in one.judgement.named] == (["reverse_asymmetry"] if told else ["voltage_sag"] if causes else [])
+    assert [n.hypothesis.name for n in one.decision.causes] == (["reverse_asymmetry"] if told else ["voltage_sag"] if causes else [])
 
 
 def test_a_cause_that_never_begins_is_a_healthy_vehicle_with_its_own_tolerance(logs: tuple[Run, Run]) -> None:
@@ -173,13 +173,13 @@ def test_what_begins_late_is_asked_what_it_closes_from_there_on() -> None:
 @pytest.mark.parametrize(("hinted", "searched"), [(59.0, False), (61.0, True)])
 def test_what_promises_little_beside_the_whole_log_is_not_searched(monkeypatch: pytest.MonkeyPatch, hinted: float, searched: bool) -> None:
     selection: Any = SimpleNamespace(began=Beginning(40.0, hinted), rounds=((("waves", 300.0, 0.3),),), healthy=None)
-    judgement: Any = SimpleNamespace(named=(), causes=0.0, final=None)
+    decision: Any = SimpleNamespace(causes=(), evidence=0.0, fit=None)
     problem: Any = None
     asked, parts = list[int](), cut_all([own((), 5, 100.0)], merlin(), "fossen", 10.0)[0]
 
     def once(*_: Any) -> Finding:
         asked.append(1)
-        return Finding(problem, {}, selection, [], judgement)
+        return Finding(problem, {}, selection, [], decision)
 
     monkeypatch.setattr("rovval.diagnose.decision.finding._searched", once)
     assert find(parts, (), 0.05, 0, lambda *_: None).since is None

@@ -12,7 +12,7 @@ from rovval.report.comparison import table
 from rovval.report.diagnosis import html as diagnosis_html
 from rovval.report.diagnosis import markdown as diagnosis_markdown
 from rovval.report.diagnosis import words as diagnosis_words
-from rovval.report.diagnosis.nothing import opened
+from rovval.report.diagnosis.nothing import unexplained
 from rovval.report.diagnosis.sentence import chance, open_gap, sentence
 
 
@@ -162,10 +162,10 @@ def test_slices_of_one_quantity_are_named_once_an_axis():
 
 
 def test_an_open_gap_is_an_unknown_effect_in_the_document():
-    left = opened(null(0.04, 0.26))
-    assert left["axes"] == ["surge"] and left["depends_on"] == []
-    assert left["text"].startswith("noise and a calibration slop of 5 % account for only 30 % of the squared gap")
+    left: dict[str, Any] = {"axes": ["surge"], "depends_on": [], "share": 0.0, "strained": None, "inconstant": [], "accounted": 0.3}
     d = null(0.04, 0.26) | {"verdict": "unknown", "left": left}
+    left["text"] = unexplained(d)
+    assert left["text"].startswith("noise and a calibration slop of 5 % account for only 30 % of the squared gap")
     assert "Unknown effect: noise and a calibration slop" in sentence(d) and not open_gap(d)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from rovval.core.data import Array
 from rovval.core.errors import BadInput
-from rovval.diagnose.decision.verdict import Judgement, judge
+from rovval.diagnose.decision.verdict import Decision, decide
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.hypotheses.observability import excited
@@ -30,7 +30,7 @@ class Finding:
     untestable: Mapping[str, str]
     selection: Selection
     before: list[Array]
-    judgement: Judgement
+    decision: Decision
     since: float | None = None
 
 
@@ -46,10 +46,10 @@ def find(parts: tuple[Stretches, ...], without: Sequence[str], slop: float, seed
         late = _searched((after(parts[0], began.since),), without, slop, seed, lambda text, share: None)
     except BadInput:  # too few of its windows can be simulated: the log as a whole was
         return whole
-    if not late.judgement.named or not late.judgement.final or _event(late):
+    if not late.decision.causes or not late.decision.fit or _event(late):
         return whole
     healthy = whole.selection.healthy
-    beyond = switched(whole.problem, late.judgement.final, began.since, healthy) - whole_evidence(whole.problem, healthy)
+    beyond = switched(whole.problem, late.decision.fit, began.since, healthy) - whole_evidence(whole.problem, healthy)
     clearer = beyond > _known(whole) + CLEARER
     return replace(late, since=began.since) if clearer else whole
 
@@ -62,15 +62,15 @@ def _searched(parts: tuple[Stretches, ...], without: Sequence[str], slop: float,
     selection = select(problem, library, seed, say)
     say("asking how much any systematic cause could explain", 0.85)
     before = corrected_residuals(problem)
-    return Finding(problem, untestable | silent, selection, before, judge(problem, selection, before))
+    return Finding(problem, untestable | silent, selection, before, decide(problem, selection, before))
 
 
 def _event(one: Finding) -> bool:
     """Whether a cause was named that has an onset of its own: that is what changes the log, where it changes."""
-    return any(n.hypothesis.effect.begins for n in one.judgement.named)
+    return any(n.hypothesis.effect.begins for n in one.decision.causes)
 
 
 def _known(whole: Finding) -> float:
     """Evidence of the best that the whole log shows, named or not, over a healthy vehicle."""
     tried = whole.selection.rounds[0] if whole.selection.rounds else ()
-    return max([0.0, *(evidence for _, evidence, _ in tried), *([whole.judgement.causes] if whole.judgement.named else [])])
+    return max([0.0, *(evidence for _, evidence, _ in tried), *([whole.decision.evidence] if whole.decision.causes else [])])

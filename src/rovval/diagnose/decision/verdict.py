@@ -1,4 +1,7 @@
-"""The verdict: explained, partly explained, unknown, or no gap. What was found is asked what `weigh` asks, and is named if it passes."""
+"""The verdict: explained, partly explained, unknown, or no gap. It is decided here and nowhere else.
+
+What was found is asked what `weigh` asks, and is named if it passes.
+"""
 
 from __future__ import annotations
 
@@ -6,8 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from rovval.core.data import Array
-from rovval.diagnose.decision.left import left
 from rovval.diagnose.decision.questions import BROKEN, of_sensor
+from rovval.diagnose.decision.unexplained import Accounted, Unexplained, accounted, open_gap, unexplained
 from rovval.diagnose.decision.weigh import HOLDS, REAL, Weighed, weigh
 from rovval.diagnose.inference.hypothesis_fit import Confirmed
 from rovval.diagnose.inference.prior import STRAINED
@@ -22,24 +25,38 @@ NEAR = 0.05  # of the gap, held out: an effect that closes less is not near the 
 
 
 @dataclass(frozen=True, slots=True)
-class Judgement:
-    """``verdict`` of the contract; the causes that stand, their joint fit, groups and probabilities; the evidence of the causes, of a
-    generic force instead of them and beside them; the largest strain on a healthy coefficient; what is left in words."""
+class Decision:
+    """What a diagnosis decides.
+
+    Attributes:
+        verdict: ``no_gap``, ``explained``, ``partly_explained`` or ``unknown``.
+        causes: the causes that are isolated, in the order found; empty for ``no_gap`` and ``unknown``.
+        fit: their joint fit; None without causes.
+        groups: of each cause the names that this log does not tell from it (itself first) with their probabilities.
+        probability: of each cause.
+        evidence: twice the log Bayes factor of the causes over the healthy vehicle; of ``unknown`` and ``no_gap`` of those that were rejected.
+        generic_instead: the same of generic forces in the causes' place.
+        generic_beside: the same of generic forces beside the causes, over the causes.
+        departure: largest standardised departure of a coefficient that is no cause's, in standard deviations of its prior.
+        accounted: what of the gap needs no cause.
+        unexplained: what is left; None where nothing is.
+    """
 
     verdict: str
-    named: tuple[Named, ...]
-    final: Confirmed | None
+    causes: tuple[Named, ...]
+    fit: Confirmed | None
     groups: Mapping[str, tuple[tuple[str, float], ...]]
     probability: Mapping[str, float]
-    causes: float
-    instead: float
-    beside: float
-    strain: float
-    left: dict[str, object] | None
+    evidence: float
+    generic_instead: float
+    generic_beside: float
+    departure: float
+    accounted: Accounted
+    unexplained: Unexplained | None
 
 
-def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgement:
-    """Weigh what was found against what could have been found; ``before`` are the nominal vehicle's residuals."""
+def decide(problem: Problem, selection: Selection, before: list[Array]) -> Decision:
+    """The verdict on what a search found; ``before`` are the nominal vehicle's residuals."""
     general = forces(problem, selection.healthy)
     weighed = weigh(problem, selection, selection.final, general, before) if selection.final else None
     if weighed and weighed.unsteady and not weighed.least_bad:
@@ -48,30 +65,31 @@ def judge(problem: Problem, selection: Selection, before: list[Array]) -> Judgem
         selection = _only(problem, selection, tuple(n for n in selection.named if of_sensor(n)))
         weighed = replace(weighed, remains=True)
     if selection.final and weighed and (weighed.parity_led or not weighed.least_bad):
-        return _named(problem, selection, selection.final, weighed)
-    return _nameless(problem, selection, weighed, general)
+        return _isolated(problem, selection, selection.final, weighed)
+    return _not_isolated(problem, selection, weighed, general, before)
 
 
-def _named(problem: Problem, selection: Selection, final: Confirmed, weighed: Weighed) -> Judgement:
+def _isolated(problem: Problem, selection: Selection, final: Confirmed, weighed: Weighed) -> Decision:
     groups = {n.hypothesis.name: n.group for n in selection.named}
     gone = [name for name in weighed.unsteady if name not in groups]
-    rest = left(problem, weighed.rest, final.point, gone) if weighed.remains else None
+    rest = unexplained(problem, weighed.rest, final.point, gone) if weighed.remains else None
     surest = max(selection.named, key=lambda n: n.evidence)
     probability = {n.hypothesis.name: _probability(n) * (1.0 if n is surest or of_sensor(n) else COMPANY) for n in selection.named}
     verdict = "partly_explained" if weighed.remains else "explained"
     figures = weighed.total, weighed.instead, weighed.beside, weighed.strain
-    return Judgement(verdict, selection.named, final, groups, probability, *figures, rest)
+    return Decision(verdict, selection.named, final, groups, probability, *figures, accounted(problem, selection.healthy), rest)
 
 
-def _nameless(problem: Problem, selection: Selection, weighed: Weighed | None, general: Forces) -> Judgement:
-    """No gap, or an unknown cause where something is surely at work: a force, a strain, an effect that nearly fits."""
+def _not_isolated(problem: Problem, selection: Selection, weighed: Weighed | None, general: Forces, before: list[Array]) -> Decision:
+    """An unknown cause where something is surely at work (a force, a strain, an effect that nearly fits) or where the gap stays open; else no gap."""
     total, skill, unsteady = (weighed.total, weighed.skill, weighed.unsteady) if weighed else (0.0, True, ())
     anything, strained = general.evidence(), selection.healthy.strain()
     tried = max((worth if gain > NEAR else worth / 3 for _, worth, gain in selection.rounds[0]), default=0.0) if selection.rounds else 0.0
     nearly = skill and (max(total, tried) > REAL or bool(unsteady))
     real = nearly or (anything > REAL and general.share(problem.folds) > HOLDS) or strained > BROKEN
-    rest = left(problem, bare_forces(problem), selection.healthy, unsteady) if real else None
-    return Judgement("unknown" if real else "no_gap", (), None, {}, {}, total, anything, anything, strained, rest)
+    known = accounted(problem, selection.healthy)
+    rest = unexplained(problem, bare_forces(problem), selection.healthy, unsteady) if real else open_gap(problem, known, before)
+    return Decision("unknown" if rest else "no_gap", (), None, {}, {}, total, anything, anything, strained, known, rest)
 
 
 def _steady(problem: Problem, selection: Selection, weighed: Weighed, general: Forces, before: list[Array]) -> tuple[Selection, Weighed]:

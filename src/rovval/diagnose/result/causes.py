@@ -6,7 +6,7 @@ import numpy as np
 
 from rovval import effects
 from rovval.core.data import Array
-from rovval.diagnose.decision.verdict import Judgement
+from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.hypothesis_fit import Confirmed, errors, interval, roughly
 from rovval.diagnose.inference.problem import Problem
@@ -17,14 +17,14 @@ FORM = 0.10  # of a parameter's departure, one standard error: equations that ar
 MOST_GROUP = 3  # names printed of a confusion group
 
 
-def causes(problem: Problem, judgement: Judgement, before: list[Array], since: float | None, seed: int) -> list[dict[str, object]]:
+def causes(problem: Problem, decision: Decision, before: list[Array], since: float | None, seed: int) -> list[dict[str, object]]:
     """Every cause that stands; ``before`` are the nominal vehicle's residuals, ``since`` (s) where the part of the log begins that is told."""
-    return [_cause(problem, judgement, named, before, since, seed) for named in judgement.named]
+    return [_cause(problem, decision, named, before, since, seed) for named in decision.causes]
 
 
-def members(judgement: Judgement, h: Hypothesis) -> tuple[str, ...]:
+def members(decision: Decision, h: Hypothesis) -> tuple[str, ...]:
     """The cause and what this log does not tell from it, as many as are printed."""
-    return tuple(name for name, _ in judgement.groups[h.name][:MOST_GROUP])
+    return tuple(name for name, _ in decision.groups[h.name][:MOST_GROUP])
 
 
 def only(problem: Problem, final: Confirmed, h: Hypothesis) -> Array:
@@ -45,15 +45,15 @@ def settings(problem: Problem, final: Confirmed | None) -> tuple[str, ...]:
     return tuple(f"{name}:{','.join(values)}" for name, values in by_name.items())
 
 
-def _cause(problem: Problem, judgement: Judgement, named: Named, before: list[Array], since: float | None, seed: int) -> dict[str, object]:
-    assert judgement.final is not None
-    h, final = named.hypothesis, judgement.final
-    alone = final if len(judgement.named) == 1 else roughly(problem, only(problem, final, h), h.slots, final.point.scaled)
+def _cause(problem: Problem, decision: Decision, named: Named, before: list[Array], since: float | None, seed: int) -> dict[str, object]:
+    assert decision.fit is not None
+    h, final = named.hypothesis, decision.fit
+    alone = final if len(decision.causes) == 1 else roughly(problem, only(problem, final, h), h.slots, final.point.scaled)
     return {
         "effect": h.name,
         "title": effects.load(h.name.partition("[")[0]).title,
-        "group": list(members(judgement, h)),
-        "probability": judgement.probability[h.name],
+        "group": list(members(decision, h)),
+        "probability": decision.probability[h.name],
         "onset_s": next((float(final.beta[s]) for s in h.slots if problem.plant.slots[s].parameter.name == "onset"), since),
         "parameters": _parameters(problem, final, h),
         "p_value": named.p_value,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -11,9 +12,10 @@ from rovval.core.channels import AXES
 from rovval.core.data import Array
 from rovval.diagnose.decision.consistency import contradicted
 from rovval.diagnose.decision.finding import Finding
-from rovval.diagnose.decision.verdict import Judgement
+from rovval.diagnose.decision.unexplained import Unexplained
+from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.hypotheses.change_points import change_points
-from rovval.diagnose.inference.gap import axis_rows, axis_weight, noise_loss
+from rovval.diagnose.inference.gap import axis_rows, axis_weight
 from rovval.diagnose.inference.problem import Problem
 from rovval.diagnose.inference.shrinkage import harm, shrinkage
 from rovval.diagnose.residuals.sensor_faults import faults
@@ -26,7 +28,7 @@ from rovval.diagnose.result.recalibration import calibration
 from rovval.diagnose.search.baseline import relief, without_own
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.windows.saturation import NO_MEASUREMENT
-from rovval.report.diagnosis.nothing import open_gap, opened
+from rovval.report.diagnosis.nothing import unexplained
 from rovval.report.diagnosis.sentence import first, sentence
 from rovval.vehicle.write import with_effects
 
@@ -35,30 +37,30 @@ MOST_SLICES = 5  # named of where the gap lies
 
 def answer(finding: Finding, left_out: tuple[str, ...], slop: float, seed: int, progress: Callable[[str, float], None]) -> Diagnosis:
     """Put everything that was found into one document."""
-    problem, selection, before, judgement = finding.problem, finding.selection, finding.before, finding.judgement
+    problem, selection, before, decision = finding.problem, finding.selection, finding.before, finding.decision
     axes = axis_rows(problem, before)
-    shrunk = shrinkage(problem, judgement.final, before, seed)
-    document = {
+    shrunk = shrinkage(problem, decision.fit, before, seed)
+    document: dict[str, Any] = {
         **_head(problem, slop),
         "since_s": finding.since,
-        "verdict": judgement.verdict,
+        "verdict": decision.verdict,
         "gap": {"axes": axes, "where": _where(problem, before, axes, seed), "change_points_s": _changes(problem, before, seed)},
-        "causes": causes(problem, judgement, before, finding.since, seed),
+        "causes": causes(problem, decision, before, finding.since, seed),
         "shrinkage": shrunk,
-        "beside_slop": _beside_slop(problem, selection, judgement, seed),
+        "beside_slop": _beside_slop(problem, selection, decision, seed),
         "ranking": [{"effect": name, "score": score} for name, score in selection.ranking],
-        "not_testable": [{"effect": name, "why": why} for name, why in sorted(finding.untestable.items()) if name not in judgement.groups],
-        **next_flight.rows(problem, next_flight.advise(problem, judgement)),
-        "detection": _detection(problem, selection, judgement),
+        "not_testable": [{"effect": name, "why": why} for name, why in sorted(finding.untestable.items()) if name not in decision.groups],
+        **next_flight.rows(problem, next_flight.advise(problem, decision)),
+        "detection": _detection(selection, decision),
         "finalists": [[{"effect": n, "evidence": e, "gain": g} for n, e, g in one] for one in selection.rounds],
         "disturbance": _disturbance(problem),
-        "left": judgement.left,
-        "calibration": calibration(problem, selection, judgement, before, slop, seed, progress),
+        "left": _left(decision.unexplained),
+        "calibration": calibration(problem, selection, decision, before, slop, seed, progress),
         "harm": harm(shrunk),
         "parity": [row for check, part in zip(problem.parity, problem.parts, strict=True) for row in faults(check, part, problem.origin)],
         "heatmap": heat_map(problem.parts[0], before[0], seed),
-        "traces": traces(problem, judgement.final, before),
-        "coherence": coherence_matrix(problem, selection, judgement),
+        "traces": traces(problem, decision.fit, before),
+        "coherence": coherence_matrix(problem, selection, decision),
         "inputs": problem.parts[0].driven.source,
         "log": [*_log(problem), *contradicted(problem, axis_weight(problem, before))],
         "runs_left_out": list(left_out),
@@ -66,10 +68,10 @@ def answer(finding: Finding, left_out: tuple[str, ...], slop: float, seed: int, 
         "windows_stopped": sum(part.stopped for part in problem.parts),
         "outliers": sum(part.outliers for part in problem.parts),
     }
-    if open_gap(document):
-        document |= {"verdict": "unknown", "left": opened(document)}
+    if decision.unexplained:
+        document["left"] |= {"text": unexplained(document)}
     document |= {"answer": first(document), "sentence": sentence(document)}
-    found = settings(problem, judgement.final)
+    found = settings(problem, decision.fit)
     return Diagnosis(document, found, with_effects(problem.plant.vehicle, found) if found else "")
 
 
@@ -102,30 +104,38 @@ def _disturbance(problem: Problem) -> dict[str, dict[str, float | str]]:
     return {axis: {"rms": float(rms), "unit": unit, "memory_s": float(memory)} for axis, unit, rms, memory in rows}
 
 
-def _beside_slop(problem: Problem, selection: Selection, judgement: Judgement, seed: int) -> dict[str, float] | None:
-    """What the causes close of the gap that healthy coefficients leave, where these settle beside them."""
-    if judgement.final is None:
+def _left(rest: Unexplained | None) -> dict[str, Any] | None:
+    """What is left unexplained, without its sentence."""
+    if rest is None:
         return None
-    others = without_own(problem, selection.healthy, judgement.final.slots)
-    return dict(zip(("total", "low", "high"), relief(problem, judgement.final, others, seed), strict=True))
+    strained = dict(zip(("coefficient", "departure"), rest.strained, strict=True)) if rest.strained else None
+    head = {"axes": list(rest.axes), "depends_on": list(rest.depends_on), "share": rest.share}
+    return head | {"strained": strained, "inconstant": list(rest.inconstant), "accounted": rest.accounted}
 
 
-def _detection(problem: Problem, selection: Selection, judgement: Judgement) -> dict[str, float]:
+def _beside_slop(problem: Problem, selection: Selection, decision: Decision, seed: int) -> dict[str, float] | None:
+    """What the causes close of the gap that healthy coefficients leave, where these settle beside them."""
+    if decision.fit is None:
+        return None
+    others = without_own(problem, selection.healthy, decision.fit.slots)
+    return dict(zip(("total", "low", "high"), relief(problem, decision.fit, others, seed), strict=True))
+
+
+def _detection(selection: Selection, decision: Decision) -> dict[str, float]:
     """What the verdict rests on: p-values; the share of the gap that is sensor noise, and that healthy coefficients within slop close;
     twice the log Bayes factor of the causes, and of a generic force instead of them and beside them; how many standard deviations
     of its tolerance the most strained healthy coefficient is off."""
-    gap = float(problem.dynamic.c.sum())
     return {
-        "noise": min(float(noise_loss(problem).sum()) / float(problem.gap.c.sum()), 1.0),
-        "slop": 1.0 - float(selection.healthy.left().sum()) / gap,
+        "noise": decision.accounted.noise,
+        "slop": decision.accounted.tolerance,
         "p_value": selection.named[0].p_value if selection.named else selection.last_p,
         "last_p": selection.last_p,
         "last_evidence": selection.last_evidence,
         "null_evidence": selection.null_evidence,
-        "causes": judgement.causes,
-        "generic_instead": judgement.instead,
-        "generic_beside": judgement.beside,
-        "strain": judgement.strain,
+        "causes": decision.evidence,
+        "generic_instead": decision.generic_instead,
+        "generic_beside": decision.generic_beside,
+        "strain": decision.departure,
     }
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.decision.verdict import Judgement
+from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.inference.gap import ANGULAR
 from rovval.diagnose.inference.hypothesis_fit import Confirmed
 from rovval.diagnose.inference.problem import Problem
@@ -63,10 +63,10 @@ def _trace(part: Stretches, axis: str, channel: int, w: int, nominal: Array, cor
     }
 
 
-def coherence_matrix(problem: Problem, selection: Selection, judgement: Judgement) -> dict[str, Any]:
+def coherence_matrix(problem: Problem, selection: Selection, decision: Decision) -> dict[str, Any]:
     """Canonical correlation of the best-ranked hypotheses' signatures in this log."""
     columns = set(problem.data.columns)
-    wanted = [name for n in judgement.named for name, _ in judgement.groups[n.hypothesis.name]] + [name for name, _ in selection.ranking]
+    wanted = [name for n in decision.causes for name, _ in decision.groups[n.hypothesis.name]] + [name for name, _ in selection.ranking]
     names = [n for n in dict.fromkeys(wanted) if set(problem.plant.hypotheses[n]) <= columns][:MOST_COHERENCE]
     slots = [problem.plant.hypotheses[n] for n in names]
     matrix = [[coherence(problem.data, a, b) if a != b else 1.0 for b in slots] for a in slots]

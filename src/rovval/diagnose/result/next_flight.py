@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rovval.diagnose.decision.verdict import Judgement
+from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.inference.problem import Problem
 from rovval.diagnose.result.causes import members, only
 from rovval.diagnose.result.experiment import Advice, best_manoeuvre
@@ -12,15 +12,15 @@ from rovval.diagnose.result.experiment import Advice, best_manoeuvre
 BUSY, LEAST_BUSY = 0.98, 0.2  # chosen: quantile of a thruster's speed in the log that counts as its most, and least share of its peak
 
 
-def advise(problem: Problem, judgement: Judgement) -> Advice | None:
+def advise(problem: Problem, decision: Decision) -> Advice | None:
     """The manoeuvre that would decide, None where every cause stands alone."""
-    for named in judgement.named if judgement.final else ():
-        assert judgement.final is not None
-        group = members(judgement, named.hypothesis)
+    for named in decision.causes if decision.fit else ():
+        assert decision.fit is not None
+        group = members(decision, named.hypothesis)
         if len(group) > 1:
             speed = np.concatenate([np.abs(p.driven.inputs.speed) for p in problem.parts])
             most = np.maximum(np.quantile(speed, BUSY, axis=0), LEAST_BUSY * speed.max())
-            return best_manoeuvre(problem, only(problem, judgement.final, named.hypothesis), group, most)
+            return best_manoeuvre(problem, only(problem, decision.fit, named.hypothesis), group, most)
     return None
 
 

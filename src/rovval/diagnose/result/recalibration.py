@@ -16,7 +16,7 @@ import numpy as np
 from rovval import effects
 from rovval.core.data import Array
 from rovval.diagnose.criteria import FEW_WINDOWS
-from rovval.diagnose.decision.verdict import Judgement
+from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.inference.hypothesis_fit import Confirmed, confirm, errors, interval, roughly
 from rovval.diagnose.inference.identifiability import determinable, tuned
 from rovval.diagnose.inference.laplace import Point
@@ -35,24 +35,25 @@ BEYOND = 1.0  # tolerances: a coefficient whose whole interval is further off is
 
 
 def calibration(
-    problem: Problem, selection: Selection, judgement: Judgement, before: list[Array], slop: float, seed: int, progress: Callable[[str, float], None]
+    problem: Problem, selection: Selection, decision: Decision, before: list[Array], slop: float, seed: int, progress: Callable[[str, float], None]
 ) -> dict[str, Any] | None:
     """The coefficients tuned together and how far the gap shrinks where it was not fitted; None where it is not asked, or not shown to be more
     than the named causes do by as much as a further cause has to add. ``before`` are the nominal vehicle's residuals."""
-    point = judgement.final.point if judgement.final else selection.healthy
-    if not judgement.left or problem.blocks < FEW_WINDOWS or len(strained(problem, point, STRAINED)) < LEAST:
+    point = decision.fit.point if decision.fit else selection.healthy
+    rest = decision.unexplained
+    if rest is None or rest.accounted is not None or problem.blocks < FEW_WINDOWS or len(strained(problem, point, STRAINED)) < LEAST:
         return None
     progress("tuning the strained coefficients of the vehicle's file together", 0.9)
-    fitted = _fitted(problem, selection, judgement)
+    fitted = _fitted(problem, selection, decision)
     if fitted is None:
         return None
-    rows = _rows(problem, fitted, judgement.final.slots if judgement.final else ())
+    rows = _rows(problem, fitted, decision.fit.slots if decision.fit else ())
     beyond = [name for name, row in rows.items() if row["beyond"]]
     if len(beyond) < LEAST:
         return None
     progress("fitting it anew without the windows that it is scored on", 0.95)
     shrunk = shrinkage_refitted(problem, fitted, before, slop, seed)
-    named = max(shrinkage(problem, judgement.final, before, seed)["total"], 0.0)
+    named = max(shrinkage(problem, decision.fit, before, seed)["total"], 0.0)
     if shrunk["low"] <= named + LATER_GAIN * (1.0 - named):
         return None
     held = "runs" if len(problem.parts) > 1 and len(problem.folds) == len(problem.parts) else "windows"
@@ -77,9 +78,9 @@ def command(problem: Problem, fitted: Confirmed) -> str:
     return f"{first}rovval fit {logs} --vehicle {start}{model} --parameters {shlex.quote(names)} --out calibrated.toml"
 
 
-def _fitted(problem: Problem, selection: Selection, judgement: Judgement) -> Confirmed | None:
+def _fitted(problem: Problem, selection: Selection, decision: Decision) -> Confirmed | None:
     """The joint fit of the named causes and of the coefficients beyond tolerance, until no other that these logs determine is."""
-    final = judgement.final
+    final = decision.fit
     causes = final.slots if final else ()
     point, beta = final.point if final else selection.healthy, selection.healthy.beta.copy()
     beta[list(causes)] = point.beta[list(causes)]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from rovval.diagnose.decision.unexplained import OPEN
 from rovval.diagnose.inference.prior import SENSORS, STRAINED
 from rovval.diagnose.search.joint import LEAST_EVIDENCE
 from rovval.report.diagnosis.phrases import family, size, value, whole
 
 NOISE = "noise"
-OPEN = 2.0 / 3.0  # share of a gap that neither noise nor slop accounts for, from which "no gap" would say too much (healthy logs: 0.51 at most)
 NEAR_GAIN, NEAR_EVIDENCE = 0.3, 2.0  # chosen: what closes as much of the gap, with evidence at all, is told though it is not named,
 LESS_GAIN, MORE_EVIDENCE = 0.15, 20.0  # and what closes less with more evidence
 
@@ -42,14 +42,29 @@ def nothing(document: Mapping[str, Any]) -> str:
     return f"{first}{sensors}.{f' {near}.' if near else ''}"
 
 
-def opened(document: Mapping[str, Any]) -> dict[str, Any]:
-    """An open gap as what is left of it: an effect that is unknown, since it is neither smooth nor in the library."""
-    axes = document["gap"]["axes"]
+def unexplained(document: Mapping[str, Any]) -> str:
+    """What is left unexplained: a systematic force, or an open gap, which is neither smooth nor in the library."""
+    left = document["left"]
+    if left["accounted"] is not None:
+        return _opened(dict(document) | {"verdict": "no_gap"})
+    text = f"a systematic force on {', '.join(left['axes'])}"
+    text += f" that varies with {', '.join(left['depends_on'])}" if left["depends_on"] else ""
+    text += f" would close {100 * left['share']:.0f} % of it" if left["share"] >= 0.005 else " is at work"
+    text += "; no effect of the library is shown to be it"
+    if left["inconstant"]:
+        text += f"; nearest is {' and '.join(left['inconstant'])}, whose value would have to change along the log"
+    elif left["strained"]:
+        name, departure = left["strained"]["coefficient"], left["strained"]["departure"]
+        text += f"; nearest is {name}, which would have to be {abs(departure):.0f} times its tolerance off"
+    return text
+
+
+def _opened(document: Mapping[str, Any]) -> str:
+    """An open gap as what is left of it."""
     sensors, near = _sensors(document), _near(document)
     text = _unaccounted(document, _known(document))
     text += f". {sensors[0].upper()}{sensors[1:]}" if sensors else ""
-    worst = max(axes, key=lambda axis: float(axes[axis]["share"]))
-    return {"axes": [worst], "depends_on": [], "share": 0.0, "text": f"{text}. {near}" if near else text}
+    return f"{text}. {near}" if near else text
 
 
 def _known(document: Mapping[str, Any]) -> str:

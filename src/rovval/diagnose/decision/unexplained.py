@@ -1,0 +1,85 @@
+"""What the causes leave unexplained: on which axes something is still at work, with what it varies, and what it resembles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rovval.core.channels import AXES
+from rovval.core.data import Array
+from rovval.diagnose.inference.gap import axis_weight, noise_loss
+from rovval.diagnose.inference.laplace import Point
+from rovval.diagnose.inference.prior import STRAINED
+from rovval.diagnose.inference.problem import Problem
+from rovval.diagnose.search.discrepancy import Forces
+from rovval.diagnose.windows.shooting import axis_channels
+
+OPEN = 2.0 / 3.0  # share of a gap that neither noise nor slop accounts for, from which "no gap" would say too much (healthy logs: 0.51 at most)
+
+
+@dataclass(frozen=True, slots=True)
+class Accounted:
+    """What needs no cause of the gap, as shares of the squared gap (1).
+
+    Attributes:
+        noise: what the noise of the sensors alone makes.
+        tolerance: what coefficients and sensors within their tolerance close, fitted without any cause.
+        departure: largest standardised departure of these coefficients from the file, in standard deviations of their priors.
+    """
+
+    noise: float
+    tolerance: float
+    departure: float
+
+    @property
+    def share(self) -> float:
+        """Noise and tolerance together; a fit with a coefficient far beyond its tolerance is no healthy vehicle and accounts for nothing."""
+        return self.noise + (0.0 if self.departure > STRAINED else self.tolerance)
+
+
+@dataclass(frozen=True, slots=True)
+class Unexplained:
+    """What the causes leave unexplained; all of the gap where none is named.
+
+    Attributes:
+        axes: axes on which generic forces would close most of it, the first most; of an open gap the one with the largest share of the gap.
+        depends_on: features that such a force on the first axis varies with, the strongest first; empty where it varies with none.
+        share: share (1) of the squared error that generic forces take away on held-out windows; 0 of an open gap.
+        strained: coefficient furthest beyond its tolerance and its standardised departure; None where none is.
+        inconstant: effects that come near, but whose value would have to change along the log.
+        accounted: of an open gap, the share (1) of it that noise and tolerance account for; None where a force, a coefficient or an effect
+            is surely at work.
+    """
+
+    axes: tuple[str, ...]
+    depends_on: tuple[str, ...] = ()
+    share: float = 0.0
+    strained: tuple[str, float] | None = None
+    inconstant: tuple[str, ...] = ()
+    accounted: float | None = None
+
+
+def accounted(problem: Problem, healthy: Point) -> Accounted:
+    """What of the gap needs no cause; ``healthy`` is the vehicle with its coefficients fitted within their tolerances."""
+    noise = min(float(noise_loss(problem).sum()) / float(problem.gap.c.sum()), 1.0)
+    return Accounted(noise, 1.0 - float(healthy.left().sum()) / float(problem.dynamic.c.sum()), healthy.strain())
+
+
+def unexplained(problem: Problem, forces: Forces, point: Point, inconstant: Sequence[str] = ()) -> Unexplained:
+    """On which axes generic forces would close most of what is left at ``point``, and what that resembles."""
+    by_axis = sorted(((axis, forces.evidence([axis])) for axis in AXES), key=lambda item: -item[1])
+    axes = [axis for axis, gain in by_axis if gain > 0.3 * by_axis[0][1]][:3] or [by_axis[0][0]]
+    by_feature = sorted(((f, forces.evidence([axes[0]], f)) for f in forces.features), key=lambda item: -item[1])
+    depends = [f for f, gain in by_feature if gain > 0.5 * by_feature[0][1] and gain > 0][:4]
+    beyond = [(problem.plant.slots[c].key, float(z)) for c, z in zip(point.columns[point.own :], point.sigmas(), strict=True) if abs(z) > STRAINED]
+    strained = max(beyond, key=lambda one: abs(one[1]), default=None)
+    return Unexplained(tuple(axes), tuple(depends), forces.share(problem.folds), strained, tuple(inconstant))
+
+
+def open_gap(problem: Problem, known: Accounted, before: list[Array]) -> Unexplained | None:
+    """A gap of which noise and tolerance account for too little to call it none, though no force is shown to be at work and no cause is named; None
+    where they account for enough. ``before`` are the nominal vehicle's residuals."""
+    if 1.0 - known.share <= OPEN:
+        return None
+    weight = axis_weight(problem, before)
+    return Unexplained((max(axis_channels(problem.parts[0]), key=lambda axis: weight[axis]),), accounted=known.share)
