@@ -12,9 +12,9 @@ import pytest
 from rovval import effects, vehicle
 from rovval.core.channels import AXES, CHANNELS
 from rovval.core.frames import wrap
-from rovval.effects import thruster_deadband
-from rovval.effects._lanes import jet_on_hull
-from rovval.effects._log import Log
+from rovval.effects.lanes import jet_on_hull
+from rovval.effects.library import thruster_deadband
+from rovval.effects.log import Log
 from rovval.plant import Inputs, Plant
 from rovval.plant.codegen import spec as compose
 from rovval.plant.sensors import observe

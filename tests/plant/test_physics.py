@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from rovval import vehicle as vehicles
 from rovval.core.frames import euler_from_quaternion, quaternion_from_euler, rotation_from_euler, rotation_from_quaternion, wrap
-from rovval.effects import tether_drag, tether_tension
-from rovval.effects._lanes import reference_speed
+from rovval.effects.lanes import reference_speed
+from rovval.effects.library import tether_drag, tether_tension
 from rovval.plant import Inputs, Plant, geometry, parse_settings
 from rovval.vehicle.model import rigid_body_mass, square
 

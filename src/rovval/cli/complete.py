@@ -8,7 +8,7 @@ from pathlib import Path
 PACKAGE = Path(__file__).parent.parent
 KINDS = ("vehicle", "effect", "profile", "metric", "run")
 _PLACES = {"vehicle": ("vehicle/library", ".toml"), "profile": ("ingest/profiles", ".toml")}
-_CODE = {"effect": "effects", "metric": "comparison/metrics"}
+_CODE = {"effect": "effects/library", "metric": "comparison/metrics"}
 
 
 def known(kind: str, archive: Path = Path("archive")) -> list[str]:

@@ -1,9 +1,9 @@
-"""Effects: what can be wrong with a nominal simulator, one file each; a file that is added here is in the library.
+"""Effects: what can be wrong with a nominal simulator, one file of `library` each; a file that is added there is in the library.
 
-A file declares ``EFFECT`` and, where it needs them, any of these functions (``p[name]`` is (B,), (B, 6) per axis or (B, k) per
+A file declares ``EFFECT`` (`effects.effect`) and, where it needs them, any of these functions (``p[name]`` is (B,), (B, 6) per axis or (B, k) per
 thruster; every one changes nothing at the null value, to the last bit):
 
-- ``lower(lanes, p) -> Lanes``           vehicle and input numbers of each lane (`effects._lanes`)
+- ``lower(lanes, p) -> Lanes``           vehicle and input numbers of each lane (`effects.lanes`)
 - ``rows(lanes, p) -> {row: array}``     the effect's own numbers for its functions of the state, in ``ROWS`` order: (B,), or (B, k)
   for functions of a thruster unless the file says ``SHARED = True``
 - ``water(...)``                         north-east-down velocity of the water, its change along the path and at a fixed point (9)
@@ -12,96 +12,23 @@ thruster; every one changes nothing at the null value, to the last bit):
 - ``static(...)``, ``thrust(...)``       thrust N, at rest in the water and under way
 - ``observe(motion, p)``, ``unobserve(nu, eta, p)``   the log as a sensor writes it, and the truth back out of it
 
-Functions of the state are written once, free of branches, with the helpers of `effects._scalar`; their arguments are named
-after what they need (`plant.compose.NAMES`, the effect's ROWS) and they run compiled in the batch kernel and as NumPy in the
-oracle.
+Functions of the state are written once, free of branches, with the helpers of `effects.arithmetic`; their arguments are named
+after what they need (the kernel's names of the state, the effect's ROWS) and they run compiled in the batch kernel and as NumPy in the
+reference plant.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from functools import cache
 from importlib import import_module
 from pathlib import Path
-from types import MappingProxyType, ModuleType
-from typing import Literal
+from types import ModuleType
 
 from rovval.core.errors import UsageProblem
+from rovval.effects.effect import Effect, Parameter
 
-FOLDER = Path(__file__).parent
-Place = Literal["vehicle", "input", "water", "wrench", "sensor"]
-Kind = Literal["", "weight", "drag", "speed"]
-
-
-@dataclass(frozen=True, slots=True)
-class Parameter:
-    """One number of an effect. ``typical`` is the 1-sigma prior size of its departure from ``null``; ``low`` and ``high`` are
-    refused beyond, never clipped. ``sized`` says that low, high and typical are for a BlueROV2 and grow with the vehicle's
-    weight, surge drag or thruster speed (`plant.slots`). ``target`` sets a parameter of an effect that is neither per axis nor per
-    thruster apart, as a hypothesis of its own: ``time_offset[velocity]``, ``p["delay[velocity]"]``. ``needs``: the channel without which it
-    does nothing and is refused."""
-
-    name: str
-    unit: str
-    low: float
-    high: float
-    null: float
-    typical: float
-    source: str
-    sized: Kind = ""
-    target: str = ""
-    needs: str = ""
-
-    def __post_init__(self) -> None:
-        if not self.low <= self.null <= self.high or not self.low < self.high or not self.typical > 0:
-            raise ValueError(f"parameter {self.name}: needs low <= null <= high, low < high and typical > 0")
-
-
-@dataclass(frozen=True, slots=True)
-class Effect:
-    """One effect as an engineer reads it: where it enters, its equation with source, its parameters, what one sees, what it is
-    confused with and what separates it. ``needs``: channels without which it cannot be tested; ``within``: what a channel has to
-    come below, in its unit, for it to act at all. ``grid``: start points for parameters that linearisation at the null value
-    cannot see (``onset`` as a fraction of the run); ``where``: parameters that begin where a channel stood at the onset;
-    ``levers``: coordinates of the point where a force acts, which it cannot see either, the one ahead first. ``apart``: each
-    parameter may well be at work without the others, as an offset along one of three axes, and is tried by itself, too.
-    ``refines``: parameters that only refine the others, which are tried without them as well; of an effect that is also
-    ``apart`` they say of one axis what the others say of all, and are tried one by one only. ``competes`` False: a tolerance
-    that healthy vehicles have, which a diagnosis takes into account and never names."""
-
-    name: str
-    title: str
-    place: Place
-    equation: str
-    parameters: tuple[Parameter, ...]
-    signature: str
-    confused_with: tuple[str, ...]
-    separates: str
-    per: Literal["", "axis", "thruster"] = ""
-    axes: tuple[str, ...] = ()
-    needs: tuple[str, ...] = ()
-    within: Mapping[str, float] = field(default_factory=dict)
-    grid: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
-    where: Mapping[str, str] = field(default_factory=dict)
-    levers: tuple[str, ...] = ()
-    apart: bool = False
-    refines: tuple[str, ...] = ()
-    competes: bool = True
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "within", MappingProxyType(dict(self.within)))
-        object.__setattr__(self, "grid", MappingProxyType(dict(self.grid)))
-        object.__setattr__(self, "where", MappingProxyType(dict(self.where)))
-
-    @property
-    def begins(self) -> bool:
-        """Whether it has an onset of its own."""
-        return any(p.name == "onset" for p in self.parameters)
-
-    def of_one_axis(self, parameter: str) -> bool:
-        """Whether a parameter says of one axis what another says of all."""
-        return self.apart and parameter in self.refines
+__all__ = ["Effect", "Parameter", "load", "module", "names"]
+FOLDER = Path(__file__).parent / "library"
 
 
 @cache
@@ -112,15 +39,23 @@ def names() -> tuple[str, ...]:
 
 @cache
 def module(name: str) -> ModuleType:
-    """The file of an effect, imported; refuses a name that is not in the library."""
+    """The file of an effect, imported.
+
+    Raises:
+        UsageProblem: a name that is not in the library.
+    """
     if name not in names():
         raise UsageProblem(f"no effect named {name!r}", f"use one of: {', '.join(names())}")
-    return import_module(f"rovval.effects.{name}")
+    return import_module(f"rovval.effects.library.{name}")
 
 
 def load(name: str) -> Effect:
-    """The effect of that name; refuses a name that is not in the library."""
+    """The effect of that name.
+
+    Raises:
+        UsageProblem: a name that is not in the library, or a file that does not declare the effect of its name.
+    """
     effect = module(name).EFFECT
     if not isinstance(effect, Effect) or effect.name != name:
-        raise UsageProblem(f"effects/{name}.py does not declare EFFECT with the name {name!r}")
+        raise UsageProblem(f"effects/library/{name}.py does not declare EFFECT with the name {name!r}")
     return effect

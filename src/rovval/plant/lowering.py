@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rovval import effects
 from rovval.core.frames import skew
-from rovval.effects._lanes import Lanes
+from rovval.effects.lanes import Lanes
 from rovval.plant import slots
 from rovval.plant.codegen import spec as compose
 

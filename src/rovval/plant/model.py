@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from rovval.core.errors import UsageProblem
 from rovval.core.frames import quaternion_from_euler
-from rovval.effects._lanes import Lanes, nominal
-from rovval.effects._log import Log
+from rovval.effects.lanes import Lanes, nominal
+from rovval.effects.log import Log
 from rovval.plant import geometry, sensors, slots
 from rovval.plant import sensor_delay as late
 from rovval.plant.arguments import checked

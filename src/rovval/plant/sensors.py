@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval import effects
-from rovval.effects._log import Log
+from rovval.effects.log import Log
 from rovval.plant import slots
 from rovval.plant.sensor_delay import Delay
 from rovval.vehicle.model import Vehicle

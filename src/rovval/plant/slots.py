@@ -13,7 +13,7 @@ from rovval import effects
 from rovval.core.channels import AXES
 from rovval.core.errors import UsageProblem, all_at_once
 from rovval.effects import Parameter
-from rovval.effects._lanes import reference_drag_force, reference_speed
+from rovval.effects.lanes import reference_drag_force, reference_speed
 from rovval.vehicle.model import Vehicle
 
 Array = NDArray[np.float64]

@@ -15,7 +15,7 @@ from typing import Any
 
 from rovval import effects
 from rovval.blind.plant.spec import AXES
-from rovval.effects._lanes import reference_added_mass, reference_drag
+from rovval.effects.lanes import reference_added_mass, reference_drag
 from rovval.vehicle.model import Vehicle
 
 Values = Mapping[str, Any]

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.channels import AXES
-from rovval.effects._lanes import reference_drag, reference_drag_force
+from rovval.effects.lanes import reference_drag, reference_drag_force
 from rovval.plant import Plant
 from rovval.vehicle.model import square
 

@@ -13,7 +13,7 @@ import numpy as np
 from rovval.core.data import Array, Flags
 from rovval.diagnose.residuals.dead_reckoning import drift, inside, wrap_angles
 from rovval.diagnose.windows.shooting import Stretches
-from rovval.effects._log import Log
+from rovval.effects.log import Log
 from rovval.plant.sensors import observe
 
 STEP = 0.25  # finite-difference step, in typical sizes

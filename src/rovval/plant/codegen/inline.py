@@ -12,7 +12,7 @@ import textwrap
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from rovval.effects import _scalar
+from rovval.effects import arithmetic
 
 HELPERS = {name: f"_{name}" for name in ("positive", "clip", "sqrt", "exp", "sin", "cos")}
 
@@ -35,14 +35,14 @@ def inline(function: Callable[..., Any], prefix: str, arguments: Mapping[str, st
                 return ast.Name(f"{prefix}_{name}", node.ctx)
             if name in arguments:
                 return ast.parse(arguments[name], mode="eval").body
-            if name in HELPERS and scope.get(name) is getattr(_scalar, name):
+            if name in HELPERS and scope.get(name) is getattr(arithmetic, name):
                 return ast.Name(HELPERS[name], node.ctx)
             if name == "abs":
                 return node
             value = scope.get(name)
             if isinstance(value, (int, float)):
                 return ast.Constant(float(value))
-            raise ValueError(f"{where}: {name} is neither an argument, a number of the module nor a helper of effects._scalar")
+            raise ValueError(f"{where}: {name} is neither an argument, a number of the module nor a helper of effects.arithmetic")
 
     renamed = [Rename().visit(s) for s in statements]
     result = renamed[-1].value

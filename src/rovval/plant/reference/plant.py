@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval.core.frames import euler_from_quaternion, quaternion_from_euler
-from rovval.effects._log import Log
+from rovval.effects.log import Log
 from rovval.plant import sensor_delay as late
 from rovval.plant import sensors
 from rovval.plant.codegen.source import RATE_LIMIT, SPEED_LIMIT

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval import effects
-from rovval.effects._lanes import Lanes
+from rovval.effects.lanes import Lanes
 from rovval.plant import geometry
 from rovval.plant.codegen.spec import PER_THRUSTER
 from rovval.plant.inputs import Inputs, Prepared

@@ -1,0 +1,21 @@
+"""What a sensor that is late writes of a motion."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rovval.effects.lanes import Array
+
+
+def delayed(true: Array, late: Array) -> Array:
+    """Values (B, n, c) of ``late`` (B,) samples ago, linear between samples; held beyond the first and the last."""
+    last = true.shape[1] - 1
+    sample = np.arange(last + 1)
+    seen = true.copy()
+    for delay in np.unique(late[late != 0]):  # a diagnosis asks for few delays in many lanes
+        lanes = np.flatnonzero(late == delay)
+        x = np.clip(sample - delay, 0.0, last)
+        low = np.minimum(x.astype(np.int64), max(last - 1, 0))
+        before, after = true[lanes][:, low], true[lanes][:, np.minimum(low + 1, last)]
+        seen[lanes] = before + (after - before) * (x - low)[:, None]
+    return seen

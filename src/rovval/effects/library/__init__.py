@@ -1,0 +1,1 @@
+"""The library: one file an effect, found by being there."""

@@ -1,0 +1,45 @@
+"""The attitude sensor sits askew: roll and pitch have a constant bias."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from rovval.effects.effect import Effect, Parameter
+from rovval.effects.lanes import Array
+from rovval.effects.log import Log
+
+SOURCE = "1 to 5 degrees (diagnosis.md S9)"
+
+EFFECT = Effect(
+    name="attitude_bias",
+    title="Attitude bias",
+    place="sensor",
+    equation="(phi, theta)_logged = (phi, theta) + bias (diagnosis.md S9).",
+    parameters=(
+        Parameter("phi", "rad", -0.3, 0.3, 0.0, 0.03, SOURCE),
+        Parameter("theta", "rad", -0.3, 0.3, 0.0, 0.03, SOURCE),
+    ),
+    signature="a standing angle without the moment that would hold it; depth changes while running level",
+    confused_with=("cg_offset", "dvl_misalignment", "buoyancy_error"),
+    separates="depth rate against u sin(theta): no dynamics needed",
+    needs=("phi", "theta"),
+    apart=True,
+)
+
+
+def observe(log: Log, p: Mapping[str, Array]) -> Log:
+    """Add the bias."""
+    return replace(log, eta=log.eta + _bias(p)[:, None])
+
+
+def unobserve(nu: Array, eta: Array, p: Mapping[str, Array]) -> tuple[Array, Array]:
+    """True first state."""
+    return nu, eta - _bias(p)
+
+
+def _bias(p: Mapping[str, Array]) -> Array:
+    zero = np.zeros_like(p["phi"])
+    return np.stack([zero, zero, zero, p["phi"], p["theta"], zero], axis=-1)

@@ -1,0 +1,42 @@
+"""Water that gets denser with depth: buoyancy grows as the vehicle dives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from rovval.effects.arithmetic import Number
+from rovval.effects.effect import Effect, Parameter
+from rovval.effects.lanes import Array, Lanes
+
+EFFECT = Effect(
+    name="density_gradient",
+    title="Density changes with depth",
+    place="wrench",
+    equation="B(z) = B + gradient (z - depth) g V at the centre of buoyancy (diagnosis.md E6). Drag and thrust, which change by the same "
+    "fraction (per mille), are left as they are. Compressibility of the vehicle is the same line with the other sign (B5).",
+    parameters=(
+        Parameter("gradient", "kg/m4", -20.0, 20.0, 0.0, 1.0, "some kg/m3 over some metres (diagnosis.md E6); a halocline: 30 over two"),
+        Parameter("depth", "m", -10.0, 6000.0, 0.0, 10.0, "where the change is zero: set it to the log's mean depth"),
+    ),
+    signature="a vertical force that grows with depth, at every heading and speed",
+    confused_with=("buoyancy_error", "current_shear", "tether_tension"),
+    separates="a slow dive up and down at two headings",
+    needs=("z",),
+)
+ROWS = ("slope", "depth", "bx", "by", "bz")
+
+
+def rows(lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
+    """Buoyancy per metre, N/m, and where it acts."""
+    b = lanes.centre_of_buoyancy
+    slope = p["gradient"] * lanes.vehicle.water.gravity * lanes.vehicle.body.volume
+    return {"slope": slope, "depth": p["depth"], "bx": b[:, 0], "by": b[:, 1], "bz": b[:, 2]}
+
+
+def wrench(
+    slope: Number, depth: Number, bx: Number, by: Number, bz: Number, z: Number, r31: Number, r32: Number, r33: Number
+) -> tuple[Number, ...]:
+    """Additional buoyancy in the body frame, and its moment."""
+    up = -slope * (z - depth)
+    fx, fy, fz = up * r31, up * r32, up * r33
+    return fx, fy, fz, by * fz - bz * fy, bz * fx - bx * fz, bx * fy - by * fx

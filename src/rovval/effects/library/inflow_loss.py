@@ -1,0 +1,38 @@
+"""Thrust falls as the vehicle runs away with the water that the propellers take in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from rovval.effects.arithmetic import Number
+from rovval.effects.effect import Effect, Parameter
+from rovval.effects.lanes import Array, Lanes, reference_speed
+
+REFERENCE = 1.0  # m/s
+
+EFFECT = Effect(
+    name="inflow_loss",
+    title="Axial inflow loss",
+    place="input",
+    equation="T <- T - loss k n_ref |n| u_a / (1 m/s), u_a the inflow along the thrust, k the mean gain, n_ref the speed at which all thrusters "
+    "hold the vehicle at 1 m/s ahead: loss is the share of thrust lost there (bilinear thruster, Fossen 2021, 9.6; "
+    "Healey 1995; diagnosis.md A6).",
+    parameters=(Parameter("loss", "1", -0.2, 1.0, 0.0, 0.15, "10 to 40 % at top speed (diagnosis.md A6)"),),
+    signature="grows with thruster speed times vehicle speed: feels like drag while thrusting, and is gone when coasting",
+    confused_with=("quadratic_drag", "linear_drag", "rpm_scale", "tether_drag"),
+    separates="the same speed at different thrust: accelerating, steady, coasting",
+)
+ROWS = ("slope",)
+
+
+def rows(lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
+    """Thrust lost per speed of thruster and inflow, N s2 / m, per thruster."""
+    gain = 0.5 * 60.0**2 * np.array([t.k_pos + t.k_neg for t in lanes.vehicle.thruster])
+    return {"slope": p["loss"][:, None] * gain * (reference_speed(lanes.vehicle) / REFERENCE)}
+
+
+def thrust(slope: Number, T: Number, n: Number, ua: Number) -> Number:
+    """Thrust under way."""
+    return T - slope * abs(n) * ua

@@ -1,0 +1,32 @@
+"""Quadratic drag differs from the vehicle file's on one axis."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from rovval.core.channels import AXES
+from rovval.effects.effect import Effect, Parameter
+from rovval.effects.lanes import Array, Lanes, reference_drag
+
+EFFECT = Effect(
+    name="quadratic_drag",
+    title="Quadratic drag differs",
+    place="vehicle",
+    equation="tau_i = -(1 + scale) q_i |nu_r,i| nu_r,i (thesis 3.13; Fossen 2021, 6.4); "
+    "where the file has none, scale refers to the linear force at 1 m/s (rad/s).",
+    parameters=(Parameter("scale", "1", -0.95, 9.0, 0.0, 0.3, "published BlueROV2 surge values run from 18 to 141 N s2/m2 (diagnosis.md H2)"),),
+    per="axis",
+    axes=AXES,
+    signature="acts at top speed; changes the steady speed of long legs",
+    confused_with=("linear_drag", "inflow_loss", "rpm_scale", "tether_drag"),
+    separates="three speeds or more, both directions; the same speed at two thrusts (accelerating and steady)",
+)
+
+
+def lower(lanes: Lanes, p: Mapping[str, Array]) -> Lanes:
+    """Add the departure to the diagonal."""
+    departure = p["scale"] * reference_drag(lanes.vehicle)[1]
+    return replace(lanes, quadratic_drag=lanes.quadratic_drag + departure[:, :, None] * np.eye(6))

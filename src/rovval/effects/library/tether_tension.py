@@ -1,0 +1,51 @@
+"""The tether pulls with one tension, in a fixed direction or towards a point."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from rovval.effects.arithmetic import Number, sqrt
+from rovval.effects.effect import Effect, Parameter
+from rovval.effects.lanes import Array, Lanes
+
+PULL = "0 to 30 N on an observation-class vehicle, up to 2.7 kN on a work-class one (diagnosis.md T2)"
+
+EFFECT = Effect(
+    name="tether_tension",
+    title="Steady pull of the tether",
+    place="wrench",
+    equation="F = |T| R^T e at the attachment (x, 0, z), e along T - nearness |T| (position), T = (north, east, down): the tension T at the log's "
+    "origin of a tether that leads to a point 1 / nearness away from there, or far away (diagnosis.md T2).",
+    parameters=(
+        Parameter("north", "N", -100.0, 100.0, 0.0, 6.0, PULL, "weight"),
+        Parameter("east", "N", -100.0, 100.0, 0.0, 6.0, PULL, "weight"),
+        Parameter("down", "N", -100.0, 100.0, 0.0, 4.0, PULL, "weight"),
+        Parameter("nearness", "1/m", 0.0, 1.0, 0.0, 0.05, "one over the distance from the log's origin to where it is held; 0: far away"),
+        Parameter("x", "m", -2.0, 2.0, 0.0, 0.3, "attachment, ahead of the origin"),
+        Parameter("z", "m", -2.0, 2.0, 0.0, 0.2, "attachment, below the origin"),
+    ),
+    signature="a force fixed to north and east, or to a point, also when the vehicle lies still; a moment if it is attached aft",
+    confused_with=("current_constant", "buoyancy_error", "cg_offset"),
+    separates="a current's force depends on the vehicle's own speed, a pull's does not: two speeds on two headings",
+    levers=("x", "z"),
+)
+ROWS = ("north", "east", "down", "nearness", "ax", "az")
+
+
+def rows(lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
+    """Pull, where it leads and attachment."""
+    return {name: p[name] for name in ROWS[:4]} | {"ax": p["x"], "az": p["z"]}
+
+
+def wrench(
+    north: Number, east: Number, down: Number, nearness: Number, ax: Number, az: Number, x: Number, y: Number, z: Number,
+    r11: Number, r12: Number, r13: Number, r21: Number, r22: Number, r23: Number, r31: Number, r32: Number, r33: Number,
+) -> tuple[Number, ...]:  # fmt: skip
+    """The pull in the body frame and its moment."""
+    tension = sqrt(north * north + east * east + down * down)
+    bend = nearness * tension
+    fn, fe, fd = north - bend * x, east - bend * y, down - bend * z
+    scale = tension / sqrt(fn * fn + fe * fe + fd * fd + 1e-12)
+    fn, fe, fd = scale * fn, scale * fe, scale * fd
+    fx, fy, fz = r11 * fn + r21 * fe + r31 * fd, r12 * fn + r22 * fe + r32 * fd, r13 * fn + r23 * fe + r33 * fd
+    return fx, fy, fz, -az * fy, az * fx - ax * fz, ax * fy

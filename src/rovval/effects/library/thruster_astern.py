@@ -1,0 +1,27 @@
+"""One thruster's gain astern is off by itself: a tolerance of every thruster, no diagnosis of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from rovval.effects.effect import Effect, Parameter
+from rovval.effects.lanes import Array, Lanes
+
+EFFECT = Effect(
+    name="thruster_astern",
+    title="One thruster's thrust astern",
+    place="input",
+    equation="k_neg,i <- (1 + scale) k_neg,i; k_pos as it is (diagnosis.md A4, thruster by thruster).",
+    parameters=(Parameter("scale", "1", -0.9, 2.0, 0.0, 0.15, "as reverse_asymmetry (diagnosis.md A4)"),),
+    per="thruster",
+    signature="a small steady wrench whenever that thruster runs astern",
+    confused_with=("reverse_asymmetry", "thruster_degraded"),
+    separates="equal steps both ways of that thruster alone",
+    competes=False,
+)
+
+
+def lower(lanes: Lanes, p: Mapping[str, Array]) -> Lanes:
+    """Scale the gain astern."""
+    return replace(lanes, k_neg=(1.0 + p["scale"]) * lanes.k_neg)

@@ -1,0 +1,38 @@
+"""Moving along a wall the vehicle is drawn towards it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from rovval.effects.arithmetic import Number
+from rovval.effects.effect import Effect, Parameter
+from rovval.effects.lanes import Array, Lanes
+
+EFFECT = Effect(
+    name="wall_suction",
+    title="Suction of a wall alongside",
+    place="wrench",
+    equation="Y = gain u_r |u_r| / (1 + (d / reach)^2) with the sign of the side on which the wall lies in gain (diagnosis.md E8: c u^2 (r/d)^2, "
+    "kept finite at the wall); |u_r| u_r -> u_r^2.",
+    parameters=(
+        Parameter("gain", "N s2/m2", -300.0, 300.0, 0.0, 20.0, "chosen: some tenths of the drag ahead; + for a wall to starboard", "drag"),
+        Parameter("reach", "m", 0.05, 5.0, 0.5, 0.3, "chosen: of the order of the hull's half width"),
+    ),
+    signature="a sideways force that grows with speed ahead, near a wall only",
+    confused_with=("current_constant", "cross_drag", "dvl_misalignment"),
+    separates="the same leg nearer to and farther from the wall, and in the other direction",
+    needs=("wall_distance",),
+    grid={"reach": (0.3, 1.0)},
+)
+ROWS = ("gain", "inverse")
+
+
+def rows(lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
+    """Force per square of speed, N s2/m2, and inverse reach, 1/m."""
+    return {"gain": p["gain"], "inverse": 1.0 / p["reach"]}
+
+
+def wrench(gain: Number, inverse: Number, wall_distance: Number, ur: Number) -> tuple[Number, ...]:
+    """Sideways force."""
+    near = wall_distance * inverse
+    return 0.0, gain * ur * ur / (1.0 + near * near), 0.0, 0.0, 0.0, 0.0
