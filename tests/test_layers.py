@@ -10,6 +10,7 @@ PACKAGE = Path(__file__).parent.parent / "src" / "rovval"
 # Top first: a room may import itself and what stands below it. Rooms on one line may not import each other.
 ROOMS = (
     ("__main__",),
+    ("__init__",),
     ("cli",),
     ("demo",),
     ("pipeline",),
@@ -26,7 +27,6 @@ ROOMS = (
     ("alignment",),
     ("ingest",),
     ("core",),
-    ("__init__",),
 )
 # Third-party libraries and the rooms that may import them; numpy may be imported by every room that computes.
 ALLOWED = {

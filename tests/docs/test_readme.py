@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from typer.testing import CliRunner
@@ -81,6 +82,21 @@ def test_the_tour_on_ones_own_csv(tmp_path, monkeypatch):
             Path("my_log.toml").write_text(profile, encoding="utf-8")
     assert Path("diagnosis.json").exists()
     assert len(list(Path("reports").glob("*/report.html"))) == 2
+
+
+def test_the_notebook_block(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    write_own_log(Path("my_log.csv"))
+    Path("my_log.toml").write_text(after("file: my_log.toml")[0], encoding="utf-8")
+    invoke("rovval show vehicle merlin > my_vehicle.toml")
+    [block] = after("notebook")
+    names: dict[str, Any] = {}
+    exec(block, names)  # the README's own lines
+    assert "surge" in names["comparison"].windowed
+    assert names["tuned"].document["parameters"] or names["tuned"].document["undetermined"]
+    assert Path("diagnosis.html").read_text(encoding="utf-8").startswith("<!doctype html>")
+    assert "verdict" in names["found"].document
+    assert "surge" in capsys.readouterr().out
 
 
 def test_the_bag_profile_loads(tmp_path):

@@ -18,8 +18,8 @@ from rovval.report.comparison import html_tables, windows
 from rovval.report.comparison.json import versions
 
 
-def text(comparison: Comparison) -> str:
-    """The page."""
+def text(comparison: Comparison, recording: bool = True) -> str:
+    """The page; ``recording`` says that run.rrd lies beside it."""
     c, run = comparison, comparison.run
     pictures, places = _velocities(c)
     pose_pictures, pose_places = _pose(c)
@@ -36,7 +36,7 @@ def text(comparison: Comparison) -> str:
             page.section("Time stamps", html_tables.clock(c)),
             page.section("Findings in this log", html_tables.findings(c), anchor="findings"),
             page.section("Assumed, and where the simulation stopped", page.listing([*c.sim.assumptions, *c.sim.stops])),
-            page.section("Recording", _RECORDING),
+            page.section("Recording", _RECORDING if recording else ""),
             page.footer(" · ".join(f"{k} {v}" for k, v in versions().items()) + f" · sha256 {run.sha256[:16]}"),
         ]
     )
