@@ -38,6 +38,8 @@ ALLOWED = {
     "pymavlink": {"ingest"},
     "fastexcel": {"ingest"},
     "rerun": {"report"},
+    "jinja2": {"report"},
+    "markupsafe": {"report"},
     "numba": {"plant", "effects"},
     "llvmlite": {"plant"},
     "scipy": {"plant", "diagnose", "blind", "alignment", "report", "simulation"},

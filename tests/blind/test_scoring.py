@@ -19,7 +19,8 @@ from rovval.blind.scoring import true_values as numbers
 from rovval.blind.scoring.marks import marks
 from rovval.blind.scoring.score import marked
 from rovval.blind.scoring.strata import strata
-from rovval.report.blind import page
+from rovval.report.blind import html as blind_html
+from rovval.report.blind import terminal as blind_terminal
 
 MERLIN = vehicle.LIBRARY / "merlin.toml"
 LIBRARY = (
@@ -268,13 +269,13 @@ def test_page_and_text_hold_every_stratum():
     head = {"vehicle": "merlin", "seed": 1, "size": "10", "engine": "abc", "rovval": "0", "opened": "", "committed": ""}
     result = marked(labels, answers, {}, str(MERLIN)) | head
     json.dumps(result, allow_nan=False)
-    html, text = page.html(result), page.text(result)
+    html, text = blind_html.text(result), blind_terminal.text(result)
     for stratum in result["strata"]:
         assert stratum in html
         assert stratum in text
     assert "false alarm" in html
-    assert "The right effect comes first in 100 % (79 to 100) of 10 logs" in html
-    assert "A gap is claimed in 100 % (27 to 100) of 1 healthy logs." in html
+    assert "The right effect comes first in 100 % [79, 100] of 10 logs" in html
+    assert "A gap is claimed in 100 % [27, 100] of 1 healthy logs." in html
     assert [w["kind"] for w in result["wrong"]] == ["false alarm"]
 
 

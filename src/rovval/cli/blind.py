@@ -98,14 +98,15 @@ def score(
     """
     from rovval.blind.scoring import score as scorer
     from rovval.pipeline.atomic import write_text
-    from rovval.report.blind import page
+    from rovval.report.blind import html as blind_html
+    from rovval.report.blind import terminal as blind_terminal
 
     result = scorer.score(folder, key=key, kept=history, workers=workers, say=_steps(quiet))
-    write_text(folder / "score.html", page.html(result))
+    write_text(folder / "score.html", blind_html.text(result))
     if json_:
         output.result_json(result)
     else:
-        output.result(page.text(result))
+        output.result(blind_terminal.text(result))
         output.say(output.places({"html": folder / "score.html", "json": folder / "score.json"}), quiet)
 
 

@@ -84,7 +84,7 @@ def _report(comparison: Comparison, vehicle: Vehicle, folder: Path | None, as_js
     """The report into its folder, if it has one, and the result on stdout; what `--json` prints."""
     from rovval import report
     from rovval.report.comparison.json import document as comparison_json
-    from rovval.report.comparison.table import text
+    from rovval.report.comparison.terminal import text
 
     document = comparison_json(comparison)
     files = {} if folder is None else report.write(comparison, folder, vehicle)

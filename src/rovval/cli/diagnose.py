@@ -102,7 +102,7 @@ def _as_typed(found: Diagnosis, sources: dict[str, str], vehicle: str | None, op
 def _print(found: Diagnosis, json_: Path | None, quiet: bool) -> None:
     """The diagnosis on stdout as text, or as JSON where that was asked for; JSON into its file."""
     from rovval.pipeline.atomic import write_json
-    from rovval.report.comparison.table import diagnosis_text
+    from rovval.report.diagnosis.terminal import text as diagnosis_text
 
     if str(json_) == "-":
         output.result_json(found.document)

@@ -13,7 +13,6 @@ from rovval.core.errors import UsageProblem
 if TYPE_CHECKING:
     from rovval.fly.scenarios import Outcome
 
-SIGNS = {True: "pass", False: "FAIL", None: "-"}
 NEED_A_LOG = (4, 5)
 
 
@@ -55,7 +54,9 @@ def command(
     if json_:
         output.result_json(_document(outcome))
     else:
-        output.result(_text(outcome))
+        from rovval.report.scenario import text
+
+        output.result(text(outcome))
     if not outcome.passed:
         raise typer.Exit(1)
 
@@ -94,9 +95,3 @@ def _document(outcome: Outcome) -> dict[str, Any]:
         "checks": [{"expected": c.expected, "seen": c.seen, "holds": c.holds} for c in outcome.checks],
         **outcome.document,
     }
-
-
-def _text(outcome: Outcome) -> str:
-    head = f"Scenario {outcome.number}: {outcome.title} ({outcome.vehicle}{', ' + outcome.model if outcome.model else ''})"
-    lines = [f"  {SIGNS[c.holds]:<4}  {c.expected}: {c.seen}" for c in outcome.checks]
-    return "\n".join([head, *lines, *([outcome.text] if outcome.text else []), "passed" if outcome.passed else "NOT passed"])

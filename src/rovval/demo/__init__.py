@@ -48,7 +48,8 @@ def run(folder: Path, with_diagnosis: bool, progress: Callable[[str, float], Non
     from rovval.comparison import compare
     from rovval.diagnose import diagnose
     from rovval.report.comparison.json import document as comparison_json
-    from rovval.report.comparison.table import diagnosis_text, text
+    from rovval.report.comparison.terminal import text
+    from rovval.report.diagnosis.terminal import text as diagnosis_text
     from rovval.simulation import simulate
     from rovval.vehicle import load
 

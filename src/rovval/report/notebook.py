@@ -12,9 +12,12 @@ import numpy as np
 from rovval.core.channels import AXES, POSE, VELOCITIES, channel
 from rovval.core.data import Array, Comparison, Run, SimResult
 from rovval.core.units import in_degrees
-from rovval.report.common import page, plots, words
+from rovval.report.common import curves
+from rovval.report.common.curves import Place
 from rovval.report.common.files import write_all
-from rovval.report.common.words import number
+from rovval.report.common.numbers import duration, number
+from rovval.report.common.page import render
+from rovval.report.common.versions import versions
 
 HEIGHT_PX = 720  # of the page in a notebook's cell; it scrolls
 
@@ -59,8 +62,8 @@ def page_of(result: object) -> Page:
 
 def _run(run: Run) -> str:
     """Every channel of the log, with gaps where it holds nothing."""
-    shown = {name: (channel(name).unit, [plots.series("measured", name, _drawn(run.get(name), channel(name).unit))]) for name in run.values}
-    facts = {"vehicle": run.vehicle, "profile": run.profile, "length": words.duration(run.duration_s)}
+    shown = {name: (channel(name).unit, [curves.series("measured", name, _drawn(run.get(name), channel(name).unit))]) for name in run.values}
+    facts = {"vehicle": run.vehicle, "profile": run.profile, "length": duration(run.duration_s)}
     banner = f"SYNTHETIC DATA: {run.properties['synthetic']}" if "synthetic" in run.properties else ""
     said = [f"{len(run.values)} channels at {number(1.0 / run.dt)} Hz."]
     return _curves("Log", run.id, banner, said, facts, shown, len(run), run.dt, [str(finding) for finding in run.findings])
@@ -74,10 +77,10 @@ def _simulation(sim: SimResult) -> str:
         for j, (title, name) in enumerate(zip(titles, names, strict=True)):
             unit = channel(name).unit
             pair = (("free", "free run", free), ("windowed", "windows", windowed))
-            shown[title] = (unit, [plots.series(key, label, _drawn(values[:, j], unit)) for key, label, values in pair])
+            shown[title] = (unit, [curves.series(key, label, _drawn(values[:, j], unit)) for key, label, values in pair])
     hues = [round(360 * j / len(sim.thrusters) + 15) % 360 for j in range(len(sim.thrusters))]
     speeds = zip(sim.thrusters, sim.thruster_speed.T * 60.0, hues, strict=True)
-    shown["thruster speed"] = ("rpm", [plots.series("thruster", name, values, hue=hue) for name, values, hue in speeds])
+    shown["thruster speed"] = ("rpm", [curves.series("thruster", name, values, hue=hue) for name, values, hue in speeds])
     facts = {"vehicle": sim.vehicle, "model": sim.model, "effects": ", ".join(sim.effects), "driven by": sim.input_source}
     said = [f"Free run, and windows of {number(sim.window_s)} s restarted from the measured state."]
     notes = [*sim.assumptions, *sim.stops]
@@ -89,16 +92,21 @@ def _curves(
     shown: dict[str, tuple[str, list[dict[str, Any]]]], n: int, dt: float, notes: list[str],
 ) -> str:  # fmt: skip
     """A page of curves on one axis of ``n`` samples every ``dt`` s; ``shown`` maps a title to unit and curves."""
-    places = "".join(page.canvas(f"c{k}", title, in_degrees(1.0, unit)[1], css="short") for k, (title, (unit, _)) in enumerate(shown.items()))
-    pictures = [plots.plot(f"c{k}", curves) for k, (_, curves) in enumerate(shown.values())]
-    body = "".join(
-        [
-            page.head(eyebrow, name, banner, said, facts),
-            page.section("Curves", f'<div class="plots">{places}</div>'),
-            page.section("Notes", page.listing(notes)),
-        ]
+    drawn = [curves.plot(f"c{k}", series) for k, (_, series) in enumerate(shown.values())]
+    places = [Place(f"c{k}", title, in_degrees(1.0, unit)[1], css="short") for k, (title, (unit, _)) in enumerate(shown.items())]
+    return render(
+        "curves.html",
+        {"x": {"run": curves.times(n, dt)}, "plots": drawn},
+        title=f"{name} · rovval",
+        eyebrow=eyebrow,
+        name=name,
+        banner=banner,
+        said=said,
+        facts=facts,
+        places=places,
+        notes=notes,
+        footer=_footer(),
     )
-    return page.page(f"{name} · rovval", body, {"x": {"run": plots.times(n, dt)}, "plots": pictures})
 
 
 def _drawn(values: Array, unit: str) -> Array:
@@ -108,17 +116,19 @@ def _drawn(values: Array, unit: str) -> Array:
 
 def _fit(document: dict[str, Any], text: str) -> str:
     """Each tuned parameter with its interval, and the text of the terminal."""
-    rows = [
-        [f"<code>{escape(name)}</code>", number(row["was"]), number(row["value"]), f"{number(row['low'])} to {number(row['high'])}", row["unit"]]
-        for name, row in document["parameters"].items()
-    ]
-    facts = {key: document[key] for key in ("vehicle", "model", "windows")}
-    header = ["parameter", "was", "value", "90 % interval", "unit"]
-    body = "".join(
-        [
-            page.head("Fit", document["run"], "", [f"{len(rows)} parameters tuned."], facts),
-            page.section("Parameters", page.table(header, rows, left=(0, 4)) if rows else ""),
-            page.section("In words", f"<pre>{escape(text)}</pre>"),
-        ]
+    return render(
+        "fit.html",
+        title=f"{document['run']} · rovval fit",
+        eyebrow="Fit",
+        name=document["run"],
+        banner="",
+        said=[f"{len(document['parameters'])} parameters tuned."],
+        facts={key: document[key] for key in ("vehicle", "model", "windows")},
+        parameters=document["parameters"],
+        text=text,
+        footer=_footer(),
     )
-    return page.page(f"{document['run']} · rovval fit", body, None)
+
+
+def _footer() -> str:
+    return " · ".join(f"{k} {v}" for k, v in versions().items())

@@ -20,9 +20,9 @@ from rovval.comparison import compare
 from rovval.core.data import Run
 from rovval.diagnose import diagnose
 from rovval.fit import fit
-from rovval.report.comparison import table
 from rovval.report.diagnosis import html as diagnosis_html
 from rovval.report.diagnosis import markdown as diagnosis_markdown
+from rovval.report.diagnosis import terminal as diagnosis_terminal
 from rovval.report.diagnosis.calibration_words import calibration
 from rovval.report.diagnosis.sentence import sentence
 from rovval.simulation import simulate
@@ -130,12 +130,12 @@ def test_every_format_tells_it_and_says_that_it_is_no_cause(causes: bool):
     assert ("inflow_loss among them" in said) is causes
     assert "quadratic_drag[surge].scale = -0.845 [-0.95, -0.7] (17 times its tolerance)" in said
     assert "shrinks by 68 % [61, 72] on runs left out of the fit (worse: sway by 41 %)" in said
-    for text in (diagnosis_html.text(d), diagnosis_markdown.text(d), table.diagnosis_text(d)):
+    for text in (diagnosis_html.text(d), diagnosis_markdown.text(d), diagnosis_terminal.text(d)):
         assert "any coefficients off together" in text and "17 times its tolerance" in text and "68 % (61 % to 72 %)" in text
     assert "rovval fit dive &lt;a&gt;" in diagnosis_html.text(d)
 
 
 def test_without_it_nothing_is_said():
     for d in (make_diagnosis(), make_diagnosis() | {"calibration": None}):
-        for text in (sentence(d), diagnosis_html.text(d), diagnosis_markdown.text(d), table.diagnosis_text(d)):
+        for text in (sentence(d), diagnosis_html.text(d), diagnosis_markdown.text(d), diagnosis_terminal.text(d)):
             assert "off together" not in text

@@ -19,9 +19,9 @@ from rovval import report, vehicle
 from rovval.comparison import compare
 from rovval.core.data import Array, Comparison
 from rovval.core.errors import Finding, UsageProblem
-from rovval.report.common import plots, words
+from rovval.report.common import curves, numbers
 from rovval.report.common.files import write_all
-from rovval.report.comparison import html, markdown, table
+from rovval.report.comparison import html, markdown, terminal, words
 from rovval.report.comparison import json as report_json
 
 MERLIN = vehicle.load("merlin")
@@ -80,7 +80,7 @@ def test_every_format_says_what_was_not_measured(absent: tuple[str, ...]) -> Non
     c = case(absent=absent)
     page = html.text(c)
     check_html(page)
-    for text in (page, markdown.text(c), table.text(c)):
+    for text in (page, markdown.text(c), terminal.text(c)):
         assert "nan" not in re.sub(r"[A-Za-z0-9+/]{60,}={0,2}|<script>.*?</script>", "", text, flags=re.S).lower().split()
         for axis in c.not_measured:
             assert axis in text
@@ -90,7 +90,7 @@ def test_every_format_says_what_was_not_measured(absent: tuple[str, ...]) -> Non
 def test_synthetic_data_is_said_so_in_every_format() -> None:
     c = case(synthetic="made by a test <b>")
     assert "SYNTHETIC DATA: made by a test &lt;b&gt;" in html.text(c)
-    assert "SYNTHETIC DATA: made by a test" in markdown.text(c) and "SYNTHETIC DATA: made by a test" in table.text(c)
+    assert "SYNTHETIC DATA: made by a test" in markdown.text(c) and "SYNTHETIC DATA: made by a test" in terminal.text(c)
     assert report_json.document(c)["synthetic"] == "made by a test <b>"
     assert "SYNTHETIC" not in html.text(case())
 
@@ -110,24 +110,24 @@ def test_the_page_of_ten_minutes_is_below_a_megabyte_and_a_long_one_not_larger()
 def test_thinned_curves_keep_peaks_and_holes() -> None:
     values = np.zeros(20000)
     values[12345], values[777], values[5000:6000] = 9.0, -4.0, np.nan
-    thin = plots.thin(values)
-    assert len(thin) == plots.times(20000, 0.1)["n"] <= plots.MOST_POINTS + 2
+    thin = curves.thin(values)
+    assert len(thin) == curves.times(20000, 0.1)["n"] <= curves.MOST_POINTS + 2
     assert np.nanmax(thin) == 9.0 and np.nanmin(thin) == -4.0 and np.isnan(thin).sum() > 250
-    assert plots.times(20000, 0.1)["dt"] * len(thin) == pytest.approx(2000, rel=1e-3)
+    assert curves.times(20000, 0.1)["dt"] * len(thin) == pytest.approx(2000, rel=1e-3)
 
 
 def test_packed_curves_come_back() -> None:
     values = np.array([0.5, np.nan, -1.25, 3.0])
-    assert decoded(plots.encode(values)) == pytest.approx(values, abs=4.25 / 131068 * 1.01, nan_ok=True)
-    assert np.isnan(decoded(plots.encode(np.full(3, np.nan)))).all()
-    assert decoded(plots.encode(np.full(3, 2.5))) == pytest.approx([2.5] * 3)
+    assert decoded(curves.encode(values)) == pytest.approx(values, abs=4.25 / 131068 * 1.01, nan_ok=True)
+    assert np.isnan(decoded(curves.encode(np.full(3, np.nan)))).all()
+    assert decoded(curves.encode(np.full(3, 2.5))) == pytest.approx([2.5] * 3)
 
 
 def decoded(e: dict[str, Any]) -> Array:
     import base64
 
     steps = np.frombuffer(base64.b64decode(e["b"]), "<u2")
-    return np.where(steps == plots.MISSING, np.nan, e["lo"] + steps * (e["hi"] - e["lo"]) / 65534)
+    return np.where(steps == curves.MISSING, np.nan, e["lo"] + steps * (e["hi"] - e["lo"]) / 65534)
 
 
 def test_verdict_names_the_largest_gap_and_says_when_it_is_worse_than_nothing() -> None:
@@ -140,7 +140,7 @@ def test_verdict_names_the_largest_gap_and_says_when_it_is_worse_than_nothing() 
 
 
 def test_table_is_aligned_and_carries_degrees() -> None:
-    lines = table.text(case(absent=("q",))).splitlines()
+    lines = terminal.text(case(absent=("q",))).splitlines()
     surge = next(k for k, line in enumerate(lines) if line.startswith("surge"))
     assert re.search(r"\d \(100 %\)$", lines[surge]) and len({len(line) for line in lines[surge : surge + 3]}) == 1
     assert any(line.strip().startswith("deg/s") for line in lines) and "not measured: pitch" in lines
@@ -149,7 +149,7 @@ def test_table_is_aligned_and_carries_degrees() -> None:
 
 def test_stops_are_reported() -> None:
     c = case(stop=300)
-    for text in (html.text(c), markdown.text(c), table.text(c)):
+    for text in (html.text(c), markdown.text(c), terminal.text(c)):
         assert "pitch beyond 80 deg" in text
 
 
@@ -158,11 +158,12 @@ def test_stops_are_reported() -> None:
     [(0.0712, "0.0712"), (12.345, "12.3"), (1240.4, "1240"), (0.0, "0"), (9.996, "10.0"), (2e-7, "2.00e-07"), (None, "-"), (-0.5, "-0.500")],
 )
 def test_numbers(value: float | None, text: str) -> None:
-    assert words.number(value) == text
+    assert numbers.number(value) == text
 
 
 def test_nothing_heavy_is_imported_with_the_package() -> None:
-    code = "import sys, rovval.report, rovval.report.comparison.table, rovval.report.html; print([m for m in ('rerun','polars','scipy') if m in sys.modules])"
+    modules = "rovval.report, rovval.report.comparison.terminal, rovval.report.comparison.html"
+    code = f"import sys, {modules}; print([m for m in ('rerun','polars','scipy') if m in sys.modules])"
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert out.strip() == "[]"
 
@@ -174,7 +175,7 @@ def test_the_assets_carry_their_licence() -> None:
 
 def test_a_log_without_velocities_has_no_empty_table_and_no_empty_plots() -> None:
     c = case(absent=("u", "v", "w", "p", "q", "r"))
-    said = table.text(c)
+    said = terminal.text(c)
     assert "free run" not in said
     assert "depth (" in said and "roll angle" in said and "phi" not in said
     assert ">Velocities<" not in html.text(c) and ">Velocities<" in html.text(case())
@@ -204,7 +205,7 @@ def windowed(n: int, window_s: float, **more: Any) -> Comparison:
 def test_a_log_shorter_than_its_window_says_what_was_done() -> None:
     """It said "Over windows of 10 s" of a log of five."""
     c = windowed(50, 10.0)
-    for said in (table.text(c), markdown.text(c), html.text(c)):
+    for said in (terminal.text(c), markdown.text(c), html.text(c)):
         flat = " ".join(said.split())
         assert "ver one window of 4.9 s" in flat and "shorter than a window of 10 s" in flat and "indows of 10 s," not in flat
     assert report_json.document(c)["window"]["longest_s"] == pytest.approx(4.9)

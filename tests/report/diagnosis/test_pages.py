@@ -10,9 +10,9 @@ from report_cases import make_diagnosis, make_run, make_sim
 
 from rovval import report, vehicle
 from rovval.comparison import compare
-from rovval.report.comparison import table
 from rovval.report.diagnosis import html as diagnosis_html
 from rovval.report.diagnosis import markdown as diagnosis_markdown
+from rovval.report.diagnosis import terminal as diagnosis_terminal
 from rovval.report.diagnosis import words as diagnosis_words
 from rovval.report.diagnosis.untestable import not_testable
 
@@ -22,7 +22,7 @@ REQUIRED = ("schema", "run", "vehicle", "model", "window_s", "calibration_slop",
 def formats(d: dict[str, Any]) -> tuple[str, str, str]:
     page = diagnosis_html.text(d)
     check_html(page)
-    return page, diagnosis_markdown.text(d), table.diagnosis_text(d)
+    return page, diagnosis_markdown.text(d), diagnosis_terminal.text(d)
 
 
 def test_a_full_diagnosis_is_written(tmp_path: Path) -> None:

@@ -8,9 +8,9 @@ import pytest
 from report_cases import make_diagnosis
 
 from rovval.diagnose.result.attribution import Slice, worst
-from rovval.report.comparison import table
 from rovval.report.diagnosis import html as diagnosis_html
 from rovval.report.diagnosis import markdown as diagnosis_markdown
+from rovval.report.diagnosis import terminal as diagnosis_terminal
 from rovval.report.diagnosis import words as diagnosis_words
 from rovval.report.diagnosis.nothing import unexplained
 from rovval.report.diagnosis.sentence import chance, open_gap, sentence
@@ -72,7 +72,7 @@ def test_what_came_near_is_told_and_called_no_cause(gain, evidence, slop, said, 
     near = f"Nearest to a cause, and not shown to be one, is inflow_loss: by itself it would close {100 * gain:.0f} % of the squared gap, {said}"
     assert (near in sentence(d)) is bool(said) and ("Nearest" in sentence(d)) is bool(said)
     assert ("explains anything" in sentence(d)) is not bool(said) and "No gap beyond noise" in sentence(d)
-    for text in (diagnosis_html.text(d), diagnosis_markdown.text(d), table.diagnosis_text(d)):
+    for text in (diagnosis_html.text(d), diagnosis_markdown.text(d), diagnosis_terminal.text(d)):
         assert ("no cause named" in text) is seen and ("Nearest to a cause" in " ".join(text.split())) is bool(said)
 
 
@@ -97,7 +97,7 @@ def test_a_cause_that_leaves_the_simulated_motion_is_said_to():
     kinematic = "seen by the kinematic checks alone; it does not change the simulated motion"
     for effect, said in (("attitude_bias", kinematic), ("waves", "it leaves the squared gap")):
         d["causes"][0] |= {"effect": effect, "shrinkage": {"total": -0.0006, "low": -0.004, "high": 0.003, "axes": {}}}
-        for text in (sentence(d), diagnosis_html.text(d), diagnosis_markdown.text(d), table.diagnosis_text(d)):
+        for text in (sentence(d), diagnosis_html.text(d), diagnosis_markdown.text(d), diagnosis_terminal.text(d)):
             assert said in text and "-0 " not in text and "-0," not in text and "-0]" not in text
     d["causes"][0]["shrinkage"] |= {"total": 0.3}
     assert "by itself it shrinks the squared gap by 30 % [0, 0] on held-out windows" in sentence(d)
@@ -108,7 +108,7 @@ def test_a_parameter_that_nothing_moved_is_not_told():
     d = make_diagnosis()
     rest = {"unit": "N s2/m3", "null": 0.0, "low": 0.0}
     d["causes"][0]["parameters"] = {"coefficient": rest | {"value": 300.0, "high": 400.0}, "per_length": rest | {"value": 0.0, "high": 14.2}}
-    for text in (sentence(d), diagnosis_html.text(d), diagnosis_markdown.text(d), table.diagnosis_text(d)):
+    for text in (sentence(d), diagnosis_html.text(d), diagnosis_markdown.text(d), diagnosis_terminal.text(d)):
         assert "coefficient" in text and "per_length" not in text
     d["causes"][0]["parameters"]["per_length"]["value"] = 1.5
     assert "per_length" in sentence(d)
@@ -120,7 +120,7 @@ def test_shrinkage_is_said_to_be_of_squares_with_the_rms_beside_it():
     d["gap"]["axes"]["surge"]["rms"] = 0.08
     for text in (diagnosis_html.text(d), diagnosis_markdown.text(d)):
         assert "0.080 to 0.040 m/s" in text and "squared gap less by" in text
-    for text in (sentence(d), table.diagnosis_text(d)):
+    for text in (sentence(d), diagnosis_terminal.text(d)):
         assert "squared gap" in text and "the gap shrinks" not in text
 
 
@@ -147,7 +147,7 @@ def test_rounds_say_what_they_asked_and_whether_they_named():
         return {"effect": name, "evidence": 50.0, "gain": 0.3}
 
     d = make_diagnosis() | {"finalists": [[row("inflow_loss"), row("quadratic_drag[surge]"), row("waves")], [row("waves")], []]}
-    for text in (diagnosis_html.text(d), diagnosis_markdown.text(d), table.diagnosis_text(d)):
+    for text in (diagnosis_html.text(d), diagnosis_markdown.text(d), diagnosis_terminal.text(d)):
         assert "eside inflow_loss: none was named" in text and "30 %" in text
     assert "cannot be told from inflow_loss" in diagnosis_html.text(d)
 

@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from rovval.core.data import Comparison
+
 
 @dataclass(frozen=True, slots=True)
 class Check:
@@ -18,15 +20,15 @@ class Check:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """A scenario's result. ``document`` has every number with its unit in its key."""
+    """A scenario's result. ``document`` has every number with its unit in its key; ``comparison`` is what was compared, where anything was."""
 
     number: int
     title: str
     vehicle: str
     model: str
     checks: Sequence[Check]
-    text: str = ""
     document: Mapping[str, Any] = field(default_factory=dict)
+    comparison: Comparison | None = None
 
     @property
     def passed(self) -> bool:

@@ -21,18 +21,12 @@ def hardware(run: Run) -> Outcome:
     commanded = members(tuple(run.values), "n_cmd")
     checks.append(Check("commanded speed of each thruster", ", ".join(commanded) or "not logged", bool(commanded) or None))
     rows: list[dict[str, Any]] = [_range(run, name) for name in run.values]
-    text = "\n".join(
-        f"  {r['channel']:<12} {r['unit']:<6} {r['low']:>12.5g} {r['high']:>12.5g}  {100 * r['coverage']:.1f}%"
-        for r in rows
-        if r["n"]
-    )
     return Outcome(
         4,
         "channels of the hardware log",
         run.vehicle or "unknown",
         "",
         tuple(checks),
-        "  channel      unit        lowest      highest  coverage\n" + text,
         {"run": run.id, "channels": rows},
     )
 

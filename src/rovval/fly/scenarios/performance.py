@@ -12,7 +12,6 @@ from typing import Any
 from rovval.comparison import compare
 from rovval.core.data import Run
 from rovval.fly.scenarios import Check, Outcome
-from rovval.report.comparison.table import text
 from rovval.simulation import simulate
 from rovval.vehicle.model import Vehicle
 
@@ -46,6 +45,6 @@ def performance(run: Run, vehicle: Vehicle, model: str) -> Outcome:
         vehicle.name,
         model,
         tuple(checks),
-        text(comparison),
         {"run": run.id, "table_6_2": rows},
+        comparison,
     )

@@ -5,15 +5,14 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import asdict
-from functools import cache
 from typing import Any
 
 from rovval.comparison import CORE, metrics
 from rovval.comparison.error_growth import HORIZONS_S, horizons
 from rovval.core.data import ChannelError, Comparison
 from rovval.core.units import DEGREE_UNITS, DEGREES
-from rovval.report.common import words
-from rovval.report.comparison import windows
+from rovval.report.common.versions import versions
+from rovval.report.comparison import words
 
 SCHEMA = "rovval.comparison/1"
 
@@ -31,7 +30,7 @@ def document(comparison: Comparison) -> dict[str, Any]:
         "axes": {axis: _row(row) for axis, row in c.free.items()},
         "window": {
             "seconds": _whole(sim.window_s),
-            "longest_s": windows.longest_s(c),
+            "longest_s": words.longest_s(c),
             "axes": {axis: {"rms": row.rmse, **_row(row)} for axis, row in c.windowed.items()},
             "pose": {name: _row(row) for name, row in c.pose.items()},
             "horizon": _horizons(c),
@@ -59,21 +58,6 @@ def document(comparison: Comparison) -> dict[str, Any]:
 def text(document: Mapping[str, Any]) -> str:
     """The document as JSON text; a NaN in it is a bug and is refused."""
     return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-
-
-@cache
-def versions() -> Mapping[str, str]:
-    """What computed the numbers."""
-    import platform
-    from importlib.metadata import PackageNotFoundError, version
-
-    found = {"python": platform.python_version()}
-    for package in ("rovval", "numpy", "scipy", "numba", "rerun-sdk"):
-        try:
-            found[package] = version(package)
-        except PackageNotFoundError:
-            continue
-    return found
 
 
 def _row(row: ChannelError) -> dict[str, Any]:

@@ -7,9 +7,9 @@ from html import escape
 from typing import Any
 
 from rovval.core.units import in_degrees
-from rovval.report.common import page
-from rovval.report.common.words import number, per_cent
-from rovval.report.comparison.markdown import grid
+from rovval.report.common.markdown import grid
+from rovval.report.common.numbers import number, per_cent
+from rovval.report.diagnosis import glue as page
 from rovval.report.diagnosis.calibration_words import held_out, times
 from rovval.report.diagnosis.parts import axis_bar, whisker
 from rovval.report.diagnosis.words import interval, rms_change, span

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from rovval.core.units import in_degrees
-from rovval.report.common import page, plots
-from rovval.report.common.words import number, per_cent, quantity
-from rovval.report.comparison.json import versions
+from rovval.report.common import curves as plots
+from rovval.report.common.numbers import number, per_cent, quantity
+from rovval.report.common.versions import versions
 from rovval.report.diagnosis import calibration, parts, tried
+from rovval.report.diagnosis import glue as page
 from rovval.report.diagnosis import words as dw
 from rovval.report.diagnosis.sentence import chance, moved, open_gap, undecided, unmoved
 from rovval.report.diagnosis.unlogged import disturbances

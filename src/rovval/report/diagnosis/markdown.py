@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from rovval.core.units import in_degrees
-from rovval.report.common.words import number, per_cent
-from rovval.report.comparison.markdown import bullets, grid
+from rovval.report.common.markdown import bullets, grid
+from rovval.report.common.numbers import number, per_cent
 from rovval.report.diagnosis import calibration
 from rovval.report.diagnosis import words as dw
 from rovval.report.diagnosis.sentence import chance, moved

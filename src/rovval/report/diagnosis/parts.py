@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Any
 
-from rovval.report.common import svg
-from rovval.report.common.words import number, per_cent
+from rovval.report.common.numbers import number, per_cent
+from rovval.report.diagnosis import svg
 from rovval.report.diagnosis import words as dw
 
 _MOST_REGIMES = 10

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Any
 
-from rovval.report.common import page
-from rovval.report.common.words import number
+from rovval.report.common.numbers import number
+from rovval.report.diagnosis import glue as page
 from rovval.report.diagnosis.parts import axis_bar
 from rovval.report.diagnosis.words import group
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from rovval.report.common.words import number
+from rovval.report.common.numbers import number
 
 
 def disturbances(document: Mapping[str, Any]) -> str:

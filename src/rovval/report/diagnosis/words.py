@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rovval.core.units import in_degrees
-from rovval.report.common.words import listed, number, per_cent, quantity
+from rovval.report.common.numbers import listed, number, per_cent, quantity
 from rovval.report.diagnosis.sentence import alone, beside_slop, nothing, undecided
 
 Document = Mapping[str, Any]

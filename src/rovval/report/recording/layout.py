@@ -6,7 +6,7 @@ from typing import Any
 
 from rovval.core.channels import AXES
 from rovval.core.data import Comparison
-from rovval.report.common import words
+from rovval.report.comparison import words
 
 EYE = (-1.6, -1.4, -1.1)  # of the vehicle's longest side: from astern, to port and above, with room for its arrows (chosen)
 

@@ -9,7 +9,8 @@ import numpy as np
 from rovval.core.channels import POSE
 from rovval.core.data import Array, Comparison, SimResult
 from rovval.core.frames import quaternion_from_euler
-from rovval.report.common import words
+from rovval.report.common.numbers import listed
+from rovval.report.comparison import words
 
 if TYPE_CHECKING:
     from rovval.vehicle.model import Vehicle
@@ -44,14 +45,14 @@ def draw(stream: Any, clock: list[Any], c: Comparison, vehicle: Vehicle, correct
         for n in level:
             measured[:, POSE.index(n)] = 0.0
         if level:
-            notes.append(f"Not measured: {words.listed(words.TITLES[n] for n in level)}; the vehicle is drawn with zero there.")
+            notes.append(f"Not measured: {listed(words.TITLES[n] for n in level)}; the vehicle is drawn with zero there.")
         tracks = {"measured": measured[:, :3], "windows": c.sim.windowed.eta[:, :3], **tracks}
         bodies = {"measured": measured, **bodies}
         if corrected is not None:
             tracks["corrected"] = corrected.windowed.eta[:, :3]
     else:
         missing = [n for n in ("x", "y", "z") if not run.measured(n)]
-        notes.append(f"{words.listed(missing)} not measured: 3-D shows the simulated free run alone.")
+        notes.append(f"{listed(missing)} not measured: 3-D shows the simulated free run alone.")
     _compass(stream, next(iter(tracks.values())))
     for name, points in tracks.items():
         stretch = c.sim.windowed.stretch if name in ("windows", "corrected") else np.zeros(len(run), np.int64)

@@ -15,7 +15,7 @@ import numpy as np
 from rovval.core.channels import AXES, POSE, VELOCITIES
 from rovval.core.data import Array, Comparison, SimResult
 from rovval.core.units import DEGREES
-from rovval.report.common import words
+from rovval.report.comparison import words
 from rovval.report.recording import world
 from rovval.report.recording.layout import blueprint
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from textwrap import wrap
 
 from rovval.core.units import in_degrees
-from rovval.report.common.words import number, per_cent
+from rovval.report.common.numbers import number, per_cent
 from rovval.report.diagnosis import calibration
 from rovval.report.diagnosis import words as dw
 from rovval.report.diagnosis.sentence import chance, moved

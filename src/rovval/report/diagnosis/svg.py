@@ -7,7 +7,7 @@ from html import escape
 from math import ceil, floor, log10
 
 from rovval.core.data import Array
-from rovval.report.common.words import number
+from rovval.report.common.numbers import number
 
 
 def text(x: float, y: float, words: str, css: str = "", anchor: str = "start") -> str:

@@ -1,61 +1,19 @@
-"""Numbers and findings in words, the same in every format: three digits that mean something, and a verdict in one sentence."""
+"""What a comparison says in sentences, the same in every format: where the gap is largest, and whether the simulator beats predicting no motion."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from math import floor, isfinite, log10
+from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from rovval.core.data import ChannelError, Comparison
-from rovval.core.units import in_degrees
-from rovval.report.comparison import windows
+from rovval.report.common.numbers import duration, listed, number, per_cent, quantity
 
 LINEAR = ("surge", "sway", "heave")
 TITLES = {"z": "depth", "phi": "roll angle", "theta": "pitch angle", "psi": "heading"}
 
 NO_VELOCITY = "No velocity was measured in this log, so there is no error per axis; what was measured of the pose is compared below."
-
-
-def number(value: float | None, digits: int = 3) -> str:
-    """A number with so many significant digits and no exponent while it stays readable: 0.0712, 12.3, 1240."""
-    if value is None or not isfinite(value):
-        return "-"
-    if value == 0.0:
-        return "0"
-    size = floor(log10(abs(float(f"{value:.{digits - 1}e}"))))
-    if not -5 <= size < 7:
-        return f"{value:.{digits - 1}e}"
-    return f"{value:.{max(0, digits - 1 - size)}f}"
-
-
-def per_cent(share: float | None) -> str:
-    """A share as a percentage: 64 %, 0.3 %, -30 %."""
-    if share is None or not isfinite(share):
-        return "-"
-    value = 100.0 * share
-    return f"{value:.1f} %" if 0.05 <= abs(value) < 0.95 else f"{value:.0f} %".replace("-0 %", "0 %")
-
-
-def listed(words: Iterable[str]) -> str:
-    """surge, sway and yaw."""
-    items = list(words)
-    return items[0] if len(items) == 1 else f"{', '.join(items[:-1])} and {items[-1]}" if items else ""
-
-
-def quantity(value: float, unit: str) -> str:
-    """Value and unit as people read them."""
-    shown, name = in_degrees(value, unit)
-    return f"{number(shown)} {name}".removesuffix(" 1")
-
-
-def duration(seconds: float) -> str:
-    """90 s, 12 min 5 s, 1 h 20 min."""
-    whole = round(seconds)
-    if whole < 120:
-        return f"{seconds:.0f} s" if seconds >= 10 else f"{seconds:.1f} s"
-    if whole < 7200:
-        return f"{whole // 60} min {whole % 60} s".removesuffix(" 0 s")
-    return f"{whole // 3600} h {whole % 3600 // 60} min"
 
 
 def synthetic(comparison: Comparison) -> str:
@@ -76,16 +34,16 @@ def verdict(comparison: Comparison) -> str:
 
 def sentences(comparison: Comparison) -> list[str]:
     """One sentence, and what must be said beside it: the axes with the largest gap, and whether the simulator does better than predicting no motion."""
-    table, where = comparison.windowed, f"over {windows.label(comparison)}"
+    table, where = comparison.windowed, f"over {windows(comparison)}"
     if not table:
         table, where = comparison.free, "over the free run"
     if not table:
-        return [s for s in (_pose_only(comparison), windows.shortened(comparison)) if s]
+        return [s for s in (_pose_only(comparison), shortened(comparison)) if s]
     lines, turns = [a for a in table if a in LINEAR], [a for a in table if a not in LINEAR]
     worst = [max(group, key=lambda a: table[a].rmse) for group in (lines, turns) if group]
     gaps = " and, turning, in ".join(_gap(a, table[a]) for a in worst)
     said = [f"{where.capitalize()}, the simulator is furthest from the vehicle in {gaps}; {_skill(table)}."]
-    if short := windows.shortened(comparison):
+    if short := shortened(comparison):
         said.append(short)
     if comparison.sim.stops:
         said.append(f"The simulation left sane limits, and the rows after that are not counted: {comparison.sim.stops[0]}.")
@@ -100,7 +58,7 @@ def _pose_only(comparison: Comparison) -> str:
     """For a log without velocities: the pose channels that it has."""
     gaps = listed([f"{TITLES[name]} ({quantity(row.rmse, row.unit)} rms)" for name, row in comparison.pose.items()])
     return (
-        f"No velocity was measured in this log. In {windows.label(comparison)}, started from the measured pose, "
+        f"No velocity was measured in this log. In {windows(comparison)}, started from the measured pose, "
         f"the simulator differs from the vehicle in {gaps}."
     )
 
@@ -143,7 +101,7 @@ def notes(comparison: Comparison) -> list[str]:
         form = "free run" if axis in comparison.windowed else "windows"
         result.append(f"{axis}: measured, but no row of the {form} could be compared")
     result.append(
-        f"{windows.label(comparison)}, each restarted from the measured state; RMS over all their rows, the first one included"
+        f"{windows(comparison)}, each restarted from the measured state; RMS over all their rows, the first one included"
     )
     result.append("no motion: the error of predicting zero velocity; skill = 1 - MSE / MSE(no motion)")
     return result
@@ -161,3 +119,29 @@ def facts(comparison: Comparison) -> dict[str, Any]:
         "thruster input": sim.input_source,
         "profile": run.profile,
     }
+
+
+def longest_s(c: Comparison) -> float:
+    """Length of the longest window (s): the one asked for, or less where no unbroken stretch of log and simulation is as long."""
+    rows = int(np.bincount(c.sim.windowed.stretch[c.sim.windowed.stretch >= 0], minlength=1).max())
+    whole = rows * c.run.dt > c.sim.window_s - 1.5 * c.run.dt
+    return c.sim.window_s if whole or not rows else (rows - 1) * c.run.dt
+
+
+def windows(c: Comparison) -> str:
+    """windows of 10 s; windows of at most 4.9 s; one window of 4.9 s."""
+    length, asked = longest_s(c), c.sim.window_s
+    if length == asked:
+        return f"windows of {asked:g} s"
+    many = len(np.unique(c.sim.windowed.stretch[c.sim.windowed.stretch >= 0])) > 1
+    return f"{'windows of at most' if many else 'one window of'} {length:.3g} s"
+
+
+def shortened(c: Comparison) -> str:
+    """What was done where windows of the length asked for do not fit; empty where they do."""
+    length, asked = longest_s(c), c.sim.window_s
+    if length == asked:
+        return ""
+    if c.run.duration_s < asked:
+        return f"This log is shorter than a window of {asked:g} s: it is simulated in {windows(c)}, restarted from the measured state."
+    return f"No unbroken stretch is as long as a window of {asked:g} s: it is simulated in {windows(c)}."

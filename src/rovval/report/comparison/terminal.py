@@ -1,17 +1,14 @@
-"""Results as text for a terminal: aligned, with units, degrees on the line under radians."""
+"""A comparison as text for a terminal: aligned, with units, degrees on the line under radians."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from textwrap import wrap
-from typing import Any
 
-from rovval.comparison import metrics
 from rovval.core.data import ChannelError, Comparison
 from rovval.core.units import DEGREE_UNITS, DEGREES
-from rovval.report.common import words
-from rovval.report.common.words import number, per_cent
-from rovval.report.comparison import windows
+from rovval.report.common.numbers import MISSING, duration, listed, number, per_cent, signed
+from rovval.report.comparison import words
 
 _HEAD = ("", "unit", "mean err", "MAE", "RMSE", "IAE", "no motion", "skill", "RMS", "IAE", "skill", "rows")
 
@@ -20,12 +17,12 @@ def text(comparison: Comparison) -> str:
     """The per-axis table: free run and windows side by side, then pose, the other simulator, and what was not measured."""
     c, run, sim = comparison, comparison.run, comparison.sim
     parts = [b] if (b := words.synthetic(c)) else []
-    length = words.duration(run.duration_s)
+    length = duration(run.duration_s)
     parts += [f"{run.id}: {sim.vehicle}, model {sim.model}, {length}, thruster input: {sim.input_source}"]
     parts += [*wrap(words.verdict(c), 100), ""]
     axes = dict.fromkeys((*c.free, *c.windowed))
     rows = [line for axis in axes for line in _axis(axis, c.free.get(axis), c.windowed.get(axis))]
-    over = ["", "", "free run", "", "", "", "", "", windows.label(c), "", "", ""]
+    over = ["", "", "free run", "", "", "", "", "", words.windows(c), "", "", ""]
     parts += [_grid([over, _HEAD, *rows]), ""] if rows else []
     if c.pose:
         lines = [line for name, row in c.pose.items() for line in _pose(name, row)]
@@ -33,7 +30,7 @@ def text(comparison: Comparison) -> str:
     if c.other:
         head = ("free run", "unit", f"{c.other_name} MAE", "ours MAE", f"{c.other_name} RMSE", "ours RMSE", "skill", "rows")
         parts += [_grid([head, *_other(c)]), ""]
-    parts += [f"not measured: {words.listed(c.not_measured)}"] if c.not_measured else []
+    parts += [f"not measured: {listed(c.not_measured)}"] if c.not_measured else []
     parts += [f"stopped: {s}" for s in sim.stops]
     parts += ["error = simulated - measured; IAE in unit x s; skill = 1 - MSE / MSE of the trivial predictor"]
     return "\n".join(parts) + "\n"
@@ -67,35 +64,18 @@ def _other(c: Comparison) -> list[list[str]]:
             main = unit == row.unit
             pairs = [row.mae, row.extra.get("ours_mae"), row.rmse, row.extra.get("ours_rmse")]
             numbers = [number(None if v is None else v * k) for v in pairs]
-            rows.append([axis if main else "", unit, *numbers, skill(row.skill) if main else "", str(row.n) if main else ""])
+            rows.append([axis if main else "", unit, *numbers, signed(row.skill) if main else "", str(row.n) if main else ""])
     return rows
-
-
-def diagnosis_text(document: Mapping[str, Any]) -> str:
-    """A diagnosis (schema rovval.diagnosis/1) for a terminal, the sentence first."""
-    from rovval.report.diagnosis import table as diagnosis_table
-
-    return diagnosis_table.text(document)
-
-
-def skill(value: float | None) -> str:
-    """Skill with its sign; "-" where the vehicle never moved."""
-    return "-" if value is None else f"{value:+.2f}" if abs(value) < 100 else f"{value:+.0f}"
 
 
 def _cells(row: ChannelError | None, factor: float, main: bool, names: Sequence[str]) -> list[str]:
     if row is None:
-        return ["-"] * (len(names) + 1)
-    return [*(number(getattr(row, n) * factor) for n in names), skill(row.skill) if main else ""]
+        return [MISSING] * (len(names) + 1)
+    return [*(number(getattr(row, n) * factor) for n in names), signed(row.skill) if main else ""]
 
 
 def _units(unit: str) -> list[tuple[str, float]]:
     return [(unit, 1.0), *([(DEGREE_UNITS[unit], DEGREES)] if unit in DEGREE_UNITS else [])]
-
-
-def iae_unit(unit: str) -> str:
-    """Unit of an IAE of a channel in ``unit``."""
-    return metrics.get("iae").unit_of(unit)
 
 
 def _grid(rows: Sequence[Sequence[str]]) -> str:

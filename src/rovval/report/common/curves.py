@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -62,3 +63,15 @@ def series(key: str, label: str, values: Array, short: str = "", hue: int | None
 def plot(identity: str, curves: Sequence[dict[str, Any]], x: str = "run", **more: bool) -> dict[str, Any]:
     """One picture; its place on the page is the element of that id. ``bare`` leaves out the time axis, ``error`` is a strip."""
     return {"id": identity, "x": x, "series": list(curves), **more}
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where the page shows the picture ``identity``: its heading, unit and a note beside, and under it a strip for the error if wanted."""
+
+    identity: str
+    title: str
+    unit: str
+    note: str = ""
+    css: str = ""
+    error: bool = False

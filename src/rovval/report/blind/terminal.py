@@ -1,0 +1,18 @@
+"""The score of a blind check as a table of plain text."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from rovval.report.blind.marks import COLUMNS, short, title
+
+
+def text(result: Mapping[str, Any]) -> str:
+    """Kinds of logs and the headline marks."""
+    width = max(len(name) for name in result["strata"]) + 1
+    lines = [f"{'stratum':<{width}}{'n':>5}" + "".join(f"{head:>11}" for head in COLUMNS.values())]
+    for name, row in result["strata"].items():
+        cells = "".join(f"{short(mark, row.get(mark)):>11}" for mark in COLUMNS)
+        lines.append(f"{name:<{width}}{row['n']:>5}{cells}")
+    return "\n".join([title(result), "", *lines, "", f"{len(result['wrong'])} answers wrong; all marks with intervals: score.html"])
