@@ -28,9 +28,12 @@ class Cause(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """``gap`` by axis is of the comparison's windows, else of the diagnosis. ``report`` and ``diagnosis`` are pages, relative to the reports;
-    what a batch has no step for is empty. ``beyond`` are the limits that the run exceeds, ``stops`` where its simulation left sane limits, and ``folder`` is where
-    its log lies below the folder of all logs."""
+    """One line of the table.
+
+    ``gap`` by axis is of the comparison's windows, else of the diagnosis. ``report`` and ``diagnosis`` are pages, relative to the reports; what a
+    batch has no step for is empty. ``beyond`` are the limits that the run exceeds, ``stops`` where its simulation left sane limits, and ``folder``
+    is where its log lies below the folder of all logs.
+    """
 
     run: str
     log: str

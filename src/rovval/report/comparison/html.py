@@ -81,11 +81,12 @@ def _drawn(c: Comparison) -> str:
 def _clock(c: Comparison) -> dict[str, str]:
     """What the time stamps are worth."""
     k = c.run.clock
+    offset = "could not be had" if k.offset_s is None else f"{number(k.offset_s)} s (positive: navigation is stamped late)"
     return {
         "stamps taken from": f"{k.stamp} clock",
         "samples matched to the grid": f"{k.matched} of {k.samples}",
         "largest gap": f"{number(k.largest_gap_s)} s",
-        "offset between thrusters and navigation": "could not be had" if k.offset_s is None else f"{number(k.offset_s)} s (positive: navigation is stamped late)",
+        "offset between thrusters and navigation": offset,
         "its correlation": "" if k.correlation is None else number(k.correlation),
         "note": k.note,
     }
