@@ -9,15 +9,6 @@ for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  
     os.environ.setdefault(threads, "1")  # small here, and threads that wait for one another cost three times the work itself
 
 ROOT = Path(__file__).parent.parent
-REAL_DATA = ROOT.parent / "shared" / "data"
-
-
-@pytest.fixture(scope="session")
-def real_data() -> Path:
-    """Published logs of real vehicles, which are not part of the repository; skips where they are absent."""
-    if not REAL_DATA.is_dir():
-        pytest.skip("the published logs of real vehicles (../shared/data) are not here")
-    return REAL_DATA
 
 
 @pytest.fixture(autouse=True, scope="session")

@@ -7,46 +7,21 @@ import sys
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 
-import numpy as np
 import pytest
-from typer.testing import CliRunner
+from command_case import SECONDS, run, write_dive
 
 from rovval import demo, ingest
-from rovval.cli.app import app
-from rovval.core.errors import BadInput, RovvalError, UsageProblem
-from rovval.demo import make
-from rovval.simulation import file as simfile
-from rovval.simulation import simulate
+from rovval.core.errors import BadInput, UsageProblem
 from rovval.storage import archive as store
 from rovval.vehicle import load
 
-RUNNER = CliRunner()
-SECONDS = 40
-
-
-@pytest.fixture(scope="session")
-def short_log(tmp_path_factory) -> Path:
-    """The first 40 s of the sample dive as a Merlin log."""
-    whole = demo.unpack(tmp_path_factory.mktemp("sample"))
-    short = whole.with_name("short.csv")
-    short.write_text("".join(whole.read_text().splitlines(keepends=True)[: SECONDS * 10 + 1]))
-    return short
-
 
 @pytest.fixture
-def here(tmp_path, monkeypatch, short_log):
-    """An empty working directory with the short log in it."""
+def here(tmp_path, monkeypatch):
+    """An empty working directory with the short dive in it."""
     monkeypatch.chdir(tmp_path)
-    shutil.copy(short_log, tmp_path / "dive.csv")
+    write_dive(tmp_path)
     return tmp_path
-
-
-def run(*args: str, code: int = 0):
-    done = RUNNER.invoke(app, list(args))
-    if isinstance(done.exception, RovvalError):
-        raise done.exception
-    assert done.exit_code == code, done.output
-    return done
 
 
 def test_ingest_then_use_the_id(here):
@@ -119,20 +94,6 @@ def test_simulate_writes_what_it_says_and_compare_takes_it(here):
     assert beside["other"]["axes"]["surge"]["rmse"] < beside["axes"]["surge"]["rmse"]
 
 
-def test_a_simulation_file_round_trips_exactly(here):
-    sim = simulate(store.open_run("dive.csv"), load("merlin"), effects=(demo.EFFECT,))
-    simfile.save(sim, Path("s.parquet"))
-    back = simfile.load(Path("s.parquet"))
-    for name in sim.__dataclass_fields__:
-        one, two = getattr(sim, name), getattr(back, name)
-        if name in ("free", "windowed"):
-            assert all(np.array_equal(getattr(one, f), getattr(two, f), equal_nan=True) for f in one.__dataclass_fields__)
-        elif isinstance(one, np.ndarray):
-            assert np.array_equal(one, two, equal_nan=True)
-        else:
-            assert one == two
-
-
 def test_another_simulators_velocities_are_laid_on_our_grid_by_their_clock(here):
     """A file that begins 5 s later is compared on the rows that the two have in common, not from its own start."""
     lines = Path("dive.csv").read_text().splitlines(keepends=True)
@@ -157,12 +118,10 @@ def test_simulations_whose_clocks_cannot_be_related_are_refused(here):
         run("compare", "dive.csv", "--with", "short.csv", "--with-profile", "p.toml", "--json")
 
 
-def test_the_two_platforms_differ(here):
-    one, two = (
-        json.loads(run("compare", "dive.csv", "--json", "--model", m).stdout)["axes"]["surge"]["rmse"]
-        for m in ("fossen", "freefloating")
-    )
-    assert one != two
+def test_a_platform_without_added_mass_moves_otherwise(here):
+    one, two = (json.loads(run("compare", "dive.csv", "--json", "--model", m).stdout) for m in ("fossen", "freefloating"))
+    assert (one["model"], two["model"]) == ("fossen", "freefloating")
+    assert abs(one["axes"]["surge"]["rmse"] - two["axes"]["surge"]["rmse"]) > 1e-3
 
 
 def test_view_without_opening_writes_the_recording(here):
@@ -171,62 +130,17 @@ def test_view_without_opening_writes_the_recording(here):
     assert Path("v/run.rrd").stat().st_size > 10_000
 
 
-def test_diagnose_writes_the_contract(here):
+def test_diagnose_writes_what_it_found_and_a_vehicle_that_has_it(here):
+    """Diagnosed beside the vehicle that it wrote, nothing is left to add."""
     done = run("diagnose", "dive.csv", "--json", "d.json", "--write-vehicle", "mended.toml")
     document = json.loads(Path("d.json").read_text())
-    assert document["schema"] == "rovval.diagnosis/1"
-    keys = {
-        "run",
-        "vehicle",
-        "model",
-        "window_s",
-        "calibration_slop",
-        "verdict",
-        "gap",
-        "causes",
-        "shrinkage",
-        "ranking",
-        "not_testable",
-    }
-    assert keys <= set(document)
-    assert document["verdict"] in done.stdout
-    assert not Path("reports").exists()
-    if document["causes"]:
-        assert load("mended.toml").effects
-        run("compare", "dive.csv", "--vehicle", "mended.toml", "--json")
-    else:
-        assert "not written" in done.stderr
-
-
-@pytest.mark.parametrize("number", ["1", "2", "3"])
-@pytest.mark.parametrize("name", ["merlin", "bluerov2_heavy"])
-def test_scenarios_meet_the_thesis(number, name):
-    document = json.loads(run("scenario", number, "--vehicle", name, "--json").stdout)
-    assert document["passed"]
-    assert all(check["holds"] for check in document["checks"])
-
-
-def test_scenario_2_is_table_6_1():
-    rows = json.loads(run("scenario", "2", "--json").stdout)["table_6_1"]
-    assert [round(r["thrust_n"], 1) for r in rows] == [82.7, 31.3, 83.8, 87.0, 35.2, 86.7, 31.4]
-
-
-def test_scenario_says_when_it_is_not_met(tmp_path):
-    """A vehicle that is trimmed far too light does not lie still."""
-    text = Path("src/rovval/vehicle/library/merlin.toml")
-    source = (Path(__file__).parents[2] / text).read_text().replace("volume = 2.86341", "volume = 3.2")
-    (tmp_path / "light.toml").write_text(source)
-    done = run("scenario", "1", "--vehicle", str(tmp_path / "light.toml"), code=1)
-    assert "FAIL" in done.stdout
-    assert "NOT passed" in done.stdout
-
-
-def test_scenario_4_lists_the_channels_and_5_compares(here):
-    four = json.loads(run("scenario", "4", "dive.csv", "--json").stdout)
-    assert all(c["holds"] for c in four["checks"])
-    assert {"u", "n:HFP", "n_cmd:HFP", "udot"} <= {c["channel"] for c in four["channels"]}
-    five = json.loads(run("scenario", "5", "dive.csv", "--json").stdout)
-    assert five["table_6_2"]["yaw"]["unit"] == "deg/s"
+    assert document["schema"] == "rovval.diagnosis/1" and not Path("reports").exists()
+    assert document["verdict"] == "explained" and done.stdout.startswith(f"{document['run']}: explained\n")
+    assert [cause["effect"] for cause in document["causes"]] == ["inflow_loss"]
+    assert load("mended.toml").effects["inflow_loss"]["loss"] == pytest.approx(document["causes"][0]["parameters"]["loss"]["value"])
+    again = run("diagnose", "dive.csv", "--vehicle", "mended.toml", "--json", "again.json", "--write-vehicle", "more.toml")
+    assert json.loads(Path("again.json").read_text())["verdict"] == "no_gap"
+    assert "more.toml not written" in again.stderr and not Path("more.toml").exists()
 
 
 @pytest.mark.parametrize(
@@ -256,31 +170,6 @@ def test_bad_input_is_one_message_and_nothing_half_written(here, args, kind, wor
         run(*args)
     assert words in str(refused.value)
     assert sorted(Path().rglob("*")) == before
-
-
-def test_demo_is_labelled_and_its_maker_is_deterministic(here):
-    done = run("demo", "--no-diagnose", "--out", "demo")
-    assert "SYNTHETIC" in done.stdout
-    assert demo.EFFECT in done.stdout
-    assert {p.name for p in Path("demo").iterdir()} == {
-        "SYNTHETIC_merlin_dive.csv",
-        "report.json",
-        "report.md",
-        "report.html",
-        "run.rrd",
-    }
-    for name in ("report.md", "report.html", "report.json"):
-        assert "synthetic" in Path("demo", name).read_text().lower()
-    make.main(Path("again.csv.gz"))
-    assert demo.SAMPLE.stat().st_size < 300_000
-    first, second = (np.genfromtxt(p, delimiter=",", skip_header=1) for p in (demo.SAMPLE, "again.csv.gz"))
-    np.testing.assert_allclose(first, second, atol=0.011)
-
-
-def test_demo_names_the_effect_that_was_left_in(here):
-    document = json.loads(run("demo", "--json", "--out", "demo", "-q").stdout)
-    assert [cause["effect"] for cause in document["diagnosis"]["causes"]] == [demo.EFFECT.partition(":")[0]]
-    assert all(Path(p).exists() for p in document["files"].values())
 
 
 def test_fit_passes_on_what_was_asked_for(here, monkeypatch):

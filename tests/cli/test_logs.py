@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from rovval.cli import logs
 from rovval.cli.app import app
-from rovval.core.errors import BadInput, Finding, UsageProblem
+from rovval.core.errors import Finding, UsageProblem
 from rovval.storage import archive as store
 
 RUNNER = CliRunner()
@@ -73,31 +73,6 @@ def test_logs_of_two_vehicles_are_not_taken_for_one(tmp_path, monkeypatch):
     with pytest.raises(UsageProblem, match=r"(?s)dive.csv is of merlin.*other.csv is of minerva"):
         logs.together(both, None, "merlin", Path("archive"))
     assert len(logs.together(both, "merlin", "merlin", Path("archive"))) == 2
-
-
-def without(*gone):
-    def edit(cells):
-        for name in gone:
-            cells[name][:] = ["nan"] * len(cells[name])
-
-    return edit
-
-
-def test_a_thruster_without_input_is_named(tmp_path):
-    from rovval.simulation.actuation import drive
-    from rovval.vehicle import load
-
-    run = store.open_run(write(tmp_path, edit=without("HFP_PV", "HFP_SP")), "merlin")
-    with pytest.raises(BadInput, match="measured speed is missing for HFP; speed set-point is missing for HFP"):
-        drive(run, load("merlin"))
-    run = store.open_run(write(tmp_path, edit=without("HFP_PV")), "merlin")
-    assert drive(run, load("merlin")).assumptions == ("measured speed is missing for HFP, so the speed set-point drives all thrusters",)
-
-
-def test_an_effect_is_shown_under_the_name_that_reports_give_it():
-    shown = RUNNER.invoke(app, ["show", "effect", "quadratic_drag[surge]"])
-    assert shown.exit_code == 0
-    assert shown.stdout == RUNNER.invoke(app, ["show", "effect", "quadratic_drag"]).stdout
 
 
 @pytest.mark.parametrize("command", [("fit", "--parameters", "inflow_loss", "--out"), ("diagnose", "--write-vehicle")])

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import rovval.ingest as ingest
+from rovval import vehicle
 from rovval.core.channels import channel
 from rovval.core.errors import BadInput, UsageProblem
 from rovval.ingest.profile import ATTITUDE, load_profile, parse_profile, profiles
@@ -24,6 +25,7 @@ def test_every_built_in_profile_loads(name):
     profile = load_profile(name)
     assert profile.name == name and profile.description
     assert profile.format in ingest.readers()
+    assert not profile.vehicle or vehicle.load(profile.vehicle).name == profile.vehicle
     for mapped in profile.channels:
         if mapped != ATTITUDE:
             channel(mapped)
