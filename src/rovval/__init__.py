@@ -102,11 +102,11 @@ def diagnose(
         BadInput: too little of the logs can be simulated, or thruster inputs are missing.
     """
     from rovval.diagnose.pipeline import diagnose
-    from rovval.pipeline.steps import held_against
+    from rovval.pipeline.steps import checked_against
 
     logs = _several(runs)
     nominal = _vehicle(logs[0], vehicle)
-    logs = [held_against(run, nominal) for run in logs]
+    logs = [checked_against(run, nominal) for run in logs]
     return diagnose(
         logs, nominal, model=model, window_s=window_s, calibration_slop=calibration_slop, seed=seed, progress=progress
     )  # fmt: skip

@@ -354,14 +354,14 @@ def test_numbers_map_onto_the_library(name, target, tmp_path: Path):
     """On a vehicle without slop, re-simulation with the true effect finds the number that the table says (sign, unit, reference)."""
     from rovval.blind.cases.log import write_csv
     from rovval.blind.scoring.oracle import fitted
-    from rovval.storage import archive as store
+    from rovval.storage.archive import open_run
 
     flight = fly(MERLIN, "rich", [Planted(name, target, 1.5)], 11, 180.0, slop=0.0)
     write_csv(flight, tmp_path / "log.csv")
     [effect] = flight.truth["effects"]
     wanted = numbers.true_values(effect, vehicle.load("merlin"))
     onsets = {truth.name(effect): effect["onset_s"]} if effect["onset_s"] else {}
-    found = fitted(store.open_run(tmp_path / "log.csv", "merlin"), vehicle.load("merlin"), [truth.name(effect)], onsets)
+    found = fitted(open_run(tmp_path / "log.csv", "merlin"), vehicle.load("merlin"), [truth.name(effect)], onsets)
     if not wanted:
         pytest.skip("the planted size lies outside the library's bounds: not scored")
     for key, value in wanted.items():

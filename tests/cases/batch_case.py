@@ -9,7 +9,7 @@ import numpy as np
 
 from rovval.demo import make
 from rovval.pipeline.plan import Task
-from rovval.pipeline.work import Outcome, work
+from rovval.pipeline.worker import Outcome, work
 
 
 def write_log(path: Path, seconds: float = 5.0, seed: int = 0) -> Path:

@@ -17,7 +17,7 @@ from rovval.blind.plant.spec import Planted
 from rovval.core.channels import POSE, VELOCITIES
 from rovval.core.data import Array, ClockReport, Reason, Run
 from rovval.simulation import simulate
-from rovval.storage import archive as store
+from rovval.storage.archive import open_run
 from rovval.vehicle.model import Vehicle, allocation
 
 LIBRARY = Path(vehicle.__file__).parent / "library"
@@ -82,7 +82,7 @@ def foreign(
     flight = fly(LIBRARY / f"{v}.toml", mission, effects, seed, seconds, slop)
     path = folder / f"foreign{seed}.csv"
     write_csv(flight, path)
-    return store.open_run(path, "merlin", folder / "archive")
+    return open_run(path, "merlin", folder / "archive")
 
 
 def without(run: Run, *channels: str) -> Run:

@@ -16,7 +16,7 @@ from real_data import real
 from rovval import vehicle
 from rovval.core.data import Run
 from rovval.fit import fit
-from rovval.storage import archive as store
+from rovval.storage.archive import open_run
 from rovval.vehicle.model import Vehicle
 
 TUNED = ("drag", "trim", "thrust", "added_mass", "thrust_lag", "rpm_scale", "reverse_asymmetry", "attitude_bias")
@@ -35,7 +35,7 @@ def tank(name: str) -> tuple[Run, Vehicle]:
 def stretch(name: str) -> Run:
     """A run by its letter, or a half of it."""
     letter, _, half = name.partition(", ")
-    run = store.open_run(real(f"bluerov2_tank/run_{letter}.csv"))
+    run = open_run(real(f"bluerov2_tank/run_{letter}.csv"))
     middle = round(HALF_S / run.dt)
     if not half:
         return run

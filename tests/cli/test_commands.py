@@ -12,7 +12,7 @@ from command_case import SECONDS, run, write_dive
 
 from rovval import demo, ingest
 from rovval.core.errors import BadInput, UsageProblem
-from rovval.storage import archive as store
+from rovval.storage.archive import run_ids
 from rovval.vehicle import load
 
 
@@ -27,7 +27,7 @@ def here(tmp_path, monkeypatch):
 def test_ingest_then_use_the_id(here):
     done = run("ingest", "dive.csv")
     name = done.stdout.strip()
-    assert store.runs(Path("archive")) == (name,)
+    assert run_ids(Path("archive")) == (name,)
     assert run("list", "run").stdout.split() == [name]
     assert name in run("show", "run", name).stdout
     shown = json.loads(run("show", "run", name, "--json").stdout)
@@ -47,7 +47,7 @@ def test_ingest_of_a_folder_goes_on_after_a_bad_log(here):
     rows = json.loads(done.stdout)["logs"]
     assert [(Path(r["log"]).name, r["run"] is None) for r in rows] == [("bad.csv", True), ("dive.csv", False)]
     assert "bad.csv" in done.stderr
-    assert len(store.runs(Path("archive"))) == 1
+    assert len(run_ids(Path("archive"))) == 1
 
 
 def test_compare_prints_the_table_and_writes_the_report(here):

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from rovval.cli import logs
 from rovval.cli.app import app
 from rovval.core.errors import Finding, UsageProblem
-from rovval.storage import archive as store
+from rovval.storage.archive import open_run
 
 RUNNER = CliRunner()
 
@@ -34,13 +34,13 @@ def test_what_was_found_in_a_log_is_said_beside_its_result(tmp_path, monkeypatch
 
 
 def test_many_findings_are_counted_not_poured_out(tmp_path, capsys):
-    run = store.open_run(write(tmp_path), "merlin")
-    logs.tell(replace(run, findings=tuple(Finding("gap", f"c{k}", "long") for k in range(50))))
+    run = open_run(write(tmp_path), "merlin")
+    logs.print_findings(replace(run, findings=tuple(Finding("gap", f"c{k}", "long") for k in range(50))))
     said = capsys.readouterr().err.splitlines()
     assert said[0] == f"{run.id}: 50 findings in this log"
     assert len(said) == logs.SHOWN + 2
     assert "and 44 more" in said[-1]
-    logs.tell(replace(run, findings=()))
+    logs.print_findings(replace(run, findings=()))
     assert not capsys.readouterr().err
 
 
@@ -57,22 +57,22 @@ def test_a_log_given_twice_is_no_second_log(tmp_path):
     copy.parent.mkdir()
     copy.write_bytes(path.read_bytes())
     with pytest.raises(UsageProblem, match="given twice"):
-        logs.together([str(path), str(copy)], None, "merlin", Path("archive"))
+        logs.opened_as_one([str(path), str(copy)], None, "merlin", Path("archive"))
 
 
 def test_logs_of_two_vehicles_are_not_taken_for_one(tmp_path, monkeypatch):
     path, other = write(tmp_path), write(tmp_path, 200, "other.csv")
-    opened = store.open_run
+    opened = open_run
 
     def of_another(source, *rest):
         run = opened(source, *rest)
         return replace(run, vehicle="minerva") if "other" in str(source) else run
 
-    monkeypatch.setattr(store, "open_run", of_another)
+    monkeypatch.setattr("rovval.storage.archive.open_run", of_another)
     both = [str(path), str(other)]
     with pytest.raises(UsageProblem, match=r"(?s)dive.csv is of merlin.*other.csv is of minerva"):
-        logs.together(both, None, "merlin", Path("archive"))
-    assert len(logs.together(both, "merlin", "merlin", Path("archive"))) == 2
+        logs.opened_as_one(both, None, "merlin", Path("archive"))
+    assert len(logs.opened_as_one(both, "merlin", "merlin", Path("archive"))) == 2
 
 
 @pytest.mark.parametrize("command", [("fit", "--parameters", "inflow_loss", "--out"), ("diagnose", "--write-vehicle")])

@@ -8,7 +8,7 @@ import pytest
 from report_cases import make_run, make_sim, motion
 
 from rovval.comparison import compare
-from rovval.comparison.error_growth import horizons
+from rovval.comparison.error_growth import error_growth
 from rovval.core.channels import AXES, VELOCITIES
 from rovval.core.data import Reason, Run, SimResult, Trajectory
 from rovval.core.errors import BadInput, SimulationStopped
@@ -136,7 +136,7 @@ def test_a_run_without_velocities_and_pose_is_refused() -> None:
 
 def test_error_grows_along_the_window() -> None:
     run = make_run(1050)
-    h = horizons(compare(run, make_sim(run)))["surge"]
+    h = error_growth(compare(run, make_sim(run)))["surge"]
     assert h.rms[0] < h.rms[20] < h.rms[-1] and h.seconds[-1] == pytest.approx(9.9) and h.n[0] == 11 and h.n[-1] == 10
     near, end = h.at(2.0), h.at(10.0)
     assert near and end and near[0] == pytest.approx(2.0) and end[0] == pytest.approx(9.9) and h.at(30.0) is None
@@ -150,4 +150,4 @@ def test_rows_outside_any_window_are_left_out() -> None:
     reasons = np.where(stretch < 0, Reason.NOT_LOGGED, Reason.OK)
     c = compare(run, replace(sim, windowed=replace(sim.windowed, stretch=stretch, reasons=reasons)))
     assert c.windowed["surge"].n == 200 and c.free["surge"].n == 300
-    assert horizons(c)["surge"].n[0] == 2
+    assert error_growth(c)["surge"].n[0] == 2

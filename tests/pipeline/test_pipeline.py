@@ -14,14 +14,14 @@ from pathlib import Path
 import batch_case
 import pytest
 
-from rovval.core import code_version as engine
+from rovval.core.code_version import source_hash
 from rovval.core.errors import BadInput, Finding, UsageProblem
 from rovval.pipeline import batch, cluster, config, lock
-from rovval.pipeline.code import NO_RESULT, code
-from rovval.pipeline.execute import execute
+from rovval.pipeline.hashes import NO_RESULT, code_on_disk
 from rovval.pipeline.plan import plan, why
-from rovval.pipeline.work import work
-from rovval.storage import archive as store
+from rovval.pipeline.processes import execute
+from rovval.pipeline.worker import work
+from rovval.storage.archive import load_run, run_ids, save_run
 
 CASES = Path(__file__).parents[1] / "cases"
 
@@ -47,7 +47,7 @@ def test_new_logs_are_done_and_unchanged_ones_skipped(site):
     first = batch.run(path, workers=2)
     assert counts(first) == {"done": 3}
     assert first["exit_code"] == 0
-    assert len(store.runs(site / "archive")) == 3
+    assert len(run_ids(site / "archive")) == 3
     stamps = {p: p.stat().st_mtime_ns for p in (site / "archive").rglob("*") if p.is_file()}
     second = batch.run(path, workers=2)
     assert counts(second) == {"unchanged": 3}
@@ -74,12 +74,12 @@ def test_a_touched_log_of_equal_content_is_not_done_again(site):
 def test_a_lost_output_is_made_again(site):
     path = batch_case.write_pipeline(site)
     batch.run(path, workers=1)
-    run = store.runs(site / "archive")[0]
+    run = run_ids(site / "archive")[0]
     for file in (site / "archive" / run).iterdir():
         file.unlink()
     (site / "archive" / run).rmdir()
     assert counts(batch.run(path, workers=1)) == {"done": 1, "unchanged": 2}
-    assert len(store.runs(site / "archive")) == 3
+    assert len(run_ids(site / "archive")) == 3
 
 
 def test_keys_depend_on_what_a_step_depends_on(site):
@@ -165,9 +165,9 @@ def test_kill_9_in_the_middle_and_start_again(site):
     for number in range(3):
         batch_case.write_log(site / "logs" / f"more{number}.csv", seed=100 + number)
     path = batch_case.write_pipeline(site)
-    code = f"import sys; sys.path.insert(0, {str(CASES)!r})\nimport batch_case\nfrom rovval.pipeline import batch\n"
-    code += f"from pathlib import Path\nbatch.work = batch_case.paused\nbatch.run(Path({str(path)!r}), workers=1)\n"
-    with subprocess.Popen([sys.executable, "-c", code]) as process:
+    code_on_disk = f"import sys; sys.path.insert(0, {str(CASES)!r})\nimport batch_case\nfrom rovval.pipeline import batch\n"
+    code_on_disk += f"from pathlib import Path\nbatch.work = batch_case.paused\nbatch.run(Path({str(path)!r}), workers=1)\n"
+    with subprocess.Popen([sys.executable, "-c", code_on_disk]) as process:
         deadline = time.monotonic() + 60
         while len(list((site / "reports").glob("*/record.json"))) < 2 and time.monotonic() < deadline:
             time.sleep(0.02)
@@ -287,10 +287,10 @@ def test_results_of_other_code_are_made_anew_and_it_is_said(site, monkeypatch):
     """The version's number stays the same while the code changes."""
     path = batch_case.write_pipeline(site)
     assert batch.run(path, workers=1)["why"] == {"new": 3}
-    monkeypatch.setattr("rovval.pipeline.plan.code", lambda: "0123456789ab")
-    monkeypatch.setattr("rovval.pipeline.work.mine", lambda: "0123456789ab")
+    monkeypatch.setattr("rovval.pipeline.plan.code_on_disk", lambda: "0123456789ab")
+    monkeypatch.setattr("rovval.pipeline.worker.code_of_this_process", lambda: "0123456789ab")
     reasons = {why(task) for task in batch.dry_run(path).todo}
-    assert reasons == {f"made by other code of rovval ({code()}; now 0123456789ab)"}
+    assert reasons == {f"made by other code of rovval ({code_on_disk()}; now 0123456789ab)"}
     assert {work(task)["status"] for task in tasks_of(path)} == {"done"}
     assert counts(batch.run(path, workers=1)) == {"unchanged": 3}
 
@@ -299,14 +299,14 @@ def test_a_run_of_other_code_gives_way_in_the_archive(site):
     """It used to stand in the way: the log was set aside for holding another run of the same id."""
     path = batch_case.write_pipeline(site)
     batch.run(path, workers=1)
-    old = store.load(store.runs(site / "archive")[0], site / "archive")
+    old = load_run(run_ids(site / "archive")[0], site / "archive")
     shutil.rmtree(site / "archive" / old.id)
     other = replace(old, values={**old.values, "z": old.values["z"] + 1.0}, findings=(Finding("odd", "z", "deeper"),))
-    store.save(other, site / "archive")
+    save_run(other, site / "archive")
     with pytest.raises(BadInput, match="another run of the same id"):
-        store.save(old, site / "archive")
-    store.save(old, site / "archive", overwrite=True)
-    found = store.load(old.id, site / "archive")
+        save_run(old, site / "archive")
+    save_run(old, site / "archive", overwrite=True)
+    found = load_run(old.id, site / "archive")
     assert found.findings == old.findings and (found.values["z"] == old.values["z"]).all()
     assert [p.name for p in (site / "archive").iterdir() if p.name.startswith(".")] == []
 
@@ -320,5 +320,5 @@ def test_a_worker_of_other_code_stops_the_batch_and_sets_no_log_aside(site):
 
 def test_the_code_of_results_is_what_computes_them():
     """Not the tests, the blind check or the command line; vehicles and profiles count by their own content."""
-    assert code() == engine.digest(NO_RESULT, (".py",)) != engine.digest((), (".py",))
-    assert re.fullmatch("[0-9a-f]{12}", code())
+    assert code_on_disk() == source_hash(NO_RESULT, (".py",)) != source_hash((), (".py",))
+    assert re.fullmatch("[0-9a-f]{12}", code_on_disk())

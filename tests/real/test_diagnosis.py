@@ -15,7 +15,7 @@ from rovval import vehicle
 from rovval.core.data import Run
 from rovval.diagnose import diagnose
 from rovval.fit import fit
-from rovval.storage import archive as store
+from rovval.storage.archive import open_run
 from rovval.vehicle.model import Vehicle
 
 TUNED = (
@@ -34,13 +34,13 @@ slow = pytest.mark.slow
 @pytest.fixture(scope="module")
 def run_a() -> Run:
     """The longest of the tank runs: 130 s of all six axes."""
-    return store.open_run(real("bluerov2_tank/run_a.csv"))
+    return open_run(real("bluerov2_tank/run_a.csv"))
 
 
 @pytest.fixture(scope="module")
 def fitted(tmp_path_factory) -> Vehicle:
     """The BlueROV2 tuned to the two other tank runs."""
-    others = [store.open_run(real(f"bluerov2_tank/run_{name}.csv")) for name in "bc"]
+    others = [open_run(real(f"bluerov2_tank/run_{name}.csv")) for name in "bc"]
     path: Path = tmp_path_factory.mktemp("fitted") / "bluerov2_fitted.toml"
     path.write_text(fit(others, vehicle.load("bluerov2_heavy"), TUNED).vehicle, encoding="utf-8")
     return vehicle.load(path)
@@ -53,7 +53,7 @@ def named(document: dict[str, Any]) -> set[str]:
 
 def test_ballast_is_found_in_heave_alone():
     """The vehicle released without ballast: the bags' README has a net buoyancy of -4.8 to -5.6 N from its own fit."""
-    result = fit([store.open_run(real("bluerov2_ballast/ff_nb1.bag"))], vehicle.load("bluerov2_heavy"), ["buoyancy_error"])
+    result = fit([open_run(real("bluerov2_ballast/ff_nb1.bag"))], vehicle.load("bluerov2_heavy"), ["buoyancy_error"])
     tuned = result.document["parameters"]["buoyancy_error.force"]
     assert tuned["low"] < -5.2 < tuned["high"]
     assert -7.0 < tuned["value"] < -3.5
@@ -61,7 +61,7 @@ def test_ballast_is_found_in_heave_alone():
 
 def test_ballast_is_named():
     """By `diagnose`, with its sign and size, in heave; the log holds four windows of free motion."""
-    document = diagnose([store.open_run(real("bluerov2_ballast/ff_nb1.bag"))], vehicle.load("bluerov2_heavy")).document
+    document = diagnose([open_run(real("bluerov2_ballast/ff_nb1.bag"))], vehicle.load("bluerov2_heavy")).document
     assert max(document["gap"]["axes"], key=lambda axis: document["gap"]["axes"][axis]["share"]) == "heave"
     cause = document["causes"][0]
     assert cause["effect"] == "buoyancy_error"

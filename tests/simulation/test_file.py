@@ -5,16 +5,16 @@ import numpy as np
 from command_case import write_dive
 
 from rovval import demo
-from rovval.simulation import file as simfile
 from rovval.simulation import simulate
+from rovval.simulation.file import load_simulation, save_simulation
 from rovval.storage.archive import open_run
 from rovval.vehicle import load
 
 
 def test_a_simulation_file_round_trips_exactly(tmp_path):
     sim = simulate(open_run(write_dive(tmp_path)), load("merlin"), effects=(demo.EFFECT,))
-    simfile.save(sim, tmp_path / "s.parquet")
-    back = simfile.load(tmp_path / "s.parquet")
+    save_simulation(sim, tmp_path / "s.parquet")
+    back = load_simulation(tmp_path / "s.parquet")
     for name in sim.__dataclass_fields__:
         one, two = getattr(sim, name), getattr(back, name)
         if name in ("free", "windowed"):

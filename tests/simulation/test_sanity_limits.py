@@ -14,7 +14,7 @@ from rovval.cli.app import app
 from rovval.core.channels import channel
 from rovval.core.data import Run
 from rovval.core.errors import SimulationStopped
-from rovval.pipeline.steps import held_against
+from rovval.pipeline.steps import checked_against
 from rovval.simulation import simulate
 from rovval.simulation.sanity_limits import RATE, SPEED, first_beyond, overspeed
 
@@ -34,8 +34,8 @@ def test_a_speed_beyond_the_files_limit_is_a_finding():
     [found] = overspeed(run, MERLIN)
     assert (found.code, found.where) == ("overspeed", "n:VFP")
     assert "300 of 600 values beyond the 500 rpm of vehicle merlin, worst 3000 rpm" in found.detail
-    beside = held_against(run, MERLIN)
-    assert held_against(beside, MERLIN).findings == beside.findings, "said once"
+    beside = checked_against(run, MERLIN)
+    assert checked_against(beside, MERLIN).findings == beside.findings, "said once"
 
 
 def test_a_file_without_a_limit_raises_none():
@@ -64,7 +64,7 @@ def test_a_wild_motion_ends_where_it_leaves_the_limits(rpm):
     for motion in (sim.free, sim.windowed):
         assert first_beyond(np.nan_to_num(motion.nu)) is None
     with pytest.raises(SimulationStopped, match=r"left sane limits: stretch from 0\.0 s"):
-        logs.stopped(sim)
+        logs.refuse_stopped(sim)
 
 
 @pytest.mark.parametrize("command", ["compare", "simulate"])

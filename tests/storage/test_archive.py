@@ -11,7 +11,7 @@ import pytest
 
 from rovval.core.data import Run
 from rovval.core.errors import BadInput
-from rovval.storage.archive import load, open_run, runs, save
+from rovval.storage.archive import load_run, open_run, run_ids, save_run
 
 
 @pytest.fixture
@@ -35,32 +35,32 @@ def same(a: Run, b: Run) -> None:
 
 
 def test_round_trip_is_exact(run, tmp_path):
-    place = save(run, tmp_path / "archive")
-    same(load(run.id, tmp_path / "archive"), run)
-    same(load(place), run)
+    place = save_run(run, tmp_path / "archive")
+    same(load_run(run.id, tmp_path / "archive"), run)
+    same(load_run(place), run)
     same(open_run(run.id, archive=tmp_path / "archive"), run)
     same(open_run(place), run)
-    assert runs(tmp_path / "archive") == (run.id,)
+    assert run_ids(tmp_path / "archive") == (run.id,)
     assert not run.ok("u").all()
 
 
 def test_saving_the_same_run_again_changes_nothing(run, tmp_path):
-    place = save(run, tmp_path)
+    place = save_run(run, tmp_path)
     before = {p.name: (p.stat().st_mtime_ns, p.read_bytes()) for p in place.iterdir()}
-    assert save(run, tmp_path) == place
+    assert save_run(run, tmp_path) == place
     assert before == {p.name: (p.stat().st_mtime_ns, p.read_bytes()) for p in place.iterdir()}
 
 
 def test_another_run_under_the_same_id_is_refused(run, tmp_path):
-    save(run, tmp_path)
+    save_run(run, tmp_path)
     other = replace(run, values={n: v + 1.0 for n, v in run.values.items()})
     with pytest.raises(BadInput, match="another run of the same id"):
-        save(other, tmp_path)
-    same(load(run.id, tmp_path), run)
+        save_run(other, tmp_path)
+    same(load_run(run.id, tmp_path), run)
 
 
 def test_the_manifest_says_what_made_the_run(run, tmp_path):
-    manifest = json.loads((save(run, tmp_path) / "manifest.json").read_text())
+    manifest = json.loads((save_run(run, tmp_path) / "manifest.json").read_text())
     assert manifest["schema"] == "rovval.run/1"
     assert manifest["sha256"] == run.sha256 and manifest["profile"] == "merlin"
     assert {"rovval", "numpy", "polars", "python"} <= set(manifest["versions"])
@@ -69,17 +69,17 @@ def test_the_manifest_says_what_made_the_run(run, tmp_path):
 
 
 def test_damage_is_said(run, tmp_path):
-    place = save(run, tmp_path)
+    place = save_run(run, tmp_path)
     table = (place / "run.parquet").read_bytes()
     (place / "run.parquet").write_bytes(table[:-20])
     with pytest.raises(BadInput, match=r"not the table"):
-        load(run.id, tmp_path)
+        load_run(run.id, tmp_path)
     with pytest.raises(BadInput, match="damaged run"):
-        save(run, tmp_path)
+        save_run(run, tmp_path)
     (place / "run.parquet").write_bytes(table)
     (place / "manifest.json").write_text("{")
     with pytest.raises(BadInput, match="damaged"):
-        load(run.id, tmp_path)
+        load_run(run.id, tmp_path)
 
 
 def test_a_failed_write_leaves_nothing(run, tmp_path, monkeypatch):
@@ -88,18 +88,18 @@ def test_a_failed_write_leaves_nothing(run, tmp_path, monkeypatch):
 
     monkeypatch.setattr("pathlib.Path.write_bytes", full)
     with pytest.raises(Exception, match="No space left"):
-        save(run, tmp_path / "archive")
+        save_run(run, tmp_path / "archive")
     assert list((tmp_path / "archive").iterdir()) == []
 
 
 def test_unknown_source_names_what_there_is(run, tmp_path):
-    save(run, tmp_path / "archive")
+    save_run(run, tmp_path / "archive")
     with pytest.raises(BadInput, match="no such log file, and no such run") as refused:
         open_run("dive_99", archive=tmp_path / "archive")
     assert run.id in refused.value.hint
     with pytest.raises(BadInput, match="no such run"):
-        load("dive_99", tmp_path / "archive")
-    assert runs(tmp_path / "nowhere") == ()
+        load_run("dive_99", tmp_path / "archive")
+    assert run_ids(tmp_path / "nowhere") == ()
 
 
 def test_the_id_follows_content_and_profile(run, tmp_path):

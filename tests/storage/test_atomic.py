@@ -10,10 +10,9 @@ import pytest
 
 import rovval.cli
 from rovval.core.errors import Unwritable, UsageProblem
-from rovval.pipeline import work as worker
-from rovval.pipeline.atomic import write_text
-from rovval.pipeline.code import mine
-from rovval.storage import atomic as whole
+from rovval.pipeline import worker
+from rovval.pipeline.hashes import code_of_this_process
+from rovval.storage.atomic import LEFTOVER, drafts, refusal, refuse_unwritable, write_text
 
 
 def full(*args: object, **kwargs: object) -> None:
@@ -28,7 +27,7 @@ def test_a_failure_leaves_the_old_files_and_nothing_beside_them(tmp_path):
         b.write_text("ne")
         full()
 
-    with pytest.raises(Unwritable, match="No space left"), whole.drafts(tmp_path / "a", tmp_path / "b") as [a, b]:
+    with pytest.raises(Unwritable, match="No space left"), drafts(tmp_path / "a", tmp_path / "b") as [a, b]:
         half(a, b)
     assert [p.name for p in tmp_path.iterdir()] == ["a"]
     assert (tmp_path / "a").read_text() == "old"
@@ -47,24 +46,24 @@ def test_a_folder_in_place_of_a_file_is_refused_by_its_own_name(tmp_path):
     """The message used to name the draft, which the user never saw."""
     with pytest.raises(UsageProblem, match=rf"^{tmp_path}: cannot be written: Is a directory"):
         write_text(tmp_path, "text")
-    assert not list(tmp_path.parent.glob(whole.LEFTOVER))
+    assert not list(tmp_path.parent.glob(LEFTOVER))
 
 
 def test_places_are_checked_before_the_work(tmp_path):
     (tmp_path / "file").touch()
-    whole.check(tmp_path / "deep" / "er" / "d.json", None)
+    refuse_unwritable(tmp_path / "deep" / "er" / "d.json", None)
     assert not (tmp_path / "deep").exists()
     for wrong in (tmp_path, tmp_path / "file" / "d.json"):
         with pytest.raises(UsageProblem, match="cannot be written"):
-            whole.check(wrong)
+            refuse_unwritable(wrong)
 
 
 def test_a_full_disk_stops_the_batch_and_sets_no_log_aside(tmp_path, monkeypatch):
     def steps(task: object) -> None:
-        raise whole.refusal(tmp_path / "record.json", OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)))
+        raise refusal(tmp_path / "record.json", OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)))
 
     monkeypatch.setattr(worker, "_steps", steps)
-    outcome = worker.work(SimpleNamespace(code=mine()))  # type: ignore[arg-type]
+    outcome = worker.work(SimpleNamespace(code=code_of_this_process()))  # type: ignore[arg-type]
     assert outcome["status"] == "stopped"
     assert "No space left" in outcome["record"]["reason"]
 

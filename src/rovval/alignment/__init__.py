@@ -16,7 +16,7 @@ from typing import cast, get_args
 
 import numpy as np
 
-from rovval.alignment.clock_offset import lag
+from rovval.alignment.clock_offset import estimated_offset
 from rovval.alignment.resampling import ON_GRID, resample
 from rovval.alignment.series import bad_samples
 from rovval.core.channels import POSE, VELOCITIES, Resampling, Rule, channel
@@ -101,7 +101,7 @@ def _clock(raw: RawLog, values: Mapping[str, Array], start: float, dt: float, re
     off = [np.abs((s.t - start) / dt - np.rint((s.t - start) / dt)) for s in span.values()]
     matched = int(sum((o <= ON_GRID + 1e-5).sum() for o in off))
     largest = max(resampled[name].largest_gap_s for name in span)
-    offset, correlation, note = lag(values, dt)
+    offset, correlation, note = estimated_offset(values, dt)
     stamp = "+".join(sorted({s.stamp for s in span.values()}))
     return ClockReport(stamp, sum(len(s.t) for s in span.values()), matched, largest, offset, correlation, note)
 

@@ -20,7 +20,7 @@ ENOUGH = 0.3  # correlation below which no lag is named
 LEAST_S = 30.0  # a shorter log has too few manoeuvres
 
 
-def lag(values: Mapping[str, Array], dt: float) -> tuple[float | None, float | None, str]:
+def estimated_offset(values: Mapping[str, Array], dt: float) -> tuple[float | None, float | None, str]:
     """Offset (s, positive: navigation late), its correlation, and a note; None where it cannot be had."""
     drive, family = _drive(values)
     moved = [_filled(values[n]) for n in ("u", "v", "w") if n in values]

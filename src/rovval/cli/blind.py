@@ -97,9 +97,9 @@ def score(
       rovval blind score sets/small
     """
     from rovval.blind.scoring import score as scorer
-    from rovval.pipeline.atomic import write_text
     from rovval.report.blind import html as blind_html
     from rovval.report.blind import terminal as blind_terminal
+    from rovval.storage.atomic import write_text
 
     result = scorer.score(folder, key=key, kept=history, workers=workers, say=_steps(quiet))
     write_text(folder / "score.html", blind_html.text(result))

@@ -64,7 +64,7 @@ def command(
     show("read", 0.0)
     run = logs.opened(source, profile, archive, quiet)
     nominal = vehicle_of(run, vehicle)
-    run = logs.held_against(run, nominal, quiet)
+    run = logs.checked_against(run, nominal, quiet)
     other = None if with_ is None else other_velocities(with_, run, with_profile, archive)
     show("simulate", 0.3)
     sim = simulated(run, nominal, model.value, tuple(effect or ()), window)
@@ -75,7 +75,7 @@ def command(
     show("report", 1.0)
     if beyond := tolerances.exceeded(limits, document):
         output.say("\n".join(f"rovval: tolerance exceeded: {line}" for line in beyond))
-    logs.stopped(sim)
+    logs.refuse_stopped(sim)
     if beyond:
         raise typer.Exit(1)
 

@@ -60,14 +60,14 @@ def command(
     """
     from rovval.diagnose import diagnose
     from rovval.pipeline.steps import vehicle_of
-    from rovval.storage import atomic as whole
+    from rovval.storage.atomic import refuse_unwritable
 
     anywhere = _folder(out, json_, "")
-    whole.check(None if str(json_) == "-" else json_, write_vehicle, anywhere and anywhere / "diagnosis.json")
-    options.spare(vehicle, write_vehicle)
-    runs = logs.together(sources, vehicle, profile, archive, quiet)
+    refuse_unwritable(None if str(json_) == "-" else json_, write_vehicle, anywhere and anywhere / "diagnosis.json")
+    options.refuse_overwriting(vehicle, write_vehicle)
+    runs = logs.opened_as_one(sources, vehicle, profile, archive, quiet)
     nominal = vehicle_of(runs[0], vehicle)
-    runs = [logs.held_against(run, nominal, quiet) for run in runs]
+    runs = [logs.checked_against(run, nominal, quiet) for run in runs]
     found = diagnose(
         runs, nominal, model=model.value, window_s=window, calibration_slop=calibration_slop, seed=seed,
         progress=output.progress(quiet),
@@ -101,8 +101,8 @@ def _as_typed(found: Diagnosis, sources: dict[str, str], vehicle: str | None, op
 
 def _print(found: Diagnosis, json_: Path | None, quiet: bool) -> None:
     """The diagnosis on stdout as text, or as JSON where that was asked for; JSON into its file."""
-    from rovval.pipeline.atomic import write_json
     from rovval.report.diagnosis.terminal import text as diagnosis_text
+    from rovval.storage.atomic import write_json
 
     if str(json_) == "-":
         output.result_json(found.document)
@@ -116,7 +116,7 @@ def _print(found: Diagnosis, json_: Path | None, quiet: bool) -> None:
 def _write(found: Diagnosis, folder: Path | None, mended: Path | None, quiet: bool) -> None:
     """The report and the mended vehicle, each where it was asked for."""
     from rovval import report
-    from rovval.pipeline.atomic import write_text
+    from rovval.storage.atomic import write_text
 
     if folder is not None:
         report.write_diagnosis(found.document, folder)

@@ -32,13 +32,12 @@ def command(
       rovval fit dive.csv --parameters quadratic_drag[surge],quadratic_drag[sway] --out tuned.toml
     """
     from rovval.fit import fit
-    from rovval.pipeline.atomic import write_text
     from rovval.pipeline.steps import vehicle_of
-    from rovval.storage import atomic as whole
+    from rovval.storage.atomic import refuse_unwritable, write_text
 
-    whole.check(out)
-    options.spare(vehicle, out)
-    runs = logs.together(sources, vehicle, profile, archive, quiet)
+    refuse_unwritable(out)
+    options.refuse_overwriting(vehicle, out)
+    runs = logs.opened_as_one(sources, vehicle, profile, archive, quiet)
     wanted = [name for text in parameters for name in text.split(",") if name]
     tuned = fit(runs, vehicle_of(runs[0], vehicle), wanted, model=model.value, window_s=window)
     write_text(out, tuned.vehicle)

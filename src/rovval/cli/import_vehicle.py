@@ -39,7 +39,7 @@ def command(
       rovval import-vehicle rexrov.yaml TAM.yaml thruster_manager.yaml --out rexrov.toml
       rovval show vehicle rexrov.toml
     """
-    from rovval.pipeline.atomic import write_text
+    from rovval.storage.atomic import write_text
     from rovval.vehicle import parse, uuv_yaml
 
     if out.suffix != ".toml":

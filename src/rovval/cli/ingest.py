@@ -33,7 +33,7 @@ def command(
       rovval ingest bags/ --archive /data/archive
     """
     from rovval.pipeline.discover import logs_in
-    from rovval.storage import archive as store
+    from rovval.storage.archive import open_run, save_run
 
     show = output.progress(quiet)
     files = logs_in(sources)
@@ -42,8 +42,8 @@ def command(
     for number, log in enumerate(files):
         show(f"ingest {log.name}", number / len(files))
         try:
-            run = store.open_run(str(log), profile, archive)
-            store.save(run, archive)
+            run = open_run(str(log), profile, archive)
+            save_run(run, archive)
         except RovvalError as error:
             worst = max(worst, error.exit_code)
             output.say(f"rovval: {error}")
@@ -62,7 +62,7 @@ def command(
         )
         if not json_:
             output.result(run.id)
-        logs.tell(run, quiet)
+        logs.print_findings(run, quiet)
     show("ingest", 1.0)
     if json_:
         output.result_json({"schema": "rovval.ingest/1", "archive": str(archive), "logs": rows})

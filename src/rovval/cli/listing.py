@@ -76,9 +76,9 @@ def show_command(
 
 def _names(kind: Kind, archive: Path) -> list[str]:
     if kind is Kind.run:
-        from rovval.storage import archive as store
+        from rovval.storage.archive import run_ids
 
-        return [str(run) for run in store.runs(archive)]
+        return [str(run) for run in run_ids(archive)]
     return complete.known(kind.value)
 
 
@@ -151,9 +151,9 @@ def _metric(name: str) -> Shown:
 
 
 def _run(name: str, archive: Path) -> Shown:
-    from rovval.storage import archive as store
+    from rovval.storage.archive import open_run
 
-    run = store.open_run(name, None, archive)
+    run = open_run(name, None, archive)
     document: dict[str, Any] = {
         "id": run.id,
         "source": run.source,

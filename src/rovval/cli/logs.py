@@ -18,24 +18,24 @@ SHOWN = 6  # findings of a run in a terminal; the others stand in its report
 
 def opened(source: str, profile: str | None, archive: Path, quiet: bool = False) -> Run:
     """The run of a log file, folder or id; its findings on stderr."""
-    from rovval.storage import archive as store
+    from rovval.storage.archive import open_run
 
-    run = store.open_run(source, profile, archive)
-    tell(run, quiet)
+    run = open_run(source, profile, archive)
+    print_findings(run, quiet)
     return run
 
 
-def held_against(run: Run, vehicle: Vehicle, quiet: bool = False) -> Run:
+def checked_against(run: Run, vehicle: Vehicle, quiet: bool = False) -> Run:
     """The run beside the vehicle's file: what it exceeds there is among its findings, and said on stderr."""
     from rovval.pipeline import steps
 
-    beside = steps.held_against(run, vehicle)
+    beside = steps.checked_against(run, vehicle)
     for finding in beside.findings[len(run.findings) :]:
         output.say(f"{run.id}: {finding}", quiet)
     return beside
 
 
-def stopped(sim: SimResult) -> None:
+def refuse_stopped(sim: SimResult) -> None:
     """Raises `SimulationStopped` where the free run left sane limits: what could be simulated is written and printed by then."""
     if not sim.stops:
         return
@@ -46,7 +46,7 @@ def stopped(sim: SimResult) -> None:
     )
 
 
-def together(sources: Sequence[str], vehicle: str | None, profile: str | None, archive: Path, quiet: bool = False) -> list[Run]:
+def opened_as_one(sources: Sequence[str], vehicle: str | None, profile: str | None, archive: Path, quiet: bool = False) -> list[Run]:
     """Runs that are one experiment: each given once, all of one vehicle unless ``vehicle`` says which. Raises `UsageProblem`."""
     runs = [opened(source, profile, archive, quiet) for source in sources]
     for k, run in enumerate(runs):
@@ -64,7 +64,7 @@ def together(sources: Sequence[str], vehicle: str | None, profile: str | None, a
     return runs
 
 
-def tell(run: Run, quiet: bool = False) -> None:
+def print_findings(run: Run, quiet: bool = False) -> None:
     """What a reader of any result should know about this log, on stderr."""
     if not run.findings:
         return

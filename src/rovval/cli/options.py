@@ -19,7 +19,7 @@ class Model(StrEnum):
     freefloating = "freefloating"
 
 
-def spare(vehicle: str | None, out: Path | None) -> None:
+def refuse_overwriting(vehicle: str | None, out: Path | None) -> None:
     """Refuse to write a vehicle over the one that it is made from: its numbers before and its comments would be gone."""
     if vehicle and out and out.exists() and Path(vehicle).exists() and out.samefile(vehicle):
         raise UsageProblem(f"{out}: is the vehicle that was asked for with --vehicle", "write the new one to another file")

@@ -35,14 +35,14 @@ def command(
       rovval simulate dive.csv --effect inflow_loss:loss=0.3 --model fossen --out with_loss.parquet
     """
     from rovval.pipeline.steps import simulated, vehicle_of
-    from rovval.simulation import file as simfile
+    from rovval.simulation.file import save_simulation
 
     run = logs.opened(source, profile, archive, quiet)
     nominal = vehicle_of(run, vehicle)
-    run = logs.held_against(run, nominal, quiet)
+    run = logs.checked_against(run, nominal, quiet)
     sim = simulated(run, nominal, model.value, tuple(effect or ()), window)
     path = out or Path("reports") / run.id / f"{model.value}.parquet"
-    simfile.save(sim, path)
+    save_simulation(sim, path)
     for line in (*sim.assumptions, *sim.stops):
         output.say(f"  {line}", quiet)
     summary = _summary(sim, path)
@@ -50,7 +50,7 @@ def command(
         output.result_json(summary)
     else:
         output.result("\n".join(f"{key:<12} {_plain(value)}" for key, value in summary.items() if key != "schema"))
-    logs.stopped(sim)
+    logs.refuse_stopped(sim)
 
 
 def _summary(sim: SimResult, path: Path) -> dict[str, Any]:

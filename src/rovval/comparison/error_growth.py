@@ -15,7 +15,7 @@ HORIZONS_S = (1.0, 2.0, 5.0, 10.0)
 
 
 @dataclass(frozen=True, slots=True)
-class Horizon:
+class ErrorGrowth:
     """How the windows' error grows from their start: ``rms`` (k,) at ``seconds`` (k,) after it, over ``n`` (k,) windows."""
 
     seconds: Array
@@ -29,7 +29,7 @@ class Horizon:
         return (t, float(self.rms[k])) if abs(t - seconds) <= 0.05 * seconds else None
 
 
-def horizons(comparison: Comparison) -> Mapping[str, Horizon]:
+def error_growth(comparison: Comparison) -> Mapping[str, ErrorGrowth]:
     """Per axis of the windows, the error against the time since the window's start."""
     run, windowed = comparison.run, comparison.sim.windowed
     step = _since_start(windowed.stretch)
@@ -41,7 +41,7 @@ def horizons(comparison: Comparison) -> Mapping[str, Horizon]:
         square = np.square(windowed.nu[keep, j] - run.get(name)[keep])
         total, n = np.bincount(step[keep], square), np.bincount(step[keep])
         k = np.flatnonzero(n >= max(1, n.max() // 4))  # a last, shorter window must not bend the curve's end
-        result[axis] = Horizon(np.asarray(k * run.dt, dtype=np.float64), np.sqrt(total[k] / n[k]).astype(np.float64), n[k])
+        result[axis] = ErrorGrowth(np.asarray(k * run.dt, dtype=np.float64), np.sqrt(total[k] / n[k]).astype(np.float64), n[k])
     return result
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import rovval
 
 
-def digest(left_out: Collection[str], suffixes: Collection[str]) -> str:
+def source_hash(left_out: Collection[str], suffixes: Collection[str]) -> str:
     """Twelve digits over the package's files with these suffixes, without the rooms ``left_out``."""
     root = Path(rovval.__file__).parent
     total = hashlib.sha256()

@@ -83,7 +83,7 @@ def run(folder: Path, with_diagnosis: bool, progress: Callable[[str, float], Non
 
 
 def _read(log: Path) -> Run:
-    from rovval.storage import archive as store
+    from rovval.storage.archive import open_run
 
-    dive = store.open_run(log, "merlin")
+    dive = open_run(log, "merlin")
     return replace(dive, properties={**dive.properties, "synthetic": SYNTHETIC})

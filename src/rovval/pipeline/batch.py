@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from rovval.core.errors import UsageProblem
-from rovval.pipeline import atomic, cluster, config, lock, summary
-from rovval.pipeline.execute import execute
+from rovval.pipeline import cluster, config, lock, summary
 from rovval.pipeline.plan import Plan, Task, plan
-from rovval.pipeline.work import Outcome, set_aside, work
+from rovval.pipeline.processes import execute
+from rovval.pipeline.worker import Outcome, set_aside, work
+from rovval.storage.atomic import json_text, sweep
 
 SUMMARY, INDEX = "summary.json", "index.html"
 
@@ -34,7 +35,7 @@ def run(
     pipeline = config.load(path)
     began = time.monotonic()
     with lock.held(pipeline.reports):
-        atomic.sweep(pipeline.reports)
+        sweep(pipeline.reports)
         progress("plan", 0.0)
         todo = plan(pipeline, path.resolve().parent, retry)
         why = todo.why  # before the work changes it
@@ -64,7 +65,7 @@ def _publish(reports: Path, summary: dict[str, Any], records: list[Mapping[str, 
     from rovval.report.batch import html as batch_html
     from rovval.report.common.files import write_all
 
-    write_all(reports, {SUMMARY: atomic.json_text(summary), INDEX: batch_html.text(summary, records)})
+    write_all(reports, {SUMMARY: json_text(summary), INDEX: batch_html.text(summary, records)})
 
 
 def dry_run(path: Path, retry: bool = False) -> Plan:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 from rovval.core.errors import UsageProblem
 from rovval.pipeline.plan import Task
-from rovval.pipeline.work import Outcome
+from rovval.pipeline.worker import Outcome
 
 
 def execute(

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rovval.pipeline import atomic, discover
-from rovval.pipeline.code import code
+from rovval.pipeline import discover
 from rovval.pipeline.config import Pipeline, Source
-from rovval.pipeline.hashes import Hashes
+from rovval.pipeline.hashes import Hashes, code_on_disk
+from rovval.storage.atomic import read_json
 
 RECORD = "record.json"
 QUARANTINE = "quarantine"
@@ -25,7 +25,7 @@ RETRIED = ("crash", "internal")  # a worker that died may have lacked memory; a 
 @dataclass(frozen=True, slots=True)
 class Task:
     """One log, all that a worker needs to know, picklable. ``keys`` in the order of the steps; ``folder`` takes its reports;
-    ``code`` is what the planner runs, `rovval.pipeline.code`."""
+    ``code`` is what the planner runs, `rovval.pipeline.hashes.code_on_disk`."""
 
     log: Path
     sha256: str
@@ -74,7 +74,7 @@ def plan(pipeline: Pipeline, base: Path, retry: bool = False) -> Plan:
     aside: list[Mapping[str, Any]] = []
     waiting: list[tuple[Path, str]] = []
     seen: dict[str, Path] = {}
-    hashes, made_by = Hashes(pipeline.reports / HASHES), code()
+    hashes, made_by = Hashes(pipeline.reports / HASHES), code_on_disk()
     for source in pipeline.source:
         vehicle, profile = _content(source)
         for log in discover.matching(source.logs, base):
@@ -87,7 +87,7 @@ def plan(pipeline: Pipeline, base: Path, retry: bool = False) -> Plan:
             elif record := _finished(task):
                 done.append(record)
             elif (
-                (record := atomic.read_json(task.quarantine)) and record["key"] == task.key and record["kind"] not in RETRIED and not retry
+                (record := read_json(task.quarantine)) and record["key"] == task.key and record["kind"] not in RETRIED and not retry
             ):
                 aside.append(record)
             else:
@@ -147,7 +147,7 @@ def _finished(task: Task) -> Mapping[str, Any] | None:
 
 def why(task: Task) -> str:
     """Why a task is to be done, in words."""
-    record = read_record(task) or atomic.read_json(task.quarantine)
+    record = read_record(task) or read_json(task.quarantine)
     if record is None:
         return "new"
     steps = record.get("steps", {})
@@ -162,7 +162,7 @@ def why(task: Task) -> str:
 
 def read_record(task: Task) -> dict[str, Any] | None:
     """The record of what was done with the task's log, if there is one."""
-    return atomic.read_json(task.folder / RECORD)
+    return read_json(task.folder / RECORD)
 
 
 def _hash(*parts: Any) -> str:

@@ -28,7 +28,7 @@ def vehicle_of(run: Run, wanted: str | None) -> Vehicle:
     )
 
 
-def held_against(run: Run, vehicle: Vehicle) -> Run:
+def checked_against(run: Run, vehicle: Vehicle) -> Run:
     """The run with what it shows beyond the limits of the vehicle's own file among its findings."""
     from dataclasses import replace
 
@@ -45,17 +45,17 @@ def other_velocities(path: Path, run: Run, profile: str | None, archive: Path) -
     import numpy as np
 
     from rovval.core.channels import VELOCITIES
-    from rovval.simulation import file as simfile
-    from rovval.storage import archive as store
+    from rovval.simulation.file import load_simulation
+    from rovval.storage.archive import open_run
 
     if not path.exists():
         raise UsageProblem(f"{path} does not exist", "give --with a .parquet of `rovval simulate` or a log of velocities")
     if path.suffix == ".parquet":
-        nu = simfile.load(path).free.nu
+        nu = load_simulation(path).free.nu
         if len(nu) != len(run):
             raise BadInput(f"{path}: {len(nu)} samples, run {run.id} has {len(run)}", "give the simulation of this run")
         return nu
-    other = store.open_run(str(path), profile, archive)
+    other = open_run(str(path), profile, archive)
     if not any(other.measured(name) for name in VELOCITIES):
         raise BadInput(
             f"{path}: holds none of {', '.join(VELOCITIES)} by profile {other.profile!r}",

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from rovval.core.data import Array, Flags, Reason, Run, SimResult, Trajectory
 from rovval.core.errors import SimulationStopped, UsageProblem
 from rovval.plant import Plant, parse_settings
-from rovval.simulation.actuation import Drive, drive, start_states, startable
+from rovval.simulation.actuation import Actuation, recorded_actuation, start_states, startable
 from rovval.simulation.sanity_limits import first_beyond
 from rovval.vehicle.model import Vehicle
 
@@ -34,7 +34,7 @@ def simulate(
     if length < 2:
         raise UsageProblem(f"window of {window_s} s at {run.dt} s a sample", "use at least two samples a window")
     plant = Plant(vehicle, model)
-    driven = drive(run, vehicle)
+    driven = recorded_actuation(run, vehicle)
     settings = (*carried_effects(vehicle), *effects)
     beta = parse_settings(plant, settings)
     ready = startable(run)
@@ -91,7 +91,7 @@ def _first(flags: Flags, begin: int, end: int) -> int | None:
 
 
 def _stretches(
-    run: Run, plant: Plant, driven: Drive, beta: Array, stretches: list[tuple[int, int]]
+    run: Run, plant: Plant, driven: Actuation, beta: Array, stretches: list[tuple[int, int]]
 ) -> tuple[Trajectory, tuple[str, ...], tuple[str, ...]]:
     """Simulate stretches [begin, end) and lay them on the run's grid; also why any stopped and what was assumed at the start."""
     n = len(run)

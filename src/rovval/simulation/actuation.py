@@ -18,7 +18,7 @@ SLOPE_HALF_WIDTH = 5  # samples: a velocity that was not logged starts as the sl
 
 
 @dataclass(frozen=True, slots=True)
-class Drive:
+class Actuation:
     """Inputs of the plant on the run's grid, where they are known (n,), from which channels, and what was assumed."""
 
     inputs: Inputs
@@ -29,7 +29,7 @@ class Drive:
 NAMES = {"n": "measured speed", "n_cmd": "speed set-point", "pwm": "pulse width", "stick": "pilot's sticks"}
 
 
-def drive(run: Run, vehicle: Vehicle) -> Drive:
+def recorded_actuation(run: Run, vehicle: Vehicle) -> Actuation:
     """Thruster speeds (n, k) rev/s of a run: measured speed, else set-point, else pulse width, else pilot's sticks.
 
     Raises:
@@ -42,7 +42,7 @@ def drive(run: Run, vehicle: Vehicle) -> Drive:
             known = np.all([run.ok(name) for name in wanted], axis=0)
             values = np.where(known[:, None], run.stack(wanted), 0.0)
             speed, assumptions = convert(values, vehicle)
-            return Drive(
+            return Actuation(
                 inputs=Inputs(
                     dt=run.dt,
                     speed=np.where(known[:, None], speed, 0.0),

@@ -33,7 +33,7 @@ FACTS = (
 LISTS = ("effects", "thrusters", "assumptions", "stops")
 
 
-def save(sim: SimResult, path: Path) -> None:
+def save_simulation(sim: SimResult, path: Path) -> None:
     """Write ``sim``, whole or not at all."""
     import io
 
@@ -53,7 +53,7 @@ def save(sim: SimResult, path: Path) -> None:
         draft.write_bytes(table.getvalue())
 
 
-def load(path: Path) -> SimResult:
+def load_simulation(path: Path) -> SimResult:
     """Read what `save` wrote, exactly. Raises `BadInput` for any other file."""
     import polars as pl
 

@@ -25,7 +25,7 @@ from rovval.alignment.checks import check
 from rovval.core.data import ClockReport, Resampled, Run
 from rovval.core.errors import BadInput, Finding
 from rovval.ingest import read
-from rovval.storage import atomic as whole
+from rovval.storage.atomic import refusal
 
 SCHEMA = "rovval.run/1"
 REASON = "reason:"
@@ -39,16 +39,16 @@ def open_run(source: str | Path, profile: str | None = None, archive: Path = ARC
     """
     path = Path(source)
     if (path / "manifest.json").is_file() or (not path.exists() and (Path(archive) / str(source)).is_dir()):
-        return load(source, archive)
+        return load_run(source, archive)
     if not path.exists():
-        near = ", ".join(runs(archive)[:5])
+        near = ", ".join(run_ids(archive)[:5])
         hint = f"runs in {archive}: {near}" if near else f"check the path; {archive} holds no runs"
         raise BadInput(f"{source}: no such log file, and no such run in {archive}", hint)
     raw = read(path, profile)
     return align(replace(raw, findings=tuple(dict.fromkeys((*raw.findings, *check(raw))))))
 
 
-def save(run: Run, archive: Path = ARCHIVE, overwrite: bool = False) -> Path:
+def save_run(run: Run, archive: Path = ARCHIVE, overwrite: bool = False) -> Path:
     """Write a run; the same run already there is left alone. Another one of its id (other code read the log, or found more in it)
     gives way if ``overwrite``; else `BadInput` is raised."""
     place = Path(archive) / run.id
@@ -74,9 +74,9 @@ def save(run: Run, archive: Path = ARCHIVE, overwrite: bool = False) -> Path:
         except OSError:
             if not place.exists():
                 raise
-            return save(run, archive, overwrite)  # another process was faster
+            return save_run(run, archive, overwrite)  # another process was faster
     except OSError as error:
-        raise whole.refusal(place, error) from None
+        raise refusal(place, error) from None
     finally:
         shutil.rmtree(draft, ignore_errors=True)
     return place
@@ -85,7 +85,7 @@ def save(run: Run, archive: Path = ARCHIVE, overwrite: bool = False) -> Path:
 def _same(place: Path, run: Run) -> Run:
     """The run that stands at ``place``; raises `BadInput` where it is not ``run``."""
     try:
-        old = load(place, place.parent)
+        old = load_run(place, place.parent)
     except BadInput as error:
         raise BadInput(f"{place}: holds a damaged run: {error.message}", "move that folder away and ingest again") from None
     if _digest(old) != _digest(run):
@@ -101,7 +101,7 @@ def _move_away(place: Path) -> None:
     shutil.rmtree(old, ignore_errors=True)
 
 
-def load(id_or_folder: str | Path, archive: Path = ARCHIVE) -> Run:
+def load_run(id_or_folder: str | Path, archive: Path = ARCHIVE) -> Run:
     """A run by its id or folder, exactly as saved. Raises `BadInput` where it is not there or damaged."""
     folder = Path(id_or_folder)
     if not (folder / "manifest.json").is_file():
@@ -110,7 +110,7 @@ def load(id_or_folder: str | Path, archive: Path = ARCHIVE) -> Run:
         manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
         table = (folder / "run.parquet").read_bytes()
     except FileNotFoundError:
-        near = ", ".join(runs(archive)[:5]) or "none"
+        near = ", ".join(run_ids(archive)[:5]) or "none"
         raise BadInput(f"{id_or_folder}: no such run in {archive}", f"runs there: {near}") from None
     except (OSError, ValueError) as error:
         raise BadInput(f"{folder}: damaged: {error}", "ingest the log again") from None
@@ -121,7 +121,7 @@ def load(id_or_folder: str | Path, archive: Path = ARCHIVE) -> Run:
     return _run(manifest, pl.read_parquet(io.BytesIO(table)))
 
 
-def runs(archive: Path = ARCHIVE) -> tuple[str, ...]:
+def run_ids(archive: Path = ARCHIVE) -> tuple[str, ...]:
     """Ids of the runs in an archive, sorted; () where there is none."""
     return tuple(sorted(p.parent.name for p in Path(archive).glob("*/manifest.json") if not p.parent.name.startswith(".")))
 

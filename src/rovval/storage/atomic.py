@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 from rovval.core.errors import Unwritable, UsageProblem
 
@@ -40,7 +42,7 @@ def drafts(*places: Path) -> Iterator[list[Path]]:
                 draft.unlink(missing_ok=True)
 
 
-def check(*places: Path | None) -> None:
+def refuse_unwritable(*places: Path | None) -> None:
     """Refuse places that cannot be written before the work of hours, not after it; None is no place."""
     for place in places:
         if place is None:
@@ -64,3 +66,34 @@ def _sync(path: Path) -> None:
     """On disk before it is renamed, so that a power cut leaves the old file or the new one."""
     with path.open("rb") as file:
         os.fsync(file.fileno())
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write ``text`` to ``path`` in one step: a reader sees the old file or the new one, also after a power cut."""
+    with drafts(path) as [draft]:
+        draft.write_text(text, encoding="utf-8", newline="\n")
+
+
+def write_json(path: Path, document: dict[str, Any]) -> None:
+    """Write a JSON document in one step."""
+    write_text(path, json_text(document))
+
+
+def json_text(document: dict[str, Any]) -> str:
+    """A JSON document as text; NaN is refused rather than written as something that is not JSON."""
+    return json.dumps(document, indent=2, allow_nan=False) + "\n"
+
+
+def read_json(path: Path) -> dict[str, Any] | None:
+    """A JSON document; None where there is none, or a kill by other means left it broken."""
+    try:
+        document: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    except (FileNotFoundError, json.JSONDecodeError):
+        return None
+    return document
+
+
+def sweep(root: Path) -> None:
+    """Remove what a kill left half-written under ``root`` (call it only while holding the lock of ``root``)."""
+    for left in list(root.rglob(LEFTOVER)):
+        left.unlink(missing_ok=True)

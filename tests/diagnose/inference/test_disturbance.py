@@ -24,7 +24,7 @@ from rovval.diagnose.inference.disturbance import PIECES, answers, disturbance, 
 from rovval.diagnose.inference.problem import pose
 from rovval.diagnose.residuals.sensitivities import linearise
 from rovval.diagnose.windows.shooting import cut_all
-from rovval.storage import archive as store
+from rovval.storage.archive import open_run
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +81,7 @@ def test_a_healthy_vehicle_on_station_is_not_blamed_and_the_push_is_found(tmp_pa
     """The independent plant's BlueROV2 under its autopilot, in water that pushes it: thrusters answer pushes that no log holds."""
     hull = LIBRARY / "bluerov2_heavy.toml"
     write_csv(fly(Path(hull), "station", (), 6, 240.0, 0.03), tmp_path / "station.csv")
-    run, v = store.open_run(tmp_path / "station.csv", "merlin"), vehicle.load("bluerov2_heavy")
+    run, v = open_run(tmp_path / "station.csv", "merlin"), vehicle.load("bluerov2_heavy")
     true = Background(scales(read_hull(Path(hull))), 0.03, stream(1, "any")).size
     parts, _ = cut_all([run], v, "fossen", 10.0)
     found = pose(parts, columns_of(hypotheses(parts)[0]), 0.05).disturbance.rms

@@ -26,7 +26,7 @@ from rovval.report.diagnosis import terminal as diagnosis_terminal
 from rovval.report.diagnosis.calibration_words import calibration
 from rovval.report.diagnosis.sentence import sentence
 from rovval.simulation import simulate
-from rovval.storage import archive as store
+from rovval.storage.archive import open_run
 from rovval.vehicle.model import Vehicle
 from rovval.vehicle.write import to_toml
 
@@ -48,7 +48,7 @@ def flown(folder: Path, seed: int) -> Run:
     file, log = folder / "another.toml", folder / f"flown{seed}.csv"
     file.write_text(to_toml(another()), encoding="utf-8")
     write_csv(fly(file, "rich", [], seed, 150.0, 0.0), log)
-    return store.open_run(log, "merlin", folder / "archive")
+    return open_run(log, "merlin", folder / "archive")
 
 
 @functools.cache
@@ -101,7 +101,7 @@ def test_nor_are_they_of_an_independent_plant(tmp_path_factory: pytest.TempPathF
 
 
 def test_the_tank_runs_are_a_matter_of_calibration_on_the_run_left_out():
-    runs = [store.open_run(real(f"bluerov2_tank/run_{name}.csv")) for name in "abc"]
+    runs = [open_run(real(f"bluerov2_tank/run_{name}.csv")) for name in "abc"]
     found = diagnose(runs, vehicle.load("bluerov2_heavy")).document["calibration"]
     assert found["held_out"] == "runs" and found["shrinkage"]["low"] > 0.4
     assert {"quadratic_drag[surge].scale", *(f"thruster_degraded[T{i}].loss" for i in (1, 2, 3, 4))} <= set(found["beyond"])

@@ -32,7 +32,7 @@ from rovval.diagnose.search.onset import CLEARER, Beginning, _explained, _Part, 
 from rovval.diagnose.search.switched import switched
 from rovval.diagnose.windows.shooting import Stretches, cut_all
 from rovval.report.diagnosis.sentence import since
-from rovval.storage import archive as store
+from rovval.storage.archive import open_run
 
 BEGINS = 120.0
 
@@ -45,7 +45,7 @@ def logs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Run, Run]:
         flight = fly(LIBRARY / "merlin.toml", "rich", [Planted("inflow_loss", None, 1.5, onset)], 21, 240.0, 0.02)
         path = folder / f"log{i}.csv"
         write_csv(flight, path)
-        runs.append(store.open_run(path, "merlin", folder / f"archive{i}"))
+        runs.append(open_run(path, "merlin", folder / f"archive{i}"))
     return runs[0], runs[1]
 
 

@@ -41,10 +41,10 @@ def oracle(
     from rovval import vehicle as vehicles
     from rovval.blind.sealed.answer import PROFILE
     from rovval.core.errors import RovvalError
-    from rovval.storage import archive as store
+    from rovval.storage.archive import open_run
 
     try:
-        found = _fit(store.open_run(log, PROFILE), vehicles.load(vehicle), true, onsets, **asked)
+        found = _fit(open_run(log, PROFILE), vehicles.load(vehicle), true, onsets, **asked)
         if found is None:
             return {}
         problem, healthy, wanted, beta = found

@@ -72,12 +72,12 @@ def one(log: Path, vehicle: str, without: Sequence[str], asked: Mapping[str, Any
     from rovval import vehicle as vehicles
     from rovval.blind.baselines.floors import floors
     from rovval.diagnose import diagnose
-    from rovval.storage import archive as store
+    from rovval.storage.archive import open_run
 
     nominal = vehicles.load(vehicle)
     began = time.process_time()
     try:
-        run = store.open_run(log, PROFILE)
+        run = open_run(log, PROFILE)
         found = diagnose(
             [run],
             nominal,

@@ -12,13 +12,13 @@ from pathlib import Path
 from typing import Any
 
 from rovval.blind.sealed.sealing import digest, digest_of_files
-from rovval.core import code_version as engine
+from rovval.core.code_version import source_hash
 from rovval.core.errors import BadInput, UsageProblem
 from rovval.storage.atomic import drafts
 
 MANIFEST = "rovval.blind-set/1"
 COMMIT = "rovval.blind-answers/1"
-NOT_ENGINE = {"blind", "cli", "report", "pipeline", "demo", "scenarios"}
+NOT_ENGINE = {"blind", "cli", "report", "pipeline", "demo", "fly"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,4 +108,4 @@ def write(path: Path, document: object) -> None:
 
 def engine_hash() -> str:
     """Hash over the source of everything that an answer depends on."""
-    return engine.digest(NOT_ENGINE, (".py", ".toml"))
+    return source_hash(NOT_ENGINE, (".py", ".toml"))

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from rovval.core.data import Flags, Run
-from rovval.simulation.actuation import Drive
+from rovval.simulation.actuation import Actuation
 
 STILL_S, STILL_M = 3.0, 0.03  # chosen: at rest for 3 s within the noise of a depth sensor
 DEPTH_COVERED, AT_END = 0.3, 0.08  # m, chosen: contact is looked for only in logs that dive, near their ends of depth
 
 
-def in_contact(run: Run, driven: Drive) -> Flags:
+def in_contact(run: Run, driven: Actuation) -> Flags:
     """Where the vehicle is at the surface, held or aground (n,): thrusters idle at the shallow end of the depth that the log covers, or
     idle and still at the deep end.
 

@@ -20,7 +20,7 @@ from rovval.diagnose.windows.contact import in_contact
 from rovval.diagnose.windows.noise import ANGLES, cleaned, strides
 from rovval.diagnose.windows.saturation import sensed
 from rovval.plant import Plant
-from rovval.simulation.actuation import Drive, drive, start_states, startable
+from rovval.simulation.actuation import Actuation, recorded_actuation, start_states, startable
 from rovval.vehicle.model import Vehicle
 
 VELOCITY_CHANNELS = ("u", "v", "w", "p", "q", "r")
@@ -41,7 +41,7 @@ class Stretches:
 
     run: Run
     plant: Plant
-    driven: Drive
+    driven: Actuation
     channels: tuple[str, ...]
     start: NDArray[np.int64]
     steps: int
@@ -112,7 +112,7 @@ def cut(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Stretches:
 
 
 def _cut(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Stretches:
-    plant, driven = Plant(vehicle, model), drive(run, vehicle)
+    plant, driven = Plant(vehicle, model), recorded_actuation(run, vehicle)
     channels = residual_channels(run)
     steps = round(window_s / run.dt) - 1
     touching = in_contact(run, driven)

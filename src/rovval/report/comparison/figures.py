@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rovval.comparison.error_growth import HORIZONS_S, Horizon, horizons
+from rovval.comparison.error_growth import HORIZONS_S, ErrorGrowth, error_growth
 from rovval.core.channels import AXES, POSE, VELOCITIES
 from rovval.core.data import Array, Comparison
 from rovval.core.frames import wrap
@@ -67,10 +67,10 @@ def thrusters(c: Comparison) -> tuple[list[dict[str, Any]], list[Place], dict[st
     return [curves.plot("thrusters", drawn)], [Place("thrusters", "thruster speed", "rpm", css="short")], hues
 
 
-def error_growth(c: Comparison) -> list[Drawing]:
+def growth_panels(c: Comparison) -> list[Drawing]:
     """A panel an axis: RMS error against the time since a window's start."""
     panels = []
-    for axis, curve in horizons(c).items():
+    for axis, curve in error_growth(c).items():
         row = c.windowed[axis]
         factor, unit = in_degrees(1.0, row.unit)
         marks = [(t, v * factor) for s in HORIZONS_S if (p := curve.at(s)) is not None for t, v in [p]]
@@ -98,7 +98,7 @@ class _Frame:
         return self.height - self.bottom - (self.height - self.top - self.bottom) * v / self.high
 
 
-def panel(title: str, unit: str, curve: Horizon, factor: float, baseline: float, marks: Sequence[tuple[float, float]]) -> Drawing:
+def panel(title: str, unit: str, curve: ErrorGrowth, factor: float, baseline: float, marks: Sequence[tuple[float, float]]) -> Drawing:
     """RMS error times ``factor`` against time, ``marks`` (time, value) as dots, and the error ``baseline`` of "no motion" dashed where it fits in."""
     peak = max(float(curve.rms.max()) * factor, 1e-12)
     fits = baseline <= 3.0 * peak

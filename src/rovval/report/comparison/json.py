@@ -8,7 +8,7 @@ from dataclasses import asdict
 from typing import Any
 
 from rovval.comparison import CORE, metrics
-from rovval.comparison.error_growth import HORIZONS_S, horizons
+from rovval.comparison.error_growth import HORIZONS_S, error_growth
 from rovval.core.data import ChannelError, Comparison
 from rovval.core.units import DEGREE_UNITS, DEGREES
 from rovval.report.common.versions import versions
@@ -87,7 +87,7 @@ def _has_unit(name: str) -> bool:
 def _horizons(comparison: Comparison) -> dict[str, Any]:
     """RMS error at 1, 2, 5 and 10 s from the windows' starts (or at the last step before)."""
     result = {}
-    for axis, curve in horizons(comparison).items():
+    for axis, curve in error_growth(comparison).items():
         points = [point for s in HORIZONS_S if (point := curve.at(s)) is not None]
         result[axis] = {"seconds": [t for t, _ in points], "rms": [rms for _, rms in points]}
     return result

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rovval.comparison.error_growth import HORIZONS_S, horizons
+from rovval.comparison.error_growth import HORIZONS_S, error_growth
 from rovval.core.channels import AXES
 from rovval.core.data import ChannelError, Comparison
 from rovval.core.units import in_degrees
@@ -61,7 +61,7 @@ def _other(c: Comparison) -> str:
 
 def _horizons(c: Comparison) -> str:
     rows = []
-    for axis, curve in horizons(c).items():
+    for axis, curve in error_growth(c).items():
         points = [curve.at(s) for s in HORIZONS_S]
         rows.append([axis, *(MISSING if p is None else quantity(p[1], c.windowed[axis].unit) for p in points)])
     return grid(["axis", *(f"{s:g} s" for s in HORIZONS_S)], rows)

@@ -16,7 +16,7 @@ from multiprocessing.process import BaseProcess
 from typing import Any
 
 from rovval.pipeline.plan import Task
-from rovval.pipeline.work import Outcome
+from rovval.pipeline.worker import Outcome
 
 Work = Callable[[Task], Outcome]
 THREADS = ("POLARS_MAX_THREADS", "NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rovval.core.errors import RovvalError, Unwritable
-from rovval.pipeline import atomic
-from rovval.pipeline.code import mine
+from rovval.pipeline.hashes import code_of_this_process
 from rovval.pipeline.plan import RECORD, Task, read_record
+from rovval.storage.atomic import write_json, write_text
 
 if TYPE_CHECKING:
     from rovval.core.data import Run, SimResult
@@ -26,8 +26,8 @@ Outcome = dict[str, Any]
 def work(task: Task) -> Outcome:
     """Do what is missing of one task. Returns its record, or why it is set aside, or why no task can be done: a disk that is full
     and a worker of other code are no log's fault. Never raises for what one log can do."""
-    if mine() != task.code:
-        why = f"this worker runs other code of rovval ({mine()}) than the plan was made by ({task.code})"
+    if code_of_this_process() != task.code:
+        why = f"this worker runs other code of rovval ({code_of_this_process()}) than the plan was made by ({task.code})"
         return {"status": "stopped", "record": {"reason": why, "next": "install one version everywhere, restart the workers, run again"}}
     try:
         return _done_or_set_aside(task)
@@ -67,7 +67,7 @@ def set_aside(task: Task, kind: str, reason: str, code: int, hint: str = "", tra
         "traceback": trace,
         "when": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()),
     }
-    atomic.write_json(task.quarantine, record)
+    write_json(task.quarantine, record)
     return {"status": "quarantined", "record": record}
 
 
@@ -85,7 +85,7 @@ def _steps(task: Task) -> dict[str, Any]:
             run = bench.run
             record |= {"run": run.id, "vehicle": run.vehicle, "duration_s": run.duration_s, "findings": len(run.findings)}
             record["steps"][step] = {"key": key, "code": task.code, "outputs": [os.path.relpath(p, task.reports) for p in outputs], **facts}
-            atomic.write_json(task.folder / RECORD, record)
+            write_json(task.folder / RECORD, record)
     return record
 
 
@@ -97,9 +97,9 @@ class _Bench:
 
     @cached_property
     def run(self) -> Run:
-        from rovval.storage import archive as store
+        from rovval.storage.archive import open_run
 
-        return store.open_run(str(self.task.log), self.task.profile, self.task.archive)
+        return open_run(str(self.task.log), self.task.profile, self.task.archive)
 
     @cached_property
     def vehicle(self) -> Vehicle:
@@ -124,25 +124,25 @@ class _Bench:
         return steps[step]()
 
     def ingest(self) -> tuple[dict[str, Any], list[Path]]:
-        from rovval.storage import archive as store
+        from rovval.storage.archive import save_run
 
-        place = store.save(self.run, self.task.archive, overwrite=True)
+        place = save_run(self.run, self.task.archive, overwrite=True)
         return {"findings": [str(f) for f in self.run.findings]}, [place]
 
     def simulate(self) -> tuple[dict[str, Any], list[Path]]:
-        from rovval.simulation import file as simfile
+        from rovval.simulation.file import save_simulation
 
         path = self.task.folder / "simulation.parquet"
-        simfile.save(self.sim, path)
+        save_simulation(self.sim, path)
         return {"stops": list(self.sim.stops)}, [path]
 
     def compare(self) -> tuple[dict[str, Any], list[Path]]:
         from rovval import report
         from rovval.comparison import compare
-        from rovval.pipeline.steps import held_against
+        from rovval.pipeline.steps import checked_against
         from rovval.report.comparison.json import document
 
-        comparison = compare(held_against(self.run, self.vehicle), self.sim)
+        comparison = compare(checked_against(self.run, self.vehicle), self.sim)
         files = report.write(comparison, self.task.folder / "comparison", self.vehicle)
         return {"comparison": document(comparison)}, list(files.values())
 
@@ -157,7 +157,7 @@ class _Bench:
         )
         files = report.write_diagnosis(found.document, place)
         if found.vehicle_fixed:
-            atomic.write_text(place / "vehicle_fixed.toml", found.vehicle_fixed)
+            write_text(place / "vehicle_fixed.toml", found.vehicle_fixed)
         document = json.loads(json.dumps(found.document))
         facts = {key: document[key] for key in ("vehicle", "verdict", "causes")}
         return {**facts, "said": verdict(document), "gap": document["gap"]["axes"]}, list(files.values())
