@@ -11,6 +11,8 @@ import sys
 from types import FunctionType, ModuleType
 from typing import TYPE_CHECKING
 
+from rovval.core.version import __version__
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
@@ -23,8 +25,7 @@ if TYPE_CHECKING:
 
     AnyVehicle = Vehicle | str | Path | None
 
-__version__ = "0.1.0"
-__all__ = ["compare", "diagnose", "fit", "load", "plot", "simulate"]
+__all__ = ["__version__", "compare", "diagnose", "fit", "load", "plot", "simulate"]
 
 
 def load(source: str | Path, profile: str | Path | None = None, archive: str | Path = "archive") -> Run:

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from rovval import __version__
 from rovval.cli import blind, compare, demo, diagnose, fit, import_vehicle, ingest, listing, run, scenario, simulate, view
+from rovval.core.version import __version__
 
 app = typer.Typer(
     rich_markup_mode=None,

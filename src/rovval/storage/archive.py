@@ -19,11 +19,11 @@ from typing import Any
 import numpy as np
 import polars as pl
 
-import rovval
 from rovval.alignment import align
 from rovval.alignment.checks import check
 from rovval.core.data import ClockReport, Resampled, Run
 from rovval.core.errors import BadInput, Finding
+from rovval.core.version import __version__
 from rovval.ingest import read
 from rovval.storage.atomic import refusal
 
@@ -132,7 +132,7 @@ def _bytes(run: Run) -> tuple[bytes, dict[str, Any]]:
     pl.DataFrame(columns).write_parquet(buffer, compression="zstd")
     table = buffer.getvalue()
     facts = {k: getattr(run, k) for k in ("id", "source", "sha256", "profile", "vehicle", "t0_ns", "dt")}
-    versions = {"rovval": rovval.__version__, "python": sys.version.split()[0], "numpy": np.__version__, "polars": pl.__version__}
+    versions = {"rovval": __version__, "python": sys.version.split()[0], "numpy": np.__version__, "polars": pl.__version__}
     return table, {
         "schema": SCHEMA, **facts, "samples": len(run), "duration_s": run.duration_s, "clock": asdict(run.clock),
         "resampled": {n: asdict(r) for n, r in run.resampled.items()}, "findings": [asdict(f) for f in run.findings],

@@ -6,13 +6,12 @@ import json
 from pathlib import Path
 from typing import Any
 
-import rovval
 from rovval.core.errors import UsageProblem
 
 
 def default(root: Path) -> Path:
     """The repository's own file where rovval runs from its source tree, else a file beside the set."""
-    tree = Path(rovval.__file__).parents[2]
+    tree = Path(__file__).parents[4]
     return tree / "reports" / "blind" / "history.jsonl" if (tree / "pyproject.toml").is_file() else root.with_name("blind-history.jsonl")
 
 

@@ -9,7 +9,6 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-import rovval
 from rovval import vehicle as vehicles
 from rovval.blind.scoring import history, tables, truth
 from rovval.blind.scoring.marks import marks
@@ -20,6 +19,7 @@ from rovval.blind.sealed.answer import one_thread_each
 from rovval.blind.sealed.folder import Folder, write
 from rovval.blind.sealed.make import now
 from rovval.core.errors import UsageProblem
+from rovval.core.version import __version__
 
 SCHEMA = "rovval.blind-score/1"
 HEADLINE = (
@@ -68,7 +68,7 @@ def score(
     result = marked(labels, answers, best, manifest["vehicle"])
     result = {
         "schema": SCHEMA, "opened": opened, "seed": sealed["seed"], "size": sealed["size"], "vehicle": sealed["vehicle"],
-        "rovval": rovval.__version__, "engine": commit["engine"], "committed": commit["committed"],
+        "rovval": __version__, "engine": commit["engine"], "committed": commit["committed"],
         "labels_sha256": manifest["labels_sha256"], "answers_sha256": commit["sha256"], "flights_failed": len(sealed["failed"]), **result,
     }  # fmt: skip
     write(root / "score.json", result)

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from rovval import __version__
 from rovval.core.channels import AXES
 from rovval.core.data import Array
+from rovval.core.version import __version__
 from rovval.diagnose.decision.consistency import contradicted
 from rovval.diagnose.decision.finding import Finding
 from rovval.diagnose.decision.unexplained import Unexplained

@@ -1,0 +1,3 @@
+"""The version of rovval."""
+
+__version__ = "0.1.0"
