@@ -16,6 +16,7 @@ from rovval.blind.cases.log import write_csv
 from rovval.blind.plant.spec import Planted
 from rovval.core.channels import POSE, VELOCITIES
 from rovval.core.data import Array, ClockReport, Reason, Run
+from rovval.diagnose import Diagnosis, diagnose
 from rovval.simulation import simulate
 from rovval.storage.archive import open_run
 from rovval.vehicle.model import Vehicle, allocation
@@ -70,6 +71,12 @@ def own(effects: tuple[str, ...] = (), seed: int = 0, seconds: float = 240.0, no
     motion = np.concatenate([sim.free.nu, sim.free.eta], axis=1)
     seen = {c: motion[:, i] + noise * NOISE[c] * rng.normal(size=len(motion)) for i, c in enumerate((*VELOCITIES, *POSE))}
     return bare(channels | seen, v, f"own{seed}")
+
+
+@functools.cache
+def diagnosed(effects: tuple[str, ...] = (), seed: int = 5, seconds: float = 100.0) -> Diagnosis:
+    """The diagnosis of such a log of Merlin, made once for all tests of a process that look at it."""
+    return diagnose([own(effects, seed, seconds)], merlin())
 
 
 @functools.cache
