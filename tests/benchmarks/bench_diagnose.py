@@ -40,7 +40,7 @@ def measured(folder: str, minutes: list[float]) -> list[dict[str, Any]]:
     rows = []
     for m, without in [*((m, ()) for m in minutes), (10.0, half)]:
         cpu, wall = process_time(), perf_counter()
-        document = diagnose([logs[m]], merlin(), without=without).document
+        document = diagnose([logs[m]], merlin(), without=without).document()
         rows.append({
             "minutes": m, "windows": document["windows"], "hypotheses": len(document["ranking"]), "cpu_s": process_time() - cpu,
             "wall_s": perf_counter() - wall, "rounds": len(document["finalists"]), "named": [c["effect"] for c in document["causes"]],

@@ -14,6 +14,7 @@ from rovval import demo
 from rovval.comparison import compare
 from rovval.core.channels import AXES
 from rovval.diagnose import Diagnosis, diagnose
+from rovval.report.diagnosis.json import document as written
 from rovval.report.diagnosis.sentence import sentence
 from rovval.simulation import simulate
 from rovval.vehicle import parse
@@ -77,30 +78,30 @@ def check_shrinkage(s: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("case", [explained, diagnosed, strange], ids=["explained", "no_gap", "strange"])
 def test_documents_keep_the_contract(case):
-    document = case().document
+    document = written(case())
     check_schema(document)
     assert document["sentence"] == sentence(document)
 
 
 def test_a_planted_effect_is_named_with_its_size():
     found = explained()
-    cause = found.document["causes"][0]
-    assert found.document["verdict"] == "explained"
+    cause = found.document()["causes"][0]
+    assert found.document()["verdict"] == "explained"
     assert cause["effect"] == "inflow_loss"
     assert cause["parameters"]["loss"]["low"] <= 0.3 <= cause["parameters"]["loss"]["high"]
     assert cause["shrinkage"]["total"] > 0.9
-    assert "inflow_loss" in found.document["sentence"] and "held-out" in found.document["sentence"]
+    assert "inflow_loss" in written(found)["sentence"] and "held-out" in written(found)["sentence"]
 
 
 def test_a_healthy_log_has_no_gap_and_nothing_to_mend():
     found = diagnosed()
-    assert found.document["verdict"] == "no_gap"
-    assert found.document["causes"] == [] and found.settings == () and found.vehicle_fixed == ""
-    assert "No gap beyond noise" in found.document["sentence"]
+    assert found.document()["verdict"] == "no_gap"
+    assert found.document()["causes"] == [] and found.settings == () and found.vehicle_fixed == ""
+    assert "No gap beyond noise" in written(found)["sentence"]
 
 
 def test_a_gap_of_no_known_effect_is_unknown_and_blamed_on_nothing():
-    document = strange().document
+    document = written(strange())
     assert document["verdict"] == "unknown" and document["causes"] == []
     assert document["gap"]["axes"]["surge"]["share"] > 0.8 and "Unknown effect" in document["sentence"]
 
@@ -112,30 +113,30 @@ def test_the_mended_vehicle_closes_the_gap_that_compare_sees():
     assert mended.effects["inflow_loss"]["loss"] == pytest.approx(0.3, abs=0.05)
     before, after = (compare(run, simulate(run, v)).windowed for v in (merlin(), mended))
     for axis in ("surge", "yaw"):
-        said = found.document["causes"][0]["shrinkage"]["axes"][axis]
+        said = found.document()["causes"][0]["shrinkage"]["axes"][axis]
         assert 1 - (after[axis].rmse / before[axis].rmse) ** 2 == pytest.approx(said, abs=0.1)
 
 
 def test_diagnosing_the_mended_vehicle_finds_nothing_left():
     run, found = own((PLANTED,), 5, 100.0), explained()
-    assert diagnose([run], parse(found.vehicle_fixed, "mended")).document["verdict"] == "no_gap"
+    assert diagnose([run], parse(found.vehicle_fixed, "mended")).document()["verdict"] == "no_gap"
 
 
 def test_the_same_log_and_seed_give_the_same_document():
     again = diagnose([own((), 5, 100.0)], merlin())
-    assert json.dumps(again.document) == json.dumps(diagnosed().document)
+    assert json.dumps(again.document()) == json.dumps(diagnosed().document())
 
 
 @pytest.mark.slow
 def test_the_same_log_and_seed_give_the_same_cause():
     again = diagnose([own((PLANTED,), 5, 100.0)], merlin())
-    assert json.dumps(again.document) == json.dumps(explained().document)
+    assert json.dumps(again.document()) == json.dumps(explained().document())
     assert again.settings == explained().settings
 
 
 @pytest.mark.slow
 def test_where_the_true_effect_is_left_out_of_the_library_less_of_the_gap_closes():
-    document, whole = diagnose([own((PLANTED,), 5, 100.0)], merlin(), without=["inflow_loss"]).document, explained().document
+    document, whole = diagnose([own((PLANTED,), 5, 100.0)], merlin(), without=["inflow_loss"]).document(), explained().document()
     tried, before = ({row["effect"] for row in d["ranking"]} for d in (document, whole))
     assert before - tried == {"inflow_loss"}, "it and no other"
     assert document["shrinkage"]["high"] < whole["shrinkage"]["low"]
@@ -143,12 +144,12 @@ def test_where_the_true_effect_is_left_out_of_the_library_less_of_the_gap_closes
 
 @pytest.mark.slow
 def test_the_sample_names_what_was_left_in():
-    assert diagnose([demo.sample()], merlin()).document["causes"][0]["effect"] == "inflow_loss"
+    assert diagnose([demo.sample()], merlin()).document()["causes"][0]["effect"] == "inflow_loss"
 
 
 @pytest.mark.slow
 def test_the_independent_plant(tmp_path):
     run = foreign(tmp_path, (("thruster_degraded", "HFP", 1.0),), 11, 150.0)
-    document = diagnose([run], merlin()).document
+    document = diagnose([run], merlin()).document()
     check_schema(document)
     assert any(name.endswith("[HFP]") for name in document["causes"][0]["group"])

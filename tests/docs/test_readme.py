@@ -95,7 +95,7 @@ def test_the_notebook_block(tmp_path, monkeypatch, capsys):
     assert "surge" in names["comparison"].windowed
     assert names["tuned"].document["parameters"] or names["tuned"].document["undetermined"]
     assert Path("diagnosis.html").read_text(encoding="utf-8").startswith("<!doctype html>")
-    assert "verdict" in names["found"].document
+    assert "verdict" in names["found"].document()
     assert "surge" in capsys.readouterr().out
 
 

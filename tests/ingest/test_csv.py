@@ -83,7 +83,7 @@ def test_accelerations_may_be_missing_and_no_diagnosis_misses_them(tmp_path):
     whole, bare = (open_run(merlin_case.write(tmp_path, name=f"{name}.csv", edit=edit)) for name, edit in (("whole", None), ("bare", drop)))
     assert set(whole.values) - set(bare.values) == {"udot", "vdot", "wdot"} and not bare.measured("udot")
     assert bare.profile == "merlin" and all(np.array_equal(bare.values[name], whole.values[name]) for name in bare.values)
-    found = [diagnose([run], vehicle.load("merlin")).document for run in (whole, bare)]
+    found = [diagnose([run], vehicle.load("merlin")).document() for run in (whole, bare)]
     assert all(found[0][key] == found[1][key] for key in ("gap", "verdict", "causes", "ranking", "not_testable", "parity", "detection"))
 
 

@@ -61,7 +61,7 @@ def test_ballast_is_found_in_heave_alone():
 
 def test_ballast_is_named():
     """By `diagnose`, with its sign and size, in heave; the log holds four windows of free motion."""
-    document = diagnose([open_run(real("bluerov2_ballast/ff_nb1.bag"))], vehicle.load("bluerov2_heavy")).document
+    document = diagnose([open_run(real("bluerov2_ballast/ff_nb1.bag"))], vehicle.load("bluerov2_heavy")).document()
     assert max(document["gap"]["axes"], key=lambda axis: document["gap"]["axes"][axis]["share"]) == "heave"
     cause = document["causes"][0]
     assert cause["effect"] == "buoyancy_error"
@@ -105,7 +105,7 @@ def test_damage_of_the_log_is_named(run_a: Run, fitted: Vehicle, damage: str, ri
         "surge": lambda: changed(run_a, u=1.3 * run_a.get("u")),
         "sticks": lambda: late(run_a, 0.8),
     }[damage.partition(" ")[0]]()
-    document = diagnose([harmed], fitted).document
+    document = diagnose([harmed], fitted).document()
     assert named(document) & right
     if damage.startswith("frame"):
         [cause] = [c for c in document["causes"] if c["effect"] == "dvl_misalignment"]

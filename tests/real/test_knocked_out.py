@@ -76,26 +76,26 @@ KNOCKED_OUT = [
 @pytest.mark.parametrize(("log", "piece", "right"), KNOCKED_OUT)
 def test_what_was_knocked_out_is_named_first(log: str, piece: str, right: set[str]):
     run, fitted = tank(log)
-    causes = diagnose([run], without(fitted, piece)).document["causes"]
+    causes = diagnose([run], without(fitted, piece)).document()["causes"]
     assert [cause["effect"] for cause in causes][:1] in [[name] for name in right]
 
 
 @pytest.mark.parametrize("log", DIAGNOSED)
 def test_nothing_is_named_where_nothing_was_knocked_out(log: str):
     run, fitted = tank(log)
-    assert diagnose([run], fitted).document["causes"] == []
+    assert diagnose([run], fitted).document()["causes"] == []
 
 
 @pytest.mark.parametrize(("log", "thruster"), [(A, "T1"), (C, "T6")])
 def test_a_thruster_comes_back_as_the_other_logs_have_it(log: str, thruster: str):
     run, fitted = tank(log)
     piece, [name] = dead(thruster)
-    loss = diagnose([run], without(fitted, piece)).document["causes"][0]["parameters"]["loss"]
+    loss = diagnose([run], without(fitted, piece)).document()["causes"][0]["parameters"]["loss"]
     assert loss["value"] == pytest.approx(fitted.effects[name]["loss"], abs=0.15)
 
 
 def test_buoyancy_comes_back_as_the_other_logs_have_it():
     run, fitted = tank(A)
-    force = diagnose([run], without(fitted, "buoyancy")).document["causes"][0]["parameters"]["force"]
+    force = diagnose([run], without(fitted, "buoyancy")).document()["causes"][0]["parameters"]["force"]
     had = fitted.effects["buoyancy_error"]["force"] - LIFT * fitted.water.density * fitted.water.gravity
     assert force["low"] < had < force["high"]

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -60,6 +59,8 @@ def command(
     """
     from rovval.diagnose import diagnose
     from rovval.pipeline.steps import vehicle_of
+    from rovval.report.diagnosis import json as diagnosis_json
+    from rovval.report.diagnosis.command import Typed
     from rovval.storage.atomic import refuse_unwritable
 
     anywhere = _folder(out, json_, "")
@@ -72,12 +73,12 @@ def command(
         runs, nominal, model=model.value, window_s=window, calibration_slop=calibration_slop, seed=seed,
         progress=output.progress(quiet),
     )  # fmt: skip
-    typed = {"--window": None if window == 10.0 else f"{window:g}", "--profile": profile, "--archive": None if str(archive) == "archive" else str(archive)}
-    _as_typed(found, dict(zip((run.id for run in runs), sources, strict=True)), vehicle, typed)
-    for line in found.document["runs_left_out"]:
+    typed = Typed(dict(zip((run.id for run in runs), sources, strict=True)), vehicle or "", _unusual(window, profile, archive))
+    document = diagnosis_json.document(found, typed)
+    for line in found.runs_left_out:
         output.say(f"left out: {line}", quiet)
-    _print(found, json_, quiet)
-    _write(found, _folder(out, json_, runs[0].id), write_vehicle, quiet)
+    _print(document, json_, quiet)
+    _write(found, document, _folder(out, json_, runs[0].id), write_vehicle, quiet)
 
 
 def _folder(out: Path | None, json_: Path | None, run: str) -> Path | None:
@@ -85,41 +86,33 @@ def _folder(out: Path | None, json_: Path | None, run: str) -> Path | None:
     return out if out or json_ else Path("reports") / run / "diagnosis"
 
 
-def _as_typed(found: Diagnosis, sources: dict[str, str], vehicle: str | None, options: dict[str, str | None]) -> None:
-    """Logs (``sources`` by run id), vehicle and options in the command that writes the calibrated vehicle, as they were typed here."""
-    tuned = found.document["calibration"]
-    if not tuned:
-        return
-    said = tuned["command"]
-    for run, source in sources.items():
-        said = said.replace(shlex.quote(run), shlex.quote(source))
-    if vehicle:
-        said = said.replace(f"--vehicle {found.document['vehicle']} ", f"--vehicle {shlex.quote(vehicle)} ")
-    extra = "".join(f" {flag} {shlex.quote(value)}" for flag, value in options.items() if value)
-    tuned["command"] = said.replace(" --vehicle ", f"{extra} --vehicle ")
+def _unusual(window: float, profile: str | None, archive: Path) -> tuple[str, ...]:
+    """The options that other commands on these logs need, too: those that were not left as they are."""
+    given = {"--window": "" if window == 10.0 else f"{window:g}", "--profile": profile, "--archive": "" if str(archive) == "archive" else str(archive)}
+    return tuple(word for flag, value in given.items() if value for word in (flag, value))
 
 
-def _print(found: Diagnosis, json_: Path | None, quiet: bool) -> None:
+def _print(document: dict[str, Any], json_: Path | None, quiet: bool) -> None:
     """The diagnosis on stdout as text, or as JSON where that was asked for; JSON into its file."""
     from rovval.report.diagnosis.terminal import text as diagnosis_text
     from rovval.storage.atomic import write_json
 
     if str(json_) == "-":
-        output.result_json(found.document)
+        output.result_json(document)
         return
-    output.result(diagnosis_text(found.document))
+    output.result(diagnosis_text(document))
     if json_ is not None:
-        write_json(json_, found.document)
+        write_json(json_, document)
         output.say(f"written: {json_}", quiet)
 
 
-def _write(found: Diagnosis, folder: Path | None, mended: Path | None, quiet: bool) -> None:
+def _write(found: Diagnosis, document: dict[str, Any], folder: Path | None, mended: Path | None, quiet: bool) -> None:
     """The report and the mended vehicle, each where it was asked for."""
     from rovval import report
     from rovval.storage.atomic import write_text
 
     if folder is not None:
-        report.write_diagnosis(found.document, folder)
+        report.write_diagnosis(document, folder)
         output.say(f"written: {folder}", quiet)
     if mended is not None and not found.vehicle_fixed:
         output.say(f"{mended} not written: no cause was found that could be added to the vehicle")

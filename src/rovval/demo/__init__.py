@@ -49,6 +49,7 @@ def run(folder: Path, with_diagnosis: bool, progress: Callable[[str, float], Non
     from rovval.diagnose import diagnose
     from rovval.report.comparison.json import document as comparison_json
     from rovval.report.comparison.terminal import text
+    from rovval.report.diagnosis import json as diagnosis_json
     from rovval.report.diagnosis.terminal import text as diagnosis_text
     from rovval.simulation import simulate
     from rovval.vehicle import load
@@ -67,9 +68,9 @@ def run(folder: Path, with_diagnosis: bool, progress: Callable[[str, float], Non
     parts, corrected = [text(comparison)], None
     if with_diagnosis:
         found = diagnose([dive], vehicle, progress=lambda step, share: progress(step, 0.2 + 0.6 * share))
-        document["diagnosis"] = found.document
+        document["diagnosis"] = diagnosis_json.document(found)
         parts += [
-            diagnosis_text(found.document),
+            diagnosis_text(document["diagnosis"]),
             f"The effect that was left in this SYNTHETIC log, to judge the diagnosis by: {EFFECT}",
         ]
         corrected = simulate(dive, vehicle, effects=found.settings)

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 
 from rovval.core.data import Run
 from rovval.diagnose.decision.finding import find
+from rovval.diagnose.result.assembly import assemble
 from rovval.diagnose.result.diagnosis import Diagnosis
-from rovval.diagnose.result.document import answer
 from rovval.diagnose.windows.shooting import cut_all
 from rovval.vehicle.model import Vehicle
 
@@ -36,4 +36,4 @@ def diagnose(
 
     say = progress or (lambda text, share: None)
     parts, left_out = cut_all(runs, vehicle, model, window_s)
-    return answer(find(parts, without, calibration_slop, seed, say), left_out, calibration_slop, seed, say)
+    return assemble(find(parts, without, calibration_slop, seed, say), left_out, calibration_slop, seed, say)

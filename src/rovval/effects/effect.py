@@ -76,6 +76,11 @@ class Effect:
         """Whether it has an onset of its own."""
         return any(p.name == "onset" for p in self.parameters)
 
+    @property
+    def searched(self) -> bool:
+        """Whether it begins or turns at a time or place that a diagnosis searches for: a fit from the null value cannot find it."""
+        return bool(self.grid) or self.begins
+
     def of_one_axis(self, parameter: str) -> bool:
         """Whether a parameter says of one axis what another says of all."""
         return self.apart and parameter in self.refines

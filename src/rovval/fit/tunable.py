@@ -25,7 +25,7 @@ def chosen(plant: Plant, parameters: Sequence[str]) -> tuple[int, ...]:
     found, problems = set[int](), []
     for asked in parameters:
         slots = [s for one in FAMILIES.get(asked, asked).split() for s in _meant(plant, one)]
-        searched = sorted({plant.slots[s].hypothesis for s in slots if is_searched(plant, s)})
+        searched = sorted({plant.slots[s].hypothesis for s in slots if effects.load(plant.slots[s].effect).searched})
         if not slots:
             problems.append(f"{asked!r}: no such parameter{_near(plant, asked)}")
         elif searched:
@@ -42,12 +42,6 @@ def chosen(plant: Plant, parameters: Sequence[str]) -> tuple[int, ...]:
 def _meant(plant: Plant, one: str) -> list[int]:
     pattern = re.compile(".*".join(re.escape(part) for part in one.split("*")))
     return [i for i, s in enumerate(plant.slots) if any(pattern.fullmatch(name) for name in (s.key, s.hypothesis, s.effect))]
-
-
-def is_searched(plant: Plant, slot: int) -> bool:
-    """Whether a slot belongs to what begins or turns at a time or place that `diagnose` searches for."""
-    effect = effects.load(plant.slots[slot].effect)
-    return bool(effect.grid) or effect.begins
 
 
 def _near(plant: Plant, asked: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import time
 import traceback
@@ -149,15 +148,16 @@ class _Bench:
     def diagnose(self) -> tuple[dict[str, Any], list[Path]]:
         from rovval import report
         from rovval.diagnose import diagnose
+        from rovval.report.diagnosis import json as diagnosis_json
         from rovval.report.diagnosis.words import verdict
 
         task, place = self.task, self.task.folder / "diagnosis"
         found = diagnose(
             [self.run], self.vehicle, model=task.model, window_s=task.window_s, calibration_slop=task.calibration_slop
         )
-        files = report.write_diagnosis(found.document, place)
+        document = diagnosis_json.document(found)
+        files = report.write_diagnosis(document, place)
         if found.vehicle_fixed:
             write_text(place / "vehicle_fixed.toml", found.vehicle_fixed)
-        document = json.loads(json.dumps(found.document))
         facts = {key: document[key] for key in ("vehicle", "verdict", "causes")}
         return {**facts, "said": verdict(document), "gap": document["gap"]["axes"]}, list(files.values())

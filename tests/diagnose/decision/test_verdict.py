@@ -34,6 +34,7 @@ from rovval.diagnose.search.discrepancy import Forces, forces
 from rovval.diagnose.windows.closed_loop import discount, gains, loop_gain
 from rovval.diagnose.windows.shooting import cut, cut_all
 from rovval.plant import Plant
+from rovval.report.diagnosis.json import document as written
 from rovval.vehicle.model import allocation
 
 
@@ -97,7 +98,7 @@ RELATIVES = {  # withheld with the effect: the same law, or one that is it at so
     ("planted", "axes"), [("current_constant:north=0.15", {"surge", "sway"}), ("thruster_degraded[HFP]:loss=0.5", {"yaw"})]
 )
 def test_a_withheld_effect_is_unknown_and_said_where(planted: str, axes: set[str]):
-    document = diagnose([own((planted,), 5, 160.0)], merlin(), without=RELATIVES[planted]).document
+    document = written(diagnose([own((planted,), 5, 160.0)], merlin(), without=RELATIVES[planted]))
     assert document["verdict"] == "unknown" and document["causes"] == []
     assert document["left"]["axes"][0] in axes and "no effect of the library" in document["left"]["text"]
 

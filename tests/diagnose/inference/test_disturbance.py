@@ -86,4 +86,4 @@ def test_a_healthy_vehicle_on_station_is_not_blamed_and_the_push_is_found(tmp_pa
     parts, _ = cut_all([run], v, "fossen", 10.0)
     found = pose(parts, columns_of(hypotheses(parts)[0]), 0.05).disturbance.rms
     assert (found > 0.4 * true).all() and (found < 2.5 * true).all()
-    assert diagnose([run], v).document["verdict"] == "no_gap"
+    assert diagnose([run], v).document()["verdict"] == "no_gap"

@@ -24,6 +24,7 @@ from rovval.report.diagnosis import html as diagnosis_html
 from rovval.report.diagnosis import markdown as diagnosis_markdown
 from rovval.report.diagnosis import terminal as diagnosis_terminal
 from rovval.report.diagnosis.calibration_words import calibration
+from rovval.report.diagnosis.json import document as written
 from rovval.report.diagnosis.sentence import sentence
 from rovval.simulation import simulate
 from rovval.storage.archive import open_run
@@ -53,7 +54,7 @@ def flown(folder: Path, seed: int) -> Run:
 
 @functools.cache
 def told(folder: Path) -> dict[str, Any]:
-    return diagnose([flown(folder, 11)], merlin()).document
+    return written(diagnose([flown(folder, 11)], merlin()))
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +89,7 @@ def test_the_command_writes_a_vehicle_that_is_nearer_on_another_dive(folder: Pat
 
 @pytest.mark.parametrize("planted", [(), ("inflow_loss:loss=0.3",), ("quadratic_drag[surge]:scale=0.6",)])
 def test_a_healthy_log_and_one_cause_are_not_a_matter_of_calibration(planted: tuple[str, ...]):
-    d = diagnose([own(planted, 5, 100.0)], merlin()).document
+    d = diagnose([own(planted, 5, 100.0)], merlin()).document()
     assert d["calibration"] is None and calibration(d) == ""
     assert bool(d["causes"]) == bool(planted)
 
@@ -97,12 +98,12 @@ def test_nor_are_they_of_an_independent_plant(tmp_path_factory: pytest.TempPathF
     folder = tmp_path_factory.getbasetemp() / "calibration"
     folder.mkdir()
     for seed, planted in ((41, ()), (42, (("thruster_degraded", "HFP", 1.0),))):
-        assert diagnose([foreign(folder, planted, seed, 150.0, 0.03)], merlin()).document["calibration"] is None
+        assert diagnose([foreign(folder, planted, seed, 150.0, 0.03)], merlin()).document()["calibration"] is None
 
 
 def test_the_tank_runs_are_a_matter_of_calibration_on_the_run_left_out():
     runs = [open_run(real(f"bluerov2_tank/run_{name}.csv")) for name in "abc"]
-    found = diagnose(runs, vehicle.load("bluerov2_heavy")).document["calibration"]
+    found = diagnose(runs, vehicle.load("bluerov2_heavy")).document()["calibration"]
     assert found["held_out"] == "runs" and found["shrinkage"]["low"] > 0.4
     assert {"quadratic_drag[surge].scale", *(f"thruster_degraded[T{i}].loss" for i in (1, 2, 3, 4))} <= set(found["beyond"])
 

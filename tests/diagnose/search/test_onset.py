@@ -31,6 +31,7 @@ from rovval.diagnose.search.joint import worthy
 from rovval.diagnose.search.onset import CLEARER, Beginning, _explained, _Part, _worth, after
 from rovval.diagnose.search.switched import switched
 from rovval.diagnose.windows.shooting import Stretches, cut_all
+from rovval.report.diagnosis.json import document as written
 from rovval.report.diagnosis.sentence import since
 from rovval.storage.archive import open_run
 
@@ -50,7 +51,7 @@ def logs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Run, Run]:
 
 
 def test_what_begins_in_mid_log_is_told_from_there_on(logs: tuple[Run, Run]) -> None:
-    document = diagnose([logs[0]], merlin()).document
+    document = written(diagnose([logs[0]], merlin()))
     assert document["since_s"] == pytest.approx(BEGINS, abs=15.0)
     assert [c["effect"] for c in document["causes"]] == ["inflow_loss"]
     assert document["causes"][0]["onset_s"] == document["since_s"] and document["shrinkage"]["total"] > 0.5
@@ -58,7 +59,7 @@ def test_what_begins_in_mid_log_is_told_from_there_on(logs: tuple[Run, Run]) -> 
 
 
 def test_what_is_always_there_has_no_beginning(logs: tuple[Run, Run]) -> None:
-    document = diagnose([logs[1]], merlin()).document
+    document = diagnose([logs[1]], merlin()).document()
     assert document["since_s"] is None and since(document) == "" and [c["effect"] for c in document["causes"]] == ["inflow_loss"]
     assert document["causes"][0]["onset_s"] is None
 

@@ -81,14 +81,14 @@ def test_a_healthy_log_has_no_line():
     [("waves:amplitude=1,period=9.3,direction=2.6,phase=-2.0", "waves"), ("current_varying:north=0.15,east=-0.1,period=83,phase=2.5", "current_varying")],
 )
 def test_what_swings_is_found_whatever_its_period_and_phase(effect, name):
-    document = diagnose([own((effect,), 5, 240.0)], merlin()).document
+    document = diagnose([own((effect,), 5, 240.0)], merlin()).document()
     assert [c["effect"] for c in document["causes"]] == [name], document["sentence"]
     found, true = document["causes"][0]["parameters"]["period"]["value"], float(effect.split("period=")[1].split(",")[0])
     assert found == pytest.approx(true, rel=0.03) and document["shrinkage"]["total"] > 0.8
 
 
 def test_waves_of_the_independent_plant_are_found(tmp_path: Path):
-    document = diagnose([foreign(tmp_path, (("waves", "", 1.5),), 31, 240.0, 0.03)], merlin()).document
+    document = diagnose([foreign(tmp_path, (("waves", "", 1.5),), 31, 240.0, 0.03)], merlin()).document()
     assert "waves" in [c["effect"] for c in document["causes"]], document["sentence"]
 
 
@@ -107,13 +107,13 @@ def test_a_pull_may_begin_ahead_or_astern():
     x, reach = slot(p, "tether_tension.x"), LEVER * max(float(np.linalg.norm(t.position)) for t in merlin().thruster)
     starts = [dict(h.at)[x] for h in library if h.name == "tether_tension" and h.at]
     assert starts == pytest.approx([-min(reach, 2.0), min(reach, 2.0)])
-    document = diagnose([own(("tether_tension:north=250,east=120,x=-1.4",), 5, 200.0)], merlin()).document
+    document = diagnose([own(("tether_tension:north=250,east=120,x=-1.4",), 5, 200.0)], merlin()).document()
     assert document["causes"][0]["effect"] == "tether_tension", document["sentence"]
     assert document["causes"][0]["parameters"]["x"]["value"] == pytest.approx(-1.4, abs=0.4)
 
 
 def test_a_long_lag_is_found_though_it_is_no_multiple_of_a_short_one():
-    document = diagnose([own(("velocity_filter_lag:tau=0.9",), 5, 200.0)], merlin()).document
+    document = diagnose([own(("velocity_filter_lag:tau=0.9",), 5, 200.0)], merlin()).document()
     assert document["causes"][0]["effect"] == "velocity_filter_lag", document["sentence"]
 
 
@@ -135,7 +135,7 @@ def rolling(folder: Path) -> Problem:
 
 def test_a_list_that_an_autopilot_holds_is_found(tmp_path: Path):
     """It makes roll and pitch count little, and other coefficients within slop show more than the list itself."""
-    document = diagnose([bluerov2(tmp_path, "list.csv", 12, 200.0, 0.03, ("cg_offset", "", -1.6))], load("bluerov2_heavy")).document
+    document = diagnose([bluerov2(tmp_path, "list.csv", 12, 200.0, 0.03, ("cg_offset", "", -1.6))], load("bluerov2_heavy")).document()
     assert [c["effect"] for c in document["causes"]] == ["cg_offset"], document["sentence"]
 
 
@@ -200,7 +200,7 @@ def test_a_size_at_the_end_of_its_search_is_no_cause_unless_it_is_the_end_of_the
 def test_a_channel_that_never_changes_is_no_measurement():
     run = own((), 5, 100.0)
     stuck = replace(run, values={**run.values, "u": np.full(len(run), 0.5)})
-    document = diagnose([stuck], merlin()).document
+    document = diagnose([stuck], merlin()).document()
     assert "u" not in document["gap"]["axes"] and any("all along" in row["detail"] for row in document["log"])
     assert document["verdict"] == "no_gap", document["sentence"]
 
@@ -216,13 +216,13 @@ def test_a_channel_that_never_changes_is_no_measurement():
 def test_what_is_large_or_has_its_datum_in_the_log_is_found(tmp_path: Path, planted, name):
     """A loss or a dead band beyond what is usual, and a change with depth about a depth that the log goes through; independent plant. The dead band there
     is of low flow: above it nothing is missing, which no gain of all thrusters is to make up for."""
-    document = diagnose([foreign(tmp_path, planted, 41, 160.0, 0.03)], merlin()).document
+    document = diagnose([foreign(tmp_path, planted, 41, 160.0, 0.03)], merlin()).document()
     assert name in document["causes"][0]["group"][:2], document["sentence"]
     assert "rpm_scale" not in {c["effect"] for c in document["causes"]}
 
 
 def test_propellers_that_are_all_of_one_hand_are_found_where_the_file_has_them_in_pairs(tmp_path: Path):
-    document = diagnose([bluerov2(tmp_path, "hand.csv", 12, 160.0, 0.03, ("propeller_torque", "", 1.5))], load("bluerov2_heavy")).document
+    document = diagnose([bluerov2(tmp_path, "hand.csv", 12, 160.0, 0.03, ("propeller_torque", "", 1.5))], load("bluerov2_heavy")).document()
     (cause,) = document["causes"]
     assert cause["effect"] == "propeller_torque" and cause["parameters"]["common"]["value"] < -0.02, document["sentence"]
 
@@ -252,7 +252,7 @@ def test_an_offset_along_one_axis_is_tried_by_itself():
     """Three parameters free for one that is off are evidence lost."""
     p, library = posed()
     assert {h.slots for h in library if h.label in ("cg_offset@x", "cg_offset@y", "cg_offset@z")} == {(slot(p, f"cg_offset.{c}"),) for c in "xyz"}
-    document = diagnose([own(("cg_offset:y=0.012",), 5, 200.0)], merlin()).document
+    document = diagnose([own(("cg_offset:y=0.012",), 5, 200.0)], merlin()).document()
     (cause,) = document["causes"]
     assert cause["effect"] == "cg_offset" and cause["parameters"]["y"]["value"] == pytest.approx(0.012, rel=0.15)
 
@@ -320,7 +320,7 @@ def test_what_acts_close_by_does_not_compete_from_afar(least: float, there: bool
 
 def test_what_is_named_is_not_called_untestable(tmp_path: Path):
     """A thruster that is turned far round shows, though a turn of typical size would not."""
-    document = diagnose([bluerov2(tmp_path, "turned.csv", 12, 200.0, 0.03, ("thruster_misaligned", "T1", -2.0))], load("bluerov2_heavy")).document
+    document = diagnose([bluerov2(tmp_path, "turned.csv", 12, 200.0, 0.03, ("thruster_misaligned", "T1", -2.0))], load("bluerov2_heavy")).document()
     assert [c["effect"] for c in document["causes"]] == ["thruster_misaligned[T1]"], document["sentence"]
     untestable = {row["effect"] for row in document["not_testable"]}
     assert "thruster_misaligned[T2]" in untestable and "thruster_misaligned[T1]" not in untestable
@@ -374,7 +374,7 @@ def test_what_holds_the_vehicle_begins_where_it_is_said_to():
 def test_a_stiff_spring_is_found_through_the_beginnings_of_windows(tmp_path: Path):
     """A small vehicle of the independent plant, held for half of the log: over ten seconds a spring a third too soft is a valley of its own."""
     run = foreign(tmp_path, (("tether_snag", "", 1.1),), 47900686, 300.0, 0.03, "bluerov2_heavy", "survey", 135.4)
-    document = diagnose([run], load("bluerov2_heavy")).document
+    document = diagnose([run], load("bluerov2_heavy")).document()
     assert [c["effect"] for c in document["causes"]] == ["tether_snag"], document["sentence"]
     assert document["causes"][0]["onset_s"] == pytest.approx(135.4, abs=10.0)
     assert document["shrinkage"]["total"] > 0.85
@@ -411,7 +411,7 @@ def test_a_spring_is_found_in_the_forces_that_are_missing():
 @pytest.mark.parametrize(("effect", "seed"), [("tether_snag", 8), ("compass_deviation", 6)])
 def test_what_catches_the_tether_or_turns_the_compass_is_named(effect, seed, tmp_path: Path):
     """Of the independent plant: a softened spring from the fairlead, and a compass with two harmonics and the thrusters' own field."""
-    document = diagnose([foreign(tmp_path, ((effect, "", 1.4),), seed, 240.0, 0.03)], merlin()).document
+    document = diagnose([foreign(tmp_path, ((effect, "", 1.4),), seed, 240.0, 0.03)], merlin()).document()
     assert [c["effect"] for c in document["causes"]] == [effect], document["sentence"]
 
 
@@ -441,7 +441,7 @@ def test_a_depth_sensor_that_is_late_is_named_and_has_no_tolerance(tmp_path: Pat
     parts, _ = cut_all([run], merlin(), "fossen", 10.0)
     late = {parts[0].plant.slots[s].key for s in slop_prior(parts[0].plant, 0.05).sd if parts[0].plant.slots[s].effect == "time_offset"}
     assert late == {"time_offset.tau", "time_offset[velocity].delay", "time_offset[attitude].delay"}
-    (cause,) = diagnose([run], merlin()).document["causes"]
+    (cause,) = diagnose([run], merlin()).document()["causes"]
     assert cause["effect"] == "time_offset[depth]" and cause["parameters"]["delay"]["low"] < 0.6 < cause["parameters"]["delay"]["high"]
 
 
@@ -459,7 +459,7 @@ def test_a_late_sensor_and_a_load_that_is_set_down_are_told_in_their_size(
 ):
     """From the independent plant: delays that are a good part of a roll's period, and a mass that leaves with its load."""
     run = foreign(tmp_path, (planted,), seed, 200.0, 0.02)
-    cause = diagnose([run], merlin()).document["causes"][0]
+    cause = diagnose([run], merlin()).document()["causes"][0]
     told = cause["parameters"][parameter]
     assert cause["effect"] == effect
     assert told["low"] < true < told["high"] if true else told["high"] < 0.0

@@ -12,6 +12,7 @@ from rovval.core.data import Array, Run
 from rovval.diagnose import diagnose
 from rovval.diagnose.windows.noise import cleaned, grain
 from rovval.diagnose.windows.saturation import at_stop, pings, sensed
+from rovval.report.diagnosis.json import document as written
 
 
 def with_values(run: Run, **values: Array) -> Run:
@@ -69,7 +70,7 @@ def test_commands_that_repeat_and_a_vehicle_at_rest_are_no_pings():
 
 @pytest.mark.parametrize(("effects", "verdict"), [((), "no_gap"), (("thruster_degraded[HFP]:loss=0.5",), "explained")])
 def test_held_velocities_are_no_filter_and_hide_no_cause(effects: tuple[str, ...], verdict: str):
-    document = diagnose([held(own(effects, 5, 160.0), 8, 0.02)], merlin()).document
+    document = written(diagnose([held(own(effects, 5, 160.0), 8, 0.02)], merlin()))
     assert document["sentence"].endswith("Of the log: u, v, w hold their values between pings, a new one every 0.8 s, and were drawn between these.")
     assert [row["finding"] for row in document["log"]] == ["held"]
     assert document["verdict"] == verdict
@@ -97,12 +98,12 @@ def test_values_that_lie_on_no_grid_have_no_grain():
 def test_a_rate_that_contradicts_its_angle_is_said_and_no_coefficient_is_blamed():
     """A gyro that reads too little of fast turns, softly, so that no sample stands at a stop: inertia, drag or thrusters would else take the blame."""
     run = own((), 5, 160.0)
-    document = diagnose([with_values(run, r=0.3 * np.tanh(run.get("r") / 0.3))], merlin()).document
+    document = written(diagnose([with_values(run, r=0.3 * np.tanh(run.get("r") / 0.3))], merlin()))
     assert not document["causes"] and document["verdict"] == "unknown"
     assert [(row["channel"], row["finding"]) for row in document["log"]] == [("psi", "contradicted")]
     assert "psi and r contradict each other by" in document["sentence"]
 
 
 def test_a_faulty_sensor_of_the_library_is_no_contradiction():
-    document = diagnose([own(("gyro_bias:r=0.02", "thruster_degraded[HFP]:loss=0.5"), 5, 160.0)], merlin()).document
+    document = diagnose([own(("gyro_bias:r=0.02", "thruster_degraded[HFP]:loss=0.5"), 5, 160.0)], merlin()).document()
     assert {c["effect"] for c in document["causes"]} == {"gyro_bias", "thruster_degraded[HFP]"} and not document["log"]

@@ -162,7 +162,7 @@ def test_slices_of_one_quantity_are_named_once_an_axis():
 
 
 def test_an_open_gap_is_an_unknown_effect_in_the_document():
-    left: dict[str, Any] = {"axes": ["surge"], "depends_on": [], "share": 0.0, "strained": None, "inconstant": [], "accounted": 0.3}
+    left: dict[str, Any] = {"axes": ["surge"], "depends_on": [], "share": 0.0, "departed": None, "inconstant": [], "accounted": 0.3}
     d = null(0.04, 0.26) | {"verdict": "unknown", "left": left}
     left["text"] = unexplained(d)
     assert left["text"].startswith("noise and a calibration slop of 5 % account for only 30 % of the squared gap")

@@ -85,11 +85,11 @@ def one(log: Path, vehicle: str, without: Sequence[str], asked: Mapping[str, Any
             window_s=asked["window_s"],
             calibration_slop=asked["calibration_slop"],
             without=tuple(without),
-        ).document
+        )
     except (RovvalError, ArithmeticError, ValueError, LookupError, AssertionError) as problem:
         return {"failed": f"{type(problem).__name__}: {problem}", "cpu_s": time.process_time() - began}
     spent = time.process_time() - began
-    document = {key: value for key, value in found.items() if key not in BULKY}
+    document = {key: value for key, value in found.document().items() if key not in BULKY}
     simple = floors(run, nominal, without, asked["model"], asked["window_s"]) if asked["floors"] else {}
     return {"document": document, "floors": simple, "cpu_s": spent}
 

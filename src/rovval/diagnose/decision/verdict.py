@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Literal
 
 from rovval.core.data import Array
 from rovval.diagnose.decision.questions import BROKEN, of_sensor
@@ -22,6 +23,9 @@ from rovval.diagnose.search.round import FALSE_ALARM
 
 COMPANY = 0.4  # of the probability of a further cause: what one cause leaves unexplained has other names, too (opened sets: 16 of 45 such names were right)
 NEAR = 0.05  # of the gap, held out: an effect that closes less is not near the truth, whatever its evidence (chosen)
+
+
+Verdict = Literal["no_gap", "explained", "partly_explained", "unknown"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +46,7 @@ class Decision:
         unexplained: what is left; None where nothing is.
     """
 
-    verdict: str
+    verdict: Verdict
     causes: tuple[Named, ...]
     fit: Confirmed | None
     groups: Mapping[str, tuple[tuple[str, float], ...]]
@@ -75,7 +79,7 @@ def _isolated(problem: Problem, selection: Selection, final: Confirmed, weighed:
     rest = unexplained(problem, weighed.rest, final.point, gone) if weighed.remains else None
     surest = max(selection.named, key=lambda n: n.evidence)
     probability = {n.hypothesis.name: _probability(n) * (1.0 if n is surest or of_sensor(n) else COMPANY) for n in selection.named}
-    verdict = "partly_explained" if weighed.remains else "explained"
+    verdict: Verdict = "partly_explained" if weighed.remains else "explained"
     figures = weighed.total, weighed.instead, weighed.beside, weighed.strain
     return Decision(verdict, selection.named, final, groups, probability, *figures, accounted(problem, selection.healthy), rest)
 

@@ -1,4 +1,4 @@
-"""The causes as rows of the document: group, probability, onset, parameters with intervals, and what each shrinks the gap by alone."""
+"""The isolated causes: confusion group, probability, onset, parameters with intervals, and what each alone does to the gap."""
 
 from __future__ import annotations
 
@@ -11,65 +11,69 @@ from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.hypothesis_fit import Confirmed, errors, interval, roughly
 from rovval.diagnose.inference.problem import Problem
 from rovval.diagnose.inference.shrinkage import shrinkage
+from rovval.diagnose.result.diagnosis import Cause, Parameter, Shrinkage
 from rovval.diagnose.search.joint import Named
 
 FORM = 0.10  # of a parameter's departure, one standard error: equations that are only nearly right (logs of two independent plants ask for it)
 MOST_GROUP = 3  # names printed of a confusion group
 
 
-def causes(problem: Problem, decision: Decision, before: list[Array], since: float | None, seed: int) -> list[dict[str, object]]:
-    """Every cause that stands; ``before`` are the nominal vehicle's residuals, ``since`` (s) where the part of the log begins that is told."""
-    return [_cause(problem, decision, named, before, since, seed) for named in decision.causes]
+def causes(problem: Problem, decision: Decision, before: list[Array], since: float | None, seed: int) -> tuple[Cause, ...]:
+    """Every isolated cause, in the order found.
+
+    ``before`` are the nominal simulator's residuals; ``since`` (s) is when the part of the log begins that was searched, None for all of it.
+    """
+    return tuple(_cause(problem, decision, one, before, since, seed) for one in decision.causes)
 
 
 def members(decision: Decision, h: Hypothesis) -> tuple[str, ...]:
-    """The cause and what this log does not tell from it, as many as are printed."""
+    """The cause's confusion group, itself first, as many as are printed."""
     return tuple(name for name, _ in decision.groups[h.name][:MOST_GROUP])
 
 
-def only(problem: Problem, final: Confirmed, h: Hypothesis) -> Array:
-    """Parameters (k,) of the joint fit with every other cause put back."""
+def alone(problem: Problem, fitted: Confirmed, h: Hypothesis) -> Array:
+    """Parameters (k,) of the joint fit with every other cause put back to the vehicle's file."""
     beta = problem.origin.copy()
-    beta[list(h.slots)] = final.beta[list(h.slots)]
+    beta[list(h.slots)] = fitted.beta[list(h.slots)]
     return beta
 
 
-def settings(problem: Problem, final: Confirmed | None) -> tuple[str, ...]:
-    """The effects found as command-line settings, numbers in full."""
-    if final is None:
+def settings(problem: Problem, fitted: Confirmed | None) -> tuple[str, ...]:
+    """The causes as the command line's ``--effect`` takes them, numbers in full."""
+    if fitted is None:
         return ()
     by_name: dict[str, list[str]] = {}
-    for slot in final.slots:
+    for slot in fitted.slots:
         s = problem.plant.slots[slot]
-        by_name.setdefault(s.hypothesis, []).append(f"{s.parameter.name}={float(final.beta[slot])!r}")
+        by_name.setdefault(s.hypothesis, []).append(f"{s.parameter.name}={float(fitted.beta[slot])!r}")
     return tuple(f"{name}:{','.join(values)}" for name, values in by_name.items())
 
 
-def _cause(problem: Problem, decision: Decision, named: Named, before: list[Array], since: float | None, seed: int) -> dict[str, object]:
+def _cause(problem: Problem, decision: Decision, one: Named, before: list[Array], since: float | None, seed: int) -> Cause:
     assert decision.fit is not None
-    h, final = named.hypothesis, decision.fit
-    alone = final if len(decision.causes) == 1 else roughly(problem, only(problem, final, h), h.slots, final.point.scaled)
-    return {
-        "effect": h.name,
-        "title": effects.load(h.name.partition("[")[0]).title,
-        "group": list(members(decision, h)),
-        "probability": decision.probability[h.name],
-        "onset_s": next((float(final.beta[s]) for s in h.slots if problem.plant.slots[s].parameter.name == "onset"), since),
-        "parameters": _parameters(problem, final, h),
-        "p_value": named.p_value,
-        "evidence": named.evidence,
-        "shrinkage": shrinkage(problem, alone, before, seed),
-    }
+    h, joint = one.hypothesis, decision.fit
+    single = joint if len(decision.causes) == 1 else roughly(problem, alone(problem, joint, h), h.slots, joint.point.scaled)
+    return Cause(
+        effect=h.name,
+        title=effects.load(h.name.partition("[")[0]).title,
+        group=members(decision, h),
+        probability=decision.probability[h.name],
+        onset_s=next((float(joint.beta[s]) for s in h.slots if problem.plant.slots[s].parameter.name == "onset"), since),
+        parameters=_parameters(problem, joint, h),
+        p_value=one.p_value,
+        evidence=one.evidence,
+        shrinkage=Shrinkage.model_validate(shrinkage(problem, single, before, seed)),
+    )
 
 
-def _parameters(problem: Problem, final: Confirmed, h: Hypothesis) -> dict[str, dict[str, object]]:
-    """Values of the joint fit with their intervals, held within the parameters' bounds."""
-    rows, error = dict[str, dict[str, object]](), errors(problem, final)
+def _parameters(problem: Problem, fitted: Confirmed, h: Hypothesis) -> dict[str, Parameter]:
+    """Values of the joint fit; their intervals add the form error of the equations and stay within the parameters' bounds."""
+    found, error = dict[str, Parameter](), errors(problem, fitted)
     for slot in h.slots:
-        p, value = problem.plant.slots[slot].parameter, float(final.beta[slot])
+        p, value = problem.plant.slots[slot].parameter, float(fitted.beta[slot])
         form = FORM * abs(value - float(problem.origin[slot]))
-        low, high = interval(value, float(np.hypot(error[final.slots.index(slot)], form)), problem.blocks)
-        rows[p.name] = {
-            "value": value, "low": max(low, p.low), "high": min(high, p.high), "unit": p.unit, "null": p.null, "at_bound": slot in final.at_bound,
-        }  # fmt: skip
-    return rows
+        low, high = interval(value, float(np.hypot(error[fitted.slots.index(slot)], form)), problem.blocks)
+        found[p.name] = Parameter(
+            value=value, low=max(low, p.low), high=min(high, p.high), unit=p.unit, null=p.null, at_bound=slot in fitted.at_bound
+        )
+    return found

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from rovval.core.data import Array
@@ -14,6 +12,7 @@ from rovval.diagnose.inference.problem import Problem
 from rovval.diagnose.residuals.coherence import coherence
 from rovval.diagnose.residuals.sensitivities import residual
 from rovval.diagnose.result.attribution import slices
+from rovval.diagnose.result.diagnosis import Coherence, HeatMap, Trace
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.windows.shooting import Stretches, axis_channels
 
@@ -21,7 +20,7 @@ MOST_TRACES = 4
 MOST_COHERENCE = 10
 
 
-def heat_map(part: Stretches, error: Array, seed: int) -> dict[str, Any]:
+def heat_map(part: Stretches, error: Array, seed: int) -> HeatMap:
     """Share of each axis's gap in each regime, and the lift."""
     found = slices(part, error, part.ok, seed)
     axes = list(dict.fromkeys(s.axis for s in found))
@@ -30,10 +29,10 @@ def heat_map(part: Stretches, error: Array, seed: int) -> dict[str, Any]:
     for s in found:
         share[axes.index(s.axis), regimes.index(s.regime)] = s.share
         lift[axes.index(s.axis), regimes.index(s.regime)] = s.lift
-    return {"axes": axes, "regimes": regimes, "share": share.round(4).tolist(), "lift": lift.round(3).tolist()}
+    return HeatMap(axes=tuple(axes), regimes=tuple(regimes), share=_rows(share, 4), lift=_rows(lift, 3))
 
 
-def traces(problem: Problem, final: Confirmed | None, before: list[Array]) -> list[dict[str, Any]]:
+def traces(problem: Problem, final: Confirmed | None, before: list[Array]) -> tuple[Trace, ...]:
     """Measured, nominal and corrected curves of the windows with the largest gap, at most one an axis."""
     found = []
     beta = problem.origin if final is None else final.beta
@@ -44,30 +43,34 @@ def traces(problem: Problem, final: Confirmed | None, before: list[Array]) -> li
             w = int(weight.argmax())
             found.append((float(weight[w]), number, axis, channel, w, nominal, corrected))
     found.sort(key=lambda item: -item[0])
-    return [_trace(problem.parts[number], axis, channel, w, nominal, corrected) for _, number, axis, channel, w, nominal, corrected in found[:MOST_TRACES]]
+    return tuple(_trace(problem.parts[number], axis, channel, w, *pair) for _, number, axis, channel, w, *pair in found[:MOST_TRACES])
 
 
-def _trace(part: Stretches, axis: str, channel: int, w: int, nominal: Array, corrected: Array) -> dict[str, Any]:
+def _trace(part: Stretches, axis: str, channel: int, w: int, nominal: Array, corrected: Array) -> Trace:
     ok, y = part.ok[w, :, channel], part.y[w, :, channel]
     t = part.time()[w]
     name = part.channels[channel]
     pose = name in ("x", "y", "z", "phi", "theta", "psi")
-    return {
-        "title": f"{axis}, {t[0]:.0f} to {t[-1]:.0f} s of {part.run.id}",
-        "axis": axis,
-        "unit": ("rad" if axis in ANGULAR else "m") + ("" if pose else "/s"),
-        "t_s": t[ok].round(3).tolist(),
-        "measured": y[ok].tolist(),
-        "nominal": (y - nominal[w, :, channel])[ok].tolist(),
-        "corrected": (y - corrected[w, :, channel])[ok].tolist(),
-    }
+    return Trace(
+        title=f"{axis}, {t[0]:.0f} to {t[-1]:.0f} s of {part.run.id}",
+        axis=axis,
+        unit=("rad" if axis in ANGULAR else "m") + ("" if pose else "/s"),
+        t_s=t[ok].round(3).tolist(),
+        measured=y[ok].tolist(),
+        nominal=(y - nominal[w, :, channel])[ok].tolist(),
+        corrected=(y - corrected[w, :, channel])[ok].tolist(),
+    )
 
 
-def coherence_matrix(problem: Problem, selection: Selection, decision: Decision) -> dict[str, Any]:
+def coherence_matrix(problem: Problem, selection: Selection, decision: Decision) -> Coherence:
     """Canonical correlation of the best-ranked hypotheses' signatures in this log."""
     columns = set(problem.data.columns)
     wanted = [name for n in decision.causes for name, _ in decision.groups[n.hypothesis.name]] + [name for name, _ in selection.ranking]
     names = [n for n in dict.fromkeys(wanted) if set(problem.plant.hypotheses[n]) <= columns][:MOST_COHERENCE]
     slots = [problem.plant.hypotheses[n] for n in names]
     matrix = [[coherence(problem.data, a, b) if a != b else 1.0 for b in slots] for a in slots]
-    return {"effects": names, "matrix": np.round(matrix, 3).tolist() if names else []}
+    return Coherence(effects=tuple(names), matrix=_rows(np.array(matrix), 3) if names else ())
+
+
+def _rows(matrix: Array, digits: int) -> tuple[tuple[float, ...], ...]:
+    return tuple(tuple(row) for row in np.round(matrix, digits).tolist())

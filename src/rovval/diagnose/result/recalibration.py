@@ -1,15 +1,13 @@
-"""No one effect, but a vehicle's file that is off in many coefficients at once: they are tuned together, with the causes that are named.
+"""A joint recalibration: a vehicle's file that is off in many coefficients at once, tuned together with the causes that are named.
 
-Asked only where the search ends without an explanation and healthy coefficients are strained well beyond their tolerance. It is never a
-cause: an effect that the library lacks, which many coefficients imitate, looks the same.
+Asked only where the search ends without an explanation and healthy coefficients depart well beyond their tolerance. It is never a cause: an
+effect that the library lacks, which many coefficients imitate, looks the same.
 """
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -25,57 +23,71 @@ from rovval.diagnose.inference.problem import Problem
 from rovval.diagnose.inference.refit import shrinkage_refitted
 from rovval.diagnose.inference.shrinkage import harm, shrinkage
 from rovval.diagnose.result.causes import FORM
+from rovval.diagnose.result.diagnosis import AxisHarm, Coefficient, Recalibration, Shrinkage
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.search.joint import LATER_GAIN
-from rovval.fit.tunable import is_searched
+from rovval.effects import Effect
 
-ROUNDS = 6  # of setting strained coefficients free, which may strain others
-LEAST = 3  # strained coefficients: one or two are what an effect of the library, or its nearest relative, leaves (chosen)
+ROUNDS = 6  # of setting coefficients free that depart, which may make others depart
+LEAST = 3  # coefficients: one or two are what an effect of the library, or its nearest relative, leaves (chosen)
 BEYOND = 1.0  # tolerances: a coefficient whose whole interval is further off is surely beyond what a healthy file has
 
 
-def calibration(
-    problem: Problem, selection: Selection, decision: Decision, before: list[Array], slop: float, seed: int, progress: Callable[[str, float], None]
-) -> dict[str, Any] | None:
-    """The coefficients tuned together and how far the gap shrinks where it was not fitted; None where it is not asked, or not shown to be more
-    than the named causes do by as much as a further cause has to add. ``before`` are the nominal vehicle's residuals."""
-    point = decision.fit.point if decision.fit else selection.healthy
-    rest = decision.unexplained
-    if rest is None or rest.accounted is not None or problem.blocks < FEW_WINDOWS or len(strained(problem, point, STRAINED)) < LEAST:
+def recalibration(
+    problem: Problem,
+    selection: Selection,
+    decision: Decision,
+    before: list[Array],
+    tolerance: float,
+    seed: int,
+    progress: Callable[[str, float], None],
+) -> Recalibration | None:
+    """The coefficients tuned jointly, and how far the gap shrinks on data that they were not fitted to.
+
+    None where it is not asked, or where it is not shown to shrink the gap by more than the causes do, by as much as a further cause has to
+    add. ``before`` are the nominal simulator's residuals, ``tolerance`` is relative.
+    """
+    causes = decision.fit.slots if decision.fit else ()
+    if not _asked(problem, selection, decision):
         return None
-    progress("tuning the strained coefficients of the vehicle's file together", 0.9)
+    progress("tuning the vehicle's departing coefficients jointly", 0.9)
     fitted = _fitted(problem, selection, decision)
     if fitted is None:
         return None
-    rows = _rows(problem, fitted, decision.fit.slots if decision.fit else ())
-    beyond = [name for name, row in rows.items() if row["beyond"]]
+    rows = _coefficients(problem, fitted, causes)
+    beyond = tuple(name for name, row in rows.items() if row.beyond)
     if len(beyond) < LEAST:
         return None
-    progress("fitting it anew without the windows that it is scored on", 0.95)
-    shrunk = shrinkage_refitted(problem, fitted, before, slop, seed)
-    named = max(shrinkage(problem, decision.fit, before, seed)["total"], 0.0)
-    if shrunk["low"] <= named + LATER_GAIN * (1.0 - named):
+    progress("fitting them anew without the windows that they are scored on", 0.95)
+    shrunk = shrinkage_refitted(problem, fitted, before, tolerance, seed)
+    by_causes = max(shrinkage(problem, decision.fit, before, seed)["total"], 0.0)
+    if shrunk["low"] <= by_causes + LATER_GAIN * (1.0 - by_causes):
         return None
-    held = "runs" if len(problem.parts) > 1 and len(problem.folds) == len(problem.parts) else "windows"
-    return {"parameters": rows, "beyond": beyond, "shrinkage": shrunk, "held_out": held, "harm": harm(shrunk), "command": command(problem, fitted)}
+    searched = {problem.plant.slots[s].hypothesis for s in fitted.slots if _effect(problem, s).searched}
+    slots = [problem.plant.slots[s] for s in fitted.slots]
+    return Recalibration(
+        parameters=rows,
+        beyond=beyond,
+        shrinkage=Shrinkage.model_validate(shrunk),
+        held_out="runs" if len(problem.parts) > 1 and len(problem.folds) == len(problem.parts) else "windows",
+        harm=tuple(AxisHarm(**row) for row in harm(shrunk)),
+        fitted=tuple(s.key for s in slots if s.hypothesis not in searched),
+        diagnosed=tuple(sorted(searched)),
+    )
 
 
-def strained(problem: Problem, point: Point, limit: float) -> list[int]:
-    """Slots of the vehicle's own coefficients that are ``limit`` tolerances off where effects and slop settled."""
+def departing(problem: Problem, point: Point, limit: float) -> list[int]:
+    """Slots of the vehicle's own coefficients whose standardised departure at ``point`` exceeds ``limit``."""
     off = zip(point.columns[point.own :], point.sigmas(), strict=True)
-    return [slot for slot, z in off if abs(z) > limit and _of_vehicle(problem, slot)]
+    return [slot for slot, z in off if abs(z) > limit and _effect(problem, slot).place != "sensor"]
 
 
-def command(problem: Problem, fitted: Confirmed) -> str:
-    """The `rovval fit` that writes this vehicle, with the runs' ids; what fit does not search for is written by `diagnose` first."""
-    slots, plant = problem.plant.slots, problem.plant
-    found = sorted({slots[s].hypothesis for s in fitted.slots if is_searched(plant, s)})
-    names = ",".join(slots[s].key for s in fitted.slots if slots[s].hypothesis not in found)
-    logs = " ".join(shlex.quote(part.run.id) for part in problem.parts)
-    model = "" if plant.model == "fossen" else f" --model {plant.model}"
-    first = f"rovval diagnose {logs} --vehicle {plant.vehicle.name}{model} --write-vehicle mended.toml && " if found else ""
-    start = "mended.toml" if found else plant.vehicle.name
-    return f"{first}rovval fit {logs} --vehicle {start}{model} --parameters {shlex.quote(names)} --out calibrated.toml"
+def _asked(problem: Problem, selection: Selection, decision: Decision) -> bool:
+    """Whether something is surely at work that the causes leave unexplained, and enough coefficients depart."""
+    rest, point = decision.unexplained, decision.fit.point if decision.fit else selection.healthy
+    if rest is None or rest.accounted is not None or problem.blocks < FEW_WINDOWS:
+        return False
+    return len(departing(problem, point, STRAINED)) >= LEAST
 
 
 def _fitted(problem: Problem, selection: Selection, decision: Decision) -> Confirmed | None:
@@ -86,7 +98,7 @@ def _fitted(problem: Problem, selection: Selection, decision: Decision) -> Confi
     beta[list(causes)] = point.beta[list(causes)]
     near, free, refused = replace(selection.healthy, beta=beta), tuple[int, ...](), set[int]()
     for _ in range(ROUNDS):
-        more = [s for s in strained(problem, point, WITHIN) if s not in refused and not is_searched(problem.plant, s)]
+        more = [s for s in departing(problem, point, WITHIN) if s not in refused and not _effect(problem, s).searched]
         able, out = determinable(problem, (*free, *more))
         refused |= out.keys()
         if set(able) == set(free):
@@ -97,21 +109,21 @@ def _fitted(problem: Problem, selection: Selection, decision: Decision) -> Confi
     return confirm(problem, rough.point.beta, rough.slots) if rough else None
 
 
-def _rows(problem: Problem, fitted: Confirmed, causes: Sequence[int]) -> dict[str, dict[str, Any]]:
-    """Every tuned parameter, the one that is most tolerances off first; the named causes' own, which are no matter of the file, last."""
-    rows, error = dict[str, dict[str, Any]](), errors(problem, fitted)
+def _coefficients(problem: Problem, fitted: Confirmed, causes: Sequence[int]) -> dict[str, Coefficient]:
+    """Every tuned parameter, the largest departure first; those of the named causes, which are no matter of the file, last."""
+    rows, error = dict[str, Coefficient](), errors(problem, fitted)
     for slot, se in zip(fitted.slots, error, strict=True):
         p, value, was = problem.plant.slots[slot].parameter, float(fitted.beta[slot]), float(problem.origin[slot])
         low, high = interval(value, float(np.hypot(se, FORM * abs(value - was))), problem.blocks)
         low, high, tolerance = max(low, p.low), min(high, p.high), problem.slop.sd.get(slot)
-        times = None if tolerance is None else (value - was) / tolerance
-        surely = tolerance is not None and slot not in causes and not low - BEYOND * tolerance <= was <= high + BEYOND * tolerance
-        rows[problem.plant.slots[slot].key] = {
-            "value": value, "low": low, "high": high, "unit": p.unit, "was": was, "tolerance": tolerance, "tolerances": times,
-            "beyond": surely, "at_bound": slot in fitted.at_bound, "of_cause": slot in causes,
-        }  # fmt: skip
-    return dict(sorted(rows.items(), key=lambda item: (item[1]["of_cause"], -abs(item[1]["tolerances"] or 0.0))))
+        rows[problem.plant.slots[slot].key] = Coefficient(
+            value=value, low=low, high=high, unit=p.unit, was=was, tolerance=tolerance,
+            departure=None if tolerance is None else (value - was) / tolerance,
+            beyond=tolerance is not None and slot not in causes and not low - BEYOND * tolerance <= was <= high + BEYOND * tolerance,
+            at_bound=slot in fitted.at_bound, of_cause=slot in causes,
+        )  # fmt: skip
+    return dict(sorted(rows.items(), key=lambda item: (item[1].of_cause, -abs(item[1].departure or 0.0))))
 
 
-def _of_vehicle(problem: Problem, slot: int) -> bool:
-    return effects.load(problem.plant.slots[slot].effect).place != "sensor"
+def _effect(problem: Problem, slot: int) -> Effect:
+    return effects.load(problem.plant.slots[slot].effect)

@@ -53,8 +53,8 @@ def unexplained(document: Mapping[str, Any]) -> str:
     text += "; no effect of the library is shown to be it"
     if left["inconstant"]:
         text += f"; nearest is {' and '.join(left['inconstant'])}, whose value would have to change along the log"
-    elif left["strained"]:
-        name, departure = left["strained"]["coefficient"], left["strained"]["departure"]
+    elif left["departed"]:
+        name, departure = left["departed"]["coefficient"], left["departed"]["departure"]
         text += f"; nearest is {name}, which would have to be {abs(departure):.0f} times its tolerance off"
     return text
 

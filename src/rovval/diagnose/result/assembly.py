@@ -1,0 +1,192 @@
+"""The answer put together: every part of the typed diagnosis from what was posed, found and decided."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from rovval.core.channels import AXES
+from rovval.core.data import Array
+from rovval.core.version import __version__
+from rovval.diagnose.decision.consistency import contradicted
+from rovval.diagnose.decision.finding import Finding
+from rovval.diagnose.decision.unexplained import Unexplained as Rest
+from rovval.diagnose.decision.verdict import Decision
+from rovval.diagnose.hypotheses.change_points import change_points
+from rovval.diagnose.inference.gap import axis_rows, axis_weight
+from rovval.diagnose.inference.problem import Problem
+from rovval.diagnose.inference.shrinkage import harm, shrinkage
+from rovval.diagnose.residuals.sensor_faults import faults
+from rovval.diagnose.result.attribution import slices, worst
+from rovval.diagnose.result.causes import causes, settings
+from rovval.diagnose.result.diagnosis import (
+    AxisGap,
+    AxisHarm,
+    Candidate,
+    Departure,
+    Detection,
+    Diagnosis,
+    Disturbance,
+    Gap,
+    GapSlice,
+    LogRemark,
+    NotTestable,
+    Reduction,
+    Score,
+    SensorFault,
+    Shrinkage,
+    Unexplained,
+)
+from rovval.diagnose.result.experiment import next_experiment
+from rovval.diagnose.result.figures import coherence_matrix, heat_map, traces
+from rovval.diagnose.result.recalibration import recalibration
+from rovval.diagnose.search.baseline import relief, without_own
+from rovval.diagnose.search.forward import Selection
+from rovval.diagnose.windows.saturation import NO_MEASUREMENT
+from rovval.vehicle.write import with_effects
+
+MOST_SLICES = 5  # named of where the gap lies
+WRENCH_UNITS = ("N", "N", "N", "N m", "N m", "N m")
+
+
+def assemble(
+    finding: Finding, left_out: tuple[str, ...], tolerance: float, seed: int, progress: Callable[[str, float], None]
+) -> Diagnosis:
+    """The typed diagnosis of what was found.
+
+    Args:
+        finding: the problem, what the search found in it, and the decision.
+        left_out: runs that could not be used, each with the reason.
+        tolerance: relative standard deviation of a healthy simulator's coefficients.
+        seed: of the bootstrap of intervals.
+        progress: told what is done, and which share of the whole is behind it.
+    """
+    problem, selection, before, decision = finding.problem, finding.selection, finding.before, finding.decision
+    shrunk = shrinkage(problem, decision.fit, before, seed)
+    experiment = next_experiment(problem, decision)
+    found = settings(problem, decision.fit)
+    return Diagnosis(
+        **_settings(problem, tolerance),
+        since_s=finding.since,
+        verdict=decision.verdict,
+        gap=_gap(problem, before, seed),
+        causes=causes(problem, decision, before, finding.since, seed),
+        shrinkage=Shrinkage.model_validate(shrunk),
+        within_tolerance=_within_tolerance(problem, selection, decision, seed),
+        ranking=tuple(Score(effect=name, score=score) for name, score in selection.ranking),
+        not_testable=tuple(
+            NotTestable(effect=name, why=why) for name, why in sorted(finding.untestable.items()) if name not in decision.groups
+        ),
+        next_experiment=experiment.summary() if experiment else None,
+        manoeuvre=experiment.schedule(problem.plant.vehicle.thrusters) if experiment else None,
+        detection=_detection(selection, decision),
+        finalists=tuple(tuple(Candidate(effect=n, evidence=e, gain=g) for n, e, g in step) for step in selection.rounds),
+        disturbance=_disturbance(problem),
+        left=_unexplained(decision.unexplained),
+        calibration=recalibration(problem, selection, decision, before, tolerance, seed, progress),
+        harm=tuple(AxisHarm(**row) for row in harm(shrunk)),
+        parity=_parity(problem),
+        heatmap=heat_map(problem.parts[0], before[0], seed),
+        traces=traces(problem, decision.fit, before),
+        coherence=coherence_matrix(problem, selection, decision),
+        inputs=problem.parts[0].driven.source,
+        log=_remarks(problem, before),
+        runs_left_out=left_out,
+        left_out_s=sum(part.contact_s for part in problem.parts),
+        windows_stopped=sum(part.stopped for part in problem.parts),
+        outliers=sum(part.outliers for part in problem.parts),
+        settings=found,
+        vehicle_fixed=with_effects(problem.plant.vehicle, found) if found else "",
+    )
+
+
+def _settings(problem: Problem, tolerance: float) -> dict[str, Any]:
+    """What was diagnosed, and with which settings."""
+    runs = [part.run for part in problem.parts]
+    return {
+        "rovval": __version__,
+        "run": ", ".join(run.id for run in runs),
+        "runs": tuple(run.id for run in runs),
+        "vehicle": problem.plant.vehicle.name,
+        "vehicle_hash": problem.plant.vehicle.hash,
+        "model": problem.plant.model,
+        "window_s": round((problem.parts[0].steps + 1) * runs[0].dt, 6),
+        "windows": problem.blocks,
+        "calibration_slop": tolerance,
+        "synthetic": next((run.properties["synthetic"] for run in runs if "synthetic" in run.properties), ""),
+    }
+
+
+def _gap(problem: Problem, before: list[Array], seed: int) -> Gap:
+    """How large the gap is, in which regimes it lies and when it changes; ``before`` are the nominal simulator's residuals."""
+    axes = {axis: AxisGap.model_validate(row) for axis, row in axis_rows(problem, before).items()}
+    changes = list[float]()
+    for part, error in zip(problem.parts, before, strict=True):
+        mean = np.where(part.ok, error, 0.0).sum(axis=1) / np.maximum(part.ok.sum(axis=1), 1)
+        changes.extend(change_points(part, mean, seed))
+    return Gap(axes=axes, where=_where(problem, before, axes, seed), change_points_s=tuple(changes))
+
+
+def _where(problem: Problem, before: list[Array], axes: Mapping[str, AxisGap], seed: int) -> tuple[GapSlice, ...]:
+    """The regimes of axes that hold more of the gap than their time would."""
+    shares = {axis: row.share for axis, row in axes.items()}
+    found = [s for part, error in zip(problem.parts, before, strict=True) for s in worst(slices(part, error, part.ok, seed), shares)]
+    return tuple(
+        GapSlice(axis=s.axis, regime=s.regime, share=s.share, time_share=s.time_share, lift=s.lift, low=s.low, high=s.high)
+        for s in found[:MOST_SLICES]
+    )
+
+
+def _within_tolerance(problem: Problem, selection: Selection, decision: Decision, seed: int) -> Reduction | None:
+    """What the causes take away of the error that coefficients fitted within their tolerances leave; None without causes."""
+    if decision.fit is None:
+        return None
+    others = without_own(problem, selection.healthy, decision.fit.slots)
+    total, low, high = relief(problem, decision.fit, others, seed)
+    return Reduction(total=total, low=low, high=high)
+
+
+def _detection(selection: Selection, decision: Decision) -> Detection:
+    return Detection(
+        noise=decision.accounted.noise,
+        tolerance_share=decision.accounted.tolerance,
+        p_value=selection.named[0].p_value if selection.named else selection.last_p,
+        last_p=selection.last_p,
+        last_evidence=selection.last_evidence,
+        null_evidence=selection.null_evidence,
+        causes=decision.evidence,
+        generic_instead=decision.generic_instead,
+        generic_beside=decision.generic_beside,
+        largest_departure=decision.departure,
+    )
+
+
+def _disturbance(problem: Problem) -> dict[str, Disturbance]:
+    """The forces that nobody logged: rms and correlation time by axis."""
+    found = problem.disturbance
+    rows = zip(AXES, WRENCH_UNITS, found.rms, found.memory_s, strict=True)
+    return {axis: Disturbance(rms=float(rms), unit=unit, memory_s=float(memory)) for axis, unit, rms, memory in rows}
+
+
+def _unexplained(rest: Rest | None) -> Unexplained | None:
+    if rest is None:
+        return None
+    departed = Departure(coefficient=rest.strained[0], departure=rest.strained[1]) if rest.strained else None
+    return Unexplained(
+        axes=rest.axes, depends_on=rest.depends_on, share=rest.share, departed=departed, inconstant=rest.inconstant, accounted=rest.accounted
+    )
+
+
+def _parity(problem: Problem) -> tuple[SensorFault, ...]:
+    """Every fault of a sensor that kinematics can show, of each run."""
+    found = [row for check, part in zip(problem.parity, problem.parts, strict=True) for row in faults(check, part, problem.origin)]
+    return tuple(SensorFault.model_validate(row) for row in found)
+
+
+def _remarks(problem: Problem, before: list[Array]) -> tuple[LogRemark, ...]:
+    """What of the logs is no plain measurement: saturated, held or repeated channels, and angles that contradict their rates."""
+    found = [(part.run.id, f) for part in problem.parts for f in part.run.findings if f.code in NO_MEASUREMENT]
+    rows = [LogRemark(run=run, channel=f.where, finding=f.code, detail=f.detail) for run, f in found]
+    return (*rows, *(LogRemark(**row) for row in contradicted(problem, axis_weight(problem, before))))
