@@ -4,11 +4,13 @@ import os
 import signal
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from rovval.demo import make
-from rovval.pipeline.plan import Task
+from rovval.pipeline import config
+from rovval.pipeline.plan import Task, plan
 from rovval.pipeline.worker import Outcome, work
 
 
@@ -30,6 +32,16 @@ def write_pipeline(folder: Path, *lines: str, steps: str = '["ingest"]') -> Path
         "\n".join([*head, "[[source]]", 'logs = ["logs/*.csv"]', 'profile = "merlin"', 'vehicle = "merlin"']) + "\n"
     )
     return path
+
+
+def counts(document: dict[str, Any]) -> dict[str, int]:
+    """How many logs ended in which way, without the ways that none ended in."""
+    return {how: many for how, many in document["counts"].items() if many}
+
+
+def tasks_of(pipeline: Path) -> tuple[Task, ...]:
+    """What a pipeline file still asks for."""
+    return plan(config.load(pipeline), pipeline.parent).todo
 
 
 def deadly(task: Task) -> Outcome:

@@ -1,5 +1,6 @@
 """What the wrapper does with each way to end: exit code, one message, and where a traceback goes."""
 
+import errno
 import os
 import re
 import signal
@@ -89,6 +90,12 @@ def test_a_refused_path_is_named(ends_with, tmp_path):
     code, err = ends_with(PermissionError(13, "Permission denied", str(tmp_path / "out")))
     assert code == 2
     assert str(tmp_path / "out") in err
+
+
+def test_a_result_that_cannot_be_printed_is_no_internal_error(ends_with):
+    code, err = ends_with(OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)))
+    assert code == 2
+    assert "free space" in err
 
 
 def test_a_missing_library_of_an_extra_is_not_hidden_as_success(ends_with):

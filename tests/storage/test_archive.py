@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rovval.core.data import Run
-from rovval.core.errors import BadInput
+from rovval.core.errors import BadInput, Finding
 from rovval.storage.archive import load_run, open_run, run_ids, save_run
 
 
@@ -110,3 +110,13 @@ def test_the_id_follows_content_and_profile(run, tmp_path):
     moved = copy / "dive.csv"
     moved.write_bytes(path.read_bytes())
     assert open_run(moved).id == open_run(path).id
+
+
+def test_a_run_of_other_code_gives_way_in_the_archive(run, tmp_path):
+    """It used to stand in the way: the log was set aside for holding another run of the same id."""
+    save_run(replace(run, values={**run.values, "z": run.values["z"] + 1.0}, findings=(Finding("odd", "z", "deeper"),)), tmp_path / "archive")
+    with pytest.raises(BadInput, match="another run of the same id"):
+        save_run(run, tmp_path / "archive")
+    save_run(run, tmp_path / "archive", overwrite=True)
+    same(load_run(run.id, tmp_path / "archive"), run)
+    assert [p.name for p in (tmp_path / "archive").iterdir()] == [run.id], "nothing is left beside it"

@@ -1,18 +1,13 @@
-"""Files appear whole or not at all, and a disk that is full is said so: never as an internal error, never as a log's fault."""
+"""Files appear whole or not at all, and a disk that is full is said so with what to do."""
 
 import errno
 import os
-import sys
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
-import rovval.cli
 from rovval.core.errors import Unwritable, UsageProblem
-from rovval.pipeline import worker
-from rovval.pipeline.hashes import code_of_this_process
-from rovval.storage.atomic import LEFTOVER, drafts, refusal, refuse_unwritable, write_text
+from rovval.storage.atomic import LEFTOVER, drafts, refuse_unwritable, write_text
 
 
 def full(*args: object, **kwargs: object) -> None:
@@ -56,22 +51,3 @@ def test_places_are_checked_before_the_work(tmp_path):
     for wrong in (tmp_path, tmp_path / "file" / "d.json"):
         with pytest.raises(UsageProblem, match="cannot be written"):
             refuse_unwritable(wrong)
-
-
-def test_a_full_disk_stops_the_batch_and_sets_no_log_aside(tmp_path, monkeypatch):
-    def steps(task: object) -> None:
-        raise refusal(tmp_path / "record.json", OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)))
-
-    monkeypatch.setattr(worker, "_steps", steps)
-    outcome = worker.work(SimpleNamespace(code=code_of_this_process()))  # type: ignore[arg-type]
-    assert outcome["status"] == "stopped"
-    assert "No space left" in outcome["record"]["reason"]
-
-
-def test_a_result_that_cannot_be_printed_is_no_internal_error(monkeypatch, capsys):
-    monkeypatch.setattr("rovval.cli.complete.known", full)
-    monkeypatch.setattr(sys, "argv", ["rovval", "list", "vehicle"])
-    with pytest.raises(SystemExit) as left:
-        rovval.cli.main()
-    assert left.value.code == 2
-    assert "free space" in capsys.readouterr().err

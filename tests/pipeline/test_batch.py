@@ -1,0 +1,151 @@
+"""The batch: what is new is done, the rest skipped, a bad log set aside, and no kill loses what was finished."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import batch_case
+import pytest
+from batch_case import counts, tasks_of
+
+from rovval.core.errors import UsageProblem
+from rovval.pipeline import batch, lock
+from rovval.storage.archive import run_ids
+
+
+def test_new_logs_are_done_and_unchanged_ones_skipped(site):
+    path = batch_case.write_pipeline(site)
+    first = batch.run(path, workers=2)
+    assert counts(first) == {"done": 3}
+    assert first["exit_code"] == 0
+    assert len(run_ids(site / "archive")) == 3
+    stamps = {p: p.stat().st_mtime_ns for p in (site / "archive").rglob("*") if p.is_file()}
+    second = batch.run(path, workers=2)
+    assert counts(second) == {"unchanged": 3}
+    assert stamps == {p: p.stat().st_mtime_ns for p in (site / "archive").rglob("*") if p.is_file()}
+    assert json.loads((site / "reports" / "summary.json").read_text()) == second
+
+
+def test_a_changed_log_is_done_again_and_only_it(site):
+    path = batch_case.write_pipeline(site)
+    batch.run(path, workers=1)
+    batch_case.write_log(site / "logs" / "b.csv", seed=99)
+    again = batch.run(path, workers=1)
+    assert counts(again) == {"done": 1, "unchanged": 2}
+    assert again["done"][0]["log"].endswith("b.csv")
+
+
+def test_a_touched_log_of_equal_content_is_not_done_again(site):
+    path = batch_case.write_pipeline(site)
+    batch.run(path, workers=1)
+    os.utime(site / "logs" / "a.csv")
+    assert counts(batch.run(path, workers=1)) == {"unchanged": 3}
+
+
+def test_a_lost_output_is_made_again(site):
+    path = batch_case.write_pipeline(site)
+    batch.run(path, workers=1)
+    run = run_ids(site / "archive")[0]
+    for file in (site / "archive" / run).iterdir():
+        file.unlink()
+    (site / "archive" / run).rmdir()
+    assert counts(batch.run(path, workers=1)) == {"done": 1, "unchanged": 2}
+    assert len(run_ids(site / "archive")) == 3
+
+
+def test_a_step_that_is_no_longer_asked_for_leaves_the_record_when_the_others_are_made_anew(site):
+    """An old diagnosis stood beside new comparisons."""
+    batch.run(batch_case.write_pipeline(site, steps='["ingest", "simulate"]'), workers=1)
+    record = next((site / "reports").glob("*/record.json"))
+    assert list(json.loads(record.read_text())["steps"]) == ["ingest", "simulate"]
+    batch.run(batch_case.write_pipeline(site, steps='["ingest"]'), workers=1)
+    assert list(json.loads(record.read_text())["steps"]) == ["ingest", "simulate"], "nothing is stale, nothing is lost"
+    batch.run(batch_case.write_pipeline(site, "window_s = 4.0", steps='["simulate"]'), workers=1)
+    assert list(json.loads(record.read_text())["steps"]) == ["simulate"]
+
+
+def test_a_bad_log_is_set_aside_with_its_reason_and_the_batch_goes_on(site):
+    (site / "logs" / "bad.csv").write_text("this is,not a log\n1,2\n")
+    (site / "logs" / "empty.csv").touch()
+    path = batch_case.write_pipeline(site)
+    done = batch.run(path, workers=2)
+    assert counts(done) == {"done": 3, "quarantined": 2}
+    assert done["exit_code"] == 3
+    records = [json.loads(p.read_text()) for p in sorted((site / "reports" / "quarantine").iterdir())]
+    assert [Path(r["log"]).name for r in records] == ["bad.csv", "empty.csv"]
+    assert all(r["reason"] and r["kind"] == "refused" and r["exit_code"] == 3 for r in records)
+    assert (site / "logs" / "bad.csv").exists()
+
+
+def test_a_quarantined_log_is_not_tried_again_until_it_changes(site):
+    bad = site / "logs" / "bad.csv"
+    bad.write_text("this is,not a log\n1,2\n")
+    path = batch_case.write_pipeline(site)
+    batch.run(path, workers=1)
+    assert not tasks_of(path)
+    again = batch.run(path, workers=1)
+    assert counts(again) == {"unchanged": 3, "quarantined": 1}
+    assert again["exit_code"] == 3
+    assert len(batch.dry_run(path, retry=True).todo) == 1
+    batch_case.write_log(bad, seed=7)
+    assert counts(batch.run(path, workers=1)) == {"done": 1, "unchanged": 3}
+
+
+def test_kill_9_in_the_middle_and_start_again(site):
+    """Nothing half-written is taken for a result, and what was finished is not done again."""
+    for number in range(3):
+        batch_case.write_log(site / "logs" / f"more{number}.csv", seed=100 + number)
+    path = batch_case.write_pipeline(site)
+    code_on_disk = f"import sys; sys.path.insert(0, {str(Path(batch_case.__file__).parent)!r})\nimport batch_case\nfrom rovval.pipeline import batch\n"
+    code_on_disk += f"from pathlib import Path\nbatch.work = batch_case.paused\nbatch.run(Path({str(path)!r}), workers=1)\n"
+    with subprocess.Popen([sys.executable, "-c", code_on_disk]) as process:
+        deadline = time.monotonic() + 60
+        while len(list((site / "reports").glob("*/record.json"))) < 2 and time.monotonic() < deadline:
+            time.sleep(0.02)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+    finished = len(list((site / "reports").glob("*/record.json")))
+    assert 2 <= finished < 6
+    again = batch.run(path, workers=2)
+    assert again["exit_code"] == 0
+    assert again["counts"]["unchanged"] >= finished
+    assert again["counts"]["unchanged"] + again["counts"]["done"] == 6
+    assert not list(site.rglob(".*.part"))
+
+
+def test_leftovers_of_a_kill_are_swept(site):
+    path = batch_case.write_pipeline(site)
+    (site / "reports" / "x").mkdir(parents=True)
+    (site / "reports" / "x" / ".report.html.123.part").touch()
+    batch.run(path, workers=1)
+    assert not list((site / "reports").rglob(".*.part"))
+
+
+def test_two_runs_never_overlap(site):
+    path = batch_case.write_pipeline(site)
+    with lock.held(site / "reports"), pytest.raises(UsageProblem, match=f"another run is at work.*{os.getpid()}"):
+        batch.run(path)
+    assert counts(batch.run(path, workers=1)) == {"done": 3}
+
+
+def test_equal_content_is_done_once_and_said(site):
+    (site / "logs" / "copy.csv").write_bytes((site / "logs" / "a.csv").read_bytes())
+    done = batch.run(batch_case.write_pipeline(site), workers=1)
+    assert counts(done) == {"done": 3, "waiting": 1}
+    assert "same content as" in done["waiting"][0]["why"]
+
+
+def test_a_log_that_is_still_being_copied_waits(site):
+    path = batch_case.write_pipeline(site, "settle_s = 3600.0")
+    for name in ("a", "b"):
+        os.utime(site / "logs" / f"{name}.csv", (0, 0))
+    assert counts(batch.run(path, workers=1)) == {"done": 2, "waiting": 1}
+
+
+def test_workers_and_scheduler_exclude_each_other(site):
+    with pytest.raises(UsageProblem):
+        batch.run(batch_case.write_pipeline(site), workers=2, scheduler="tcp://localhost:1")

@@ -1,0 +1,29 @@
+"""Workers of a Dask cluster: the same outcomes, and a missing library is said with how to get it."""
+
+import sys
+
+import batch_case
+import pytest
+from batch_case import counts
+
+from rovval.core.errors import UsageProblem
+from rovval.pipeline import batch, cluster
+
+
+def test_a_cluster_without_dask_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(UsageProblem) as refused:
+        list(cluster.execute((), batch_case.paused, batch.died, "tcp://localhost:1"))
+    assert "rovval[cluster]" in refused.value.hint
+
+
+@pytest.mark.slow
+def test_a_dask_cluster_gives_the_same_outcomes(site):
+    """With real worker processes; needs the extra `cluster`."""
+    distributed = pytest.importorskip("distributed", reason="pip install 'rovval[cluster]'")
+    (site / "logs" / "bad.csv").write_text("this is,not a log\n1,2\n")
+    path = batch_case.write_pipeline(site)
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as dask:
+        done = batch.run(path, scheduler=dask.scheduler_address)
+    assert counts(done) == {"done": 3, "quarantined": 1}
+    assert counts(batch.run(path, workers=1)) == {"unchanged": 3, "quarantined": 1}
