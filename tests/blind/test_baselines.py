@@ -17,11 +17,11 @@ import pytest
 
 from rovval import vehicle
 from rovval.blind.scoring import history
-from rovval.blind.scoring.score import marked, score
+from rovval.blind.scoring.score import score_logs, score_set
 from rovval.blind.sealed import sealing
-from rovval.blind.sealed.answer import answer
+from rovval.blind.sealed.answer import answer_set
 from rovval.blind.sealed.folder import Folder
-from rovval.blind.sealed.make import make
+from rovval.blind.sealed.make import make_set
 
 SEED = 20261
 MERLIN = vehicle.LIBRARY / "merlin.toml"
@@ -30,14 +30,14 @@ MERLIN = vehicle.LIBRARY / "merlin.toml"
 @pytest.fixture(scope="module")
 def small(tmp_path_factory) -> Folder:
     root = tmp_path_factory.mktemp("blind") / "small"
-    place = make(root, MERLIN, SEED, "small")
-    answer(root, floors=False)
+    place = make_set(root, MERLIN, SEED, "small")
+    answer_set(root, baselines=False)
     return place
 
 
 @pytest.fixture(scope="module")
 def result(small: Folder) -> dict[str, Any]:
-    return score(small.root, kept=small.root.parent / "history.jsonl")
+    return score_set(small.root, kept=small.root.parent / "history.jsonl")
 
 
 @pytest.fixture(scope="module")
@@ -116,7 +116,7 @@ def test_shuffled_labels_score_chance(opened):
     rng, found = np.random.default_rng(0), []
     for _ in range(40):
         mixed = dict(zip(single, [labels[n] for n in rng.permutation(single)], strict=True))
-        found.append(marked(mixed, answers, {}, str(MERLIN))["strata"]["single"]["top_1"]["value"])
+        found.append(score_logs(mixed, answers, {}, str(MERLIN))["strata"]["single"]["top_1"]["value"])
     assert np.mean(found) < 2.0 / len(single)
 
 

@@ -15,18 +15,18 @@ from scipy.spatial.transform import Rotation
 
 from rovval.blind.cases import flight as plant
 from rovval.blind.cases import generate
+from rovval.blind.cases.csv_log import header, write_csv
 from rovval.blind.cases.grid import BEGIN, DURATION_S, grid
-from rovval.blind.cases.log import header, write_csv
-from rovval.blind.cases.visibility import Given, gap, visibility
+from rovval.blind.cases.visibility import RecordedSpeeds, gap, visibility
 from rovval.blind.missions.manoeuvres import MISSIONS
 from rovval.blind.plant.dynamics import BASE, Plant
-from rovval.blind.plant.hull import read_hull
+from rovval.blind.plant.environment import draw_setting
 from rovval.blind.plant.motor import motor
-from rovval.blind.plant.parameters import nominal
+from rovval.blind.plant.nominal_vehicle import read_vehicle
+from rovval.blind.plant.parameters import nominal_parameters
 from rovval.blind.plant.rotation import euler, matrix, quaternion
 from rovval.blind.plant.scales import rpm_for, scales
 from rovval.blind.plant.spec import AXES, STEP_S, Flight, Planted, stream
-from rovval.blind.plant.surroundings import draw_setting
 from rovval.blind.planted.catalogue import build, catalogue, names
 
 ROOT = Path(__file__).parents[2]
@@ -56,12 +56,12 @@ def merlin() -> Path:
 
 def bare(path: Path, *, neutral: bool, drag: float = 1.0) -> Plant:
     """The nominal vehicle with its shafts as given (at zero)."""
-    hull = read_hull(path)
-    p = nominal(hull)
+    nominal = read_vehicle(path)
+    p = nominal_parameters(nominal)
     p.lin, p.quad = drag * p.lin, drag * p.quad
     if neutral:
         p.volume = p.mass / p.density
-    return Plant(p, [], scales(hull), Given(np.zeros(len(hull.thrusters))), bottom=1e6)
+    return Plant(p, [], scales(nominal), RecordedSpeeds(np.zeros(len(nominal.thrusters))), bottom=1e6)
 
 
 def run(body: Plant, y: np.ndarray, seconds: float) -> list[np.ndarray]:
@@ -101,11 +101,11 @@ def test_energy_never_grows_without_thrust(name: str) -> None:
 @pytest.mark.parametrize("effect", ["linear_drag", "quadratic_drag"])
 def test_no_planted_drag_pushes_the_vehicle_on(name: str, effect: str) -> None:
     """Less drag than the file states is less drag, never a push, on a vehicle within slop (`SURE`) as well; more is more."""
-    hull = read_hull(vehicle(name))
-    setting = draw_setting(hull, scales(hull), 1, 60.0)
-    own = getattr(hull, effect)
+    nominal = read_vehicle(vehicle(name))
+    setting = draw_setting(nominal, scales(nominal), 1, 60.0)
+    own = getattr(nominal, effect)
     for axis, target in enumerate(AXES):
-        plantings = (build(Planted(effect, target, s), hull, scales(hull), setting) for s in (-1.0, 1.0))
+        plantings = (build(Planted(effect, target, s), nominal, scales(nominal), setting) for s in (-1.0, 1.0))
         less, more = (float(np.asarray(planted.values["coefficient"])) for planted in plantings)
         assert 0.8 * own[axis] + less >= 0.0
         assert more > 0.0 and abs(less) == more
@@ -121,31 +121,31 @@ def test_without_drag_energy_and_world_momentum_are_kept(merlin: Path) -> None:
 
 
 def test_steady_surge_speed_is_the_root_of_thrust_and_drag(merlin: Path) -> None:
-    body, hull = bare(merlin, neutral=True), read_hull(merlin)
+    body, nominal = bare(merlin, neutral=True), read_vehicle(merlin)
     push = 700.0
     y = np.zeros(body.size)
     y[3] = 1.0
-    y[BASE : BASE + body.many] = rpm_for(push * body.scale.share[:, 0], hull.k_pos, hull.k_neg)
+    y[BASE : BASE + body.many] = rpm_for(push * body.scale.share[:, 0], nominal.k_pos, nominal.k_neg)
     speed = body.see(0.0, run(body, y, 60.0)[-1]).vel[0]
-    a, b = hull.quadratic_drag[0], hull.linear_drag[0]
+    a, b = nominal.quadratic_drag[0], nominal.linear_drag[0]
     assert speed == pytest.approx((-b + math.sqrt(b * b + 4.0 * a * push)) / (2.0 * a), rel=1e-4)
 
 
 def test_terminal_sink_speed(merlin: Path) -> None:
-    body, hull = bare(merlin, neutral=False), read_hull(merlin)
+    body, nominal = bare(merlin, neutral=False), read_vehicle(merlin)
     y = np.zeros(body.size)
     y[3] = 1.0
-    load = (hull.mass - hull.density * hull.volume) * hull.gravity
+    load = (nominal.mass - nominal.density * nominal.volume) * nominal.gravity
     sink = body.see(0.0, run(body, y, 240.0)[-1]).vel[2]
-    a, b = hull.quadratic_drag[2], hull.linear_drag[2]
+    a, b = nominal.quadratic_drag[2], nominal.linear_drag[2]
     assert sink == pytest.approx((-b + math.sqrt(b * b + 4.0 * a * load)) / (2.0 * a), rel=1e-3)
 
 
 def test_a_current_carries_an_idle_vehicle_away(merlin: Path) -> None:
-    hull = read_hull(merlin)
-    setting = draw_setting(hull, scales(hull), 1, 60.0)
-    current = build(Planted("current_constant"), hull, scales(hull), setting)
-    body = Plant(bare(merlin, neutral=True).healthy, [current], scales(hull), Given(np.zeros(7)), setting.bottom)
+    nominal = read_vehicle(merlin)
+    setting = draw_setting(nominal, scales(nominal), 1, 60.0)
+    current = build(Planted("current_constant"), nominal, scales(nominal), setting)
+    body = Plant(bare(merlin, neutral=True).healthy, [current], scales(nominal), RecordedSpeeds(np.zeros(7)), setting.bottom)
     last = run(body, plant.initial(body, setting), 60.0)[-1]
     k = body.see(0.0, last)
     ground = np.array(k.r).reshape(3, 3) @ k.vel[:3]
@@ -161,8 +161,8 @@ def test_quaternion_and_euler_agree_with_scipy() -> None:
 
 
 def test_the_motor_settles_on_its_set_point(merlin: Path) -> None:
-    hull = read_hull(merlin)
-    drive = motor(scales(hull), 7, stream(1, "motor"))
+    nominal = read_vehicle(merlin)
+    drive = motor(scales(nominal), 7, stream(1, "motor"))
     y, out = np.zeros(14), np.zeros(14)
     for _ in range(4000):
         drive.derivative(np.full(7, 150.0), y, out, 0, 7)
@@ -244,15 +244,15 @@ def test_an_onset_leaves_what_was_before_it_alone(merlin: Path, healthy: Flight)
 
 def test_a_reversed_thruster_turns_the_other_way(merlin: Path) -> None:
     """Not minus its thrust: its gains ahead and astern differ."""
-    hull = read_hull(merlin)
-    reversed_ = build(Planted("thruster_reversed", "HFP"), hull, scales(hull), draw_setting(hull, scales(hull), 1, 60.0))
-    body = Plant(nominal(hull), [reversed_], scales(hull), Given(np.zeros(7)), 1e6)
-    at = hull.thrusters.index("HFP")
+    nominal = read_vehicle(merlin)
+    reversed_ = build(Planted("thruster_reversed", "HFP"), nominal, scales(nominal), draw_setting(nominal, scales(nominal), 1, 60.0))
+    body = Plant(nominal_parameters(nominal), [reversed_], scales(nominal), RecordedSpeeds(np.zeros(7)), 1e6)
+    at = nominal.thrusters.index("HFP")
     y = np.zeros(body.size)
     y[3], y[BASE + at] = 1.0, 50.0
-    assert body.see(0.0, y).thrust[at] == pytest.approx(-hull.k_neg[at] * 50.0**2)
+    assert body.see(0.0, y).thrust[at] == pytest.approx(-nominal.k_neg[at] * 50.0**2)
     y[BASE + at] = -50.0
-    assert body.see(0.0, y).thrust[at] == pytest.approx(hull.k_pos[at] * 50.0**2)
+    assert body.see(0.0, y).thrust[at] == pytest.approx(nominal.k_pos[at] * 50.0**2)
 
 
 def test_wrong_names_targets_and_severities_are_refused(merlin: Path) -> None:
@@ -336,29 +336,29 @@ def test_severity_one_is_visible(name: str, merlin: Path) -> None:
 
 def test_thrust_under_way_is_the_file_s_open_water_curve():
     """Minerva's K_T of the public project, ahead 0.5 J^3 - 0.66 J^2 - 0.25 J + 0.24, astern 0.025 J^3 - 0.28 J^2 + 0.17 J + 0.15."""
-    hull = read_hull(LIBRARY / "minerva.toml")
-    body = Plant(nominal(hull), [], scales(hull), Given(np.zeros(len(hull.thrusters))), 1e6)
-    unit, speed = hull.thrusters.index("HS"), 0.4
-    axial = float(hull.directions[unit] @ np.array([speed, 0.0, 0.0]))
+    nominal = read_vehicle(LIBRARY / "minerva.toml")
+    body = Plant(nominal_parameters(nominal), [], scales(nominal), RecordedSpeeds(np.zeros(len(nominal.thrusters))), 1e6)
+    unit, speed = nominal.thrusters.index("HS"), 0.4
+    axial = float(nominal.directions[unit] @ np.array([speed, 0.0, 0.0]))
     for n, curve in ((600.0, (0.5, -0.66, -0.25, 0.24)), (-600.0, (0.025, -0.28, 0.17, 0.15))):
-        j = axial / (n / 60.0 * hull.diameter[unit])
-        turn = np.full(len(hull.thrusters), n)
+        j = axial / (n / 60.0 * nominal.diameter[unit])
+        turn = np.full(len(nominal.thrusters), n)
         said = body.under_way(turn, [speed, 0.0, 0.0, 0.0, 0.0, 0.0])[unit]
         assert said == pytest.approx(np.polyval(curve, j) / curve[-1], rel=1e-6)
-    assert not Plant(nominal(read_hull(LIBRARY / "merlin.toml")), [], scales(hull), Given(np.zeros(7)), 1e6).advancing
+    assert not Plant(nominal_parameters(read_vehicle(LIBRARY / "merlin.toml")), [], scales(nominal), RecordedSpeeds(np.zeros(7)), 1e6).advancing
 
 
 @pytest.mark.parametrize("name", ["merlin", "bluerov2_heavy"])
 def test_what_is_scaled_by_force_stays_what_there_is(name: str):
     """Of a large severity: the step of density is no brine's, and the nodes of a tether weigh what a line of ordinary thickness weighs."""
-    hull = read_hull(vehicle(name))
-    scale = scales(hull)
-    setting = draw_setting(hull, scale, 5, DURATION_S)
-    layer, line = cast(Any, [build(Planted(effect, severity=2.4), hull, scale, setting) for effect in ("density_gradient", "tether_drag")])
+    nominal = read_vehicle(vehicle(name))
+    scale = scales(nominal)
+    setting = draw_setting(nominal, scale, 5, DURATION_S)
+    layer, line = cast(Any, [build(Planted(effect, severity=2.4), nominal, scale, setting) for effect in ("density_gradient", "tether_drag")])
     assert 0.0 < layer.values["half_step_density"] <= 14.0 + 1e-9
     thick, length = line.values["diameter_m"], line.values["length_m"]
     assert thick in (0.0076, 0.03) and 50.0 < length < 1000.0
-    drag = 0.5 * hull.density * line.values["normal_drag"] * thick * length * scale.speed**2
+    drag = 0.5 * nominal.density * line.values["normal_drag"] * thick * length * scale.speed**2
     assert drag == pytest.approx(2.5 * 2.4 * scale.force)
-    in_water = 2.0 * hull.density * math.pi / 4.0 * thick**2 * length  # neutral, and as much again of the water about it
-    assert 5.0 * line.node_mass == pytest.approx(in_water) and in_water < 2.0 * hull.mass
+    in_water = 2.0 * nominal.density * math.pi / 4.0 * thick**2 * length  # neutral, and as much again of the water about it
+    assert 5.0 * line.node_mass == pytest.approx(in_water) and in_water < 2.0 * nominal.mass

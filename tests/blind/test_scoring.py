@@ -14,10 +14,10 @@ from rovval.blind.baselines import stlsq
 from rovval.blind.cases.flight import fly
 from rovval.blind.plant.spec import AXES, Planted
 from rovval.blind.planted.catalogue import catalogue, names
-from rovval.blind.scoring import intervals, tables, truth
+from rovval.blind.scoring import ground_truth, intervals, tables
 from rovval.blind.scoring import true_values as numbers
-from rovval.blind.scoring.marks import marks
-from rovval.blind.scoring.score import marked
+from rovval.blind.scoring.rules import score_log
+from rovval.blind.scoring.score import score_logs
 from rovval.blind.scoring.strata import strata
 from rovval.report.blind import html as blind_html
 from rovval.report.blind import terminal as blind_terminal
@@ -69,7 +69,7 @@ def answer(*causes: dict[str, Any], verdict: str = "", where: str = "heave", lef
 
 
 def mark(about: dict[str, Any], said: dict[str, Any], oracle: float = 0.8) -> dict[str, Any]:
-    return marks(about, said, {"dynamic": oracle, "seen": oracle}, vehicle.load("merlin"), MERLIN)
+    return score_log(about, said, {"dynamic": oracle, "seen": oracle}, vehicle.load("merlin"), MERLIN)
 
 
 def test_a_right_answer():
@@ -218,7 +218,7 @@ ALIASES = [
 
 @pytest.mark.parametrize(("effect", "said", "same"), ALIASES, ids=[f"{e['name']}-{c['effect']}-{s}" for e, c, s in ALIASES])
 def test_aliases_are_few(effect, said, same):
-    assert truth.accepts(effect, said) is same
+    assert ground_truth.accepts(effect, said) is same
 
 
 def test_every_planted_name_is_a_hypothesis_of_the_library():
@@ -228,7 +228,7 @@ def test_every_planted_name_is_a_hypothesis_of_the_library():
     for name in names(foreign=False):
         targets = catalogue()[name].targets
         for target in ("HFP",) if targets == ("thruster",) else targets or (None,):
-            assert truth.name(planted(name, target)) in known
+            assert ground_truth.name(planted(name, target)) in known
 
 
 def test_wilson_and_bootstrap():
@@ -248,17 +248,17 @@ def perfect(rng: np.random.Generator, many: int) -> tuple[dict[str, Any], dict[s
     for i in range(many):
         name, _, target = LIBRARY[int(rng.integers(len(LIBRARY)))].partition("[")
         labels[str(i)] = label(planted(name, target.rstrip("]") or None, loss=0.5, relative=0.1, lift=1.0))
-        answers[str(i)] = answer(cause(truth.name(labels[str(i)]["effects"][0])))
+        answers[str(i)] = answer(cause(ground_truth.name(labels[str(i)]["effects"][0])))
     return labels, answers
 
 
 def test_shuffled_labels_score_chance():
     rng = np.random.default_rng(1)
     labels, answers = perfect(rng, 240)
-    assert marked(labels, answers, {}, str(MERLIN))["strata"]["single"]["top_1"]["value"] == 1.0
+    assert score_logs(labels, answers, {}, str(MERLIN))["strata"]["single"]["top_1"]["value"] == 1.0
     order = rng.permutation(240)
     mixed = {str(i): labels[str(j)] for i, j in enumerate(order)}
-    top = marked(mixed, answers, {}, str(MERLIN))["strata"]["single"]["top_1"]
+    top = score_logs(mixed, answers, {}, str(MERLIN))["strata"]["single"]["top_1"]
     assert top["low"] <= 1 / len(LIBRARY) <= top["high"]
     assert top["high"] < 0.25
 
@@ -267,7 +267,7 @@ def test_page_and_text_hold_every_stratum():
     labels, answers = perfect(np.random.default_rng(2), 10)
     labels["n"], answers["n"] = label(), answer(cause("waves"))
     head = {"vehicle": "merlin", "seed": 1, "size": "10", "engine": "abc", "rovval": "0", "opened": "", "committed": ""}
-    result = marked(labels, answers, {}, str(MERLIN)) | head
+    result = score_logs(labels, answers, {}, str(MERLIN)) | head
     json.dumps(result, allow_nan=False)
     html, text = blind_html.text(result), blind_terminal.text(result)
     for stratum in result["strata"]:
@@ -290,10 +290,10 @@ def test_faults_are_told_apart():
         "blamed": False,
         "errors": 1,
     }
-    assert tables.fault(row) == "missed"
-    assert tables.fault(row | {"truth": [], "foreign": []}) == ""
-    assert tables.fault(row | {"left_out": True, "blamed": True}) == "blamed"
-    assert tables.fault(row | {"verdict": "unknown", "detected": True}) == "unknown"
+    assert tables.error_kind(row) == "missed"
+    assert tables.error_kind(row | {"truth": [], "foreign": []}) == ""
+    assert tables.error_kind(row | {"left_out": True, "blamed": True}) == "blamed"
+    assert tables.error_kind(row | {"verdict": "unknown", "detected": True}) == "unknown"
 
 
 def sparse_case() -> tuple[np.ndarray, np.ndarray]:
@@ -352,7 +352,7 @@ MAPPED = [
 @pytest.mark.parametrize(("name", "target"), MAPPED)
 def test_numbers_map_onto_the_library(name, target, tmp_path: Path):
     """On a vehicle without slop, re-simulation with the true effect finds the number that the table says (sign, unit, reference)."""
-    from rovval.blind.cases.log import write_csv
+    from rovval.blind.cases.csv_log import write_csv
     from rovval.blind.scoring.oracle import fitted
     from rovval.storage.archive import open_run
 
@@ -360,9 +360,9 @@ def test_numbers_map_onto_the_library(name, target, tmp_path: Path):
     write_csv(flight, tmp_path / "log.csv")
     [effect] = flight.truth["effects"]
     wanted = numbers.true_values(effect, vehicle.load("merlin"))
-    onsets = {truth.name(effect): effect["onset_s"]} if effect["onset_s"] else {}
-    found = fitted(open_run(tmp_path / "log.csv", "merlin"), vehicle.load("merlin"), [truth.name(effect)], onsets)
+    onsets = {ground_truth.name(effect): effect["onset_s"]} if effect["onset_s"] else {}
+    found = fitted(open_run(tmp_path / "log.csv", "merlin"), vehicle.load("merlin"), [ground_truth.name(effect)], onsets)
     if not wanted:
         pytest.skip("the planted size lies outside the library's bounds: not scored")
     for key, value in wanted.items():
-        assert found[f"{truth.name(effect)}.{key}"] == pytest.approx(value, rel=0.35, abs=1e-3)
+        assert found[f"{ground_truth.name(effect)}.{key}"] == pytest.approx(value, rel=0.35, abs=1e-3)

@@ -10,14 +10,14 @@ from hypothesis import strategies as st
 
 from rovval import vehicle
 from rovval.blind.cases.grid import Case
-from rovval.blind.cases.plan import DECOYS, Question, questions, same_law
+from rovval.blind.cases.questions import DECOYS, Question, questions, same_law
 from rovval.blind.plant.spec import Planted
-from rovval.blind.scoring import history, truth
-from rovval.blind.scoring.score import score
+from rovval.blind.scoring import ground_truth, history
+from rovval.blind.scoring.score import score_set
 from rovval.blind.sealed import sealing
-from rovval.blind.sealed.answer import answer
+from rovval.blind.sealed.answer import answer_set
 from rovval.blind.sealed.folder import Folder
-from rovval.blind.sealed.make import make
+from rovval.blind.sealed.make import make_set
 from rovval.core.errors import BadInput, UsageProblem
 from rovval.plant import Plant
 
@@ -75,7 +75,7 @@ def test_what_is_left_out_is_gone_under_every_name_that_would_be_right():
         if q.left_out:
             [e] = q.case.effects
             planted = {"name": e.name, "target": e.target, "place": ""}
-            right = {h for h in library if truth.accepts(planted, {"effect": h, "onset_s": 0.0})}
+            right = {h for h in library if ground_truth.accepts(planted, {"effect": h, "onset_s": 0.0})}
             assert right and {h.partition("[")[0] for h in right} <= set(q.without), e
 
 
@@ -88,12 +88,12 @@ def test_size_is_checked(size):
 @pytest.fixture(scope="module")
 def sealed(tmp_path_factory) -> Folder:
     root = tmp_path_factory.mktemp("blind") / "set"
-    return make(root, MERLIN, 3, asked=QUESTIONS)
+    return make_set(root, MERLIN, 3, asked=QUESTIONS)
 
 
 @pytest.fixture(scope="module")
 def committed(sealed: Folder) -> Folder:
-    answer(sealed.root, floors=False)
+    answer_set(sealed.root, baselines=False)
     return sealed
 
 
@@ -119,15 +119,15 @@ def test_the_folder_tells_nothing(sealed: Folder):
 
 def test_a_set_is_never_made_over_another(sealed: Folder, tmp_path: Path):
     with pytest.raises(UsageProblem, match="is not empty"):
-        make(sealed.root, MERLIN, 3, asked=QUESTIONS)
+        make_set(sealed.root, MERLIN, 3, asked=QUESTIONS)
     (tmp_path / "set.key").write_text("a key of something else\n")
     with pytest.raises(UsageProblem, match="may open another set"):
-        make(tmp_path / "set", MERLIN, 3, asked=QUESTIONS)
+        make_set(tmp_path / "set", MERLIN, 3, asked=QUESTIONS)
 
 
 def test_answers_are_made_once(copy: Folder):
     before = {p: p.stat().st_mtime_ns for p in copy.answer_files()}
-    assert answer(copy.root)["sha256"] == copy.committed()["sha256"]
+    assert answer_set(copy.root)["sha256"] == copy.committed()["sha256"]
     assert {p: p.stat().st_mtime_ns for p in copy.answer_files()} == before
 
 
@@ -136,7 +136,7 @@ def test_an_interrupted_run_goes_on_where_it_stopped(copy: Folder):
     before, text = kept.stat().st_mtime_ns, json.loads(lost.read_text())
     lost.unlink()
     copy.commit.unlink()
-    answer(copy.root, floors=False)
+    answer_set(copy.root, baselines=False)
     assert kept.stat().st_mtime_ns == before
     again = json.loads(lost.read_text())
     assert again | {"cpu_s": 0} == text | {"cpu_s": 0}
@@ -147,13 +147,13 @@ def test_answers_of_two_engines_are_not_mixed(copy: Folder):
     path = copy.answer_files()[0]
     path.write_text(path.read_text().replace('"engine": "', '"engine": "0'))
     with pytest.raises(UsageProblem, match="--fresh"):
-        answer(copy.root)
+        answer_set(copy.root)
 
 
 def test_what_is_not_committed_is_not_scored(copy: Folder, tmp_path: Path):
     copy.commit.unlink()
     with pytest.raises(UsageProblem, match="not committed"):
-        score(copy.root, kept=tmp_path / "history.jsonl")
+        score_set(copy.root, kept=tmp_path / "history.jsonl")
     assert not copy.opened.exists()
 
 
@@ -165,34 +165,34 @@ def test_what_was_changed_is_not_scored(copy: Folder, tmp_path: Path, what: str)
     else:
         first[what].write_bytes(first[what].read_bytes() + b"\n")
     with pytest.raises(BadInput):
-        score(copy.root, kept=tmp_path / "history.jsonl")
+        score_set(copy.root, kept=tmp_path / "history.jsonl")
     assert not copy.opened.exists()
 
 
 def test_another_set_s_key_opens_nothing(copy: Folder, tmp_path: Path):
     sealing.new_key(tmp_path / "other.key")
     with pytest.raises(BadInput, match="does not fit this key"):
-        score(copy.root, key=tmp_path / "other.key", kept=tmp_path / "history.jsonl")
+        score_set(copy.root, key=tmp_path / "other.key", kept=tmp_path / "history.jsonl")
     with pytest.raises(UsageProblem, match="no key there"):
-        score(copy.root, key=tmp_path / "none.key", kept=tmp_path / "history.jsonl")
+        score_set(copy.root, key=tmp_path / "none.key", kept=tmp_path / "history.jsonl")
 
 
 def test_after_the_unsealing_nothing_new_is_scored(copy: Folder, tmp_path: Path):
     kept = tmp_path / "history.jsonl"
-    first = score(copy.root, kept=kept)
+    first = score_set(copy.root, kept=kept)
     assert first["seed"] == 3
-    again = score(copy.root, kept=kept)
+    again = score_set(copy.root, kept=kept)
     assert again["strata"] == first["strata"]
     assert len(history.read(kept)) == 1
     for fresh in (False, True):
         with pytest.raises(UsageProblem, match="seal was opened"):
-            answer(copy.root, fresh=fresh)
+            answer_set(copy.root, fresh=fresh)
     forge(copy)
     with pytest.raises(UsageProblem, match="made or changed"):
-        score(copy.root, kept=tmp_path / "elsewhere.jsonl")
+        score_set(copy.root, kept=tmp_path / "elsewhere.jsonl")
     copy.opened.unlink()
     with pytest.raises(UsageProblem, match=r"opened at .* to score other answers"):
-        score(copy.root, kept=kept)
+        score_set(copy.root, kept=kept)
     assert len(history.read(kept)) == 1
 
 

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from rovval import vehicle
+from rovval.blind.cases.csv_log import write_csv
 from rovval.blind.cases.flight import fly
-from rovval.blind.cases.log import write_csv
 from rovval.blind.plant.spec import Planted
 from rovval.core.channels import POSE, VELOCITIES
 from rovval.core.data import Array, ClockReport, Reason, Run

@@ -44,15 +44,15 @@ def make(
     Example:
       rovval blind make sets/small --seed 7 --size small
     """
-    from rovval import vehicle as vehicles
     from rovval.blind.cases.generate import read_cases
-    from rovval.blind.cases.plan import Question
-    from rovval.blind.sealed import make as maker
+    from rovval.blind.cases.questions import Question
+    from rovval.blind.sealed.make import make_set
+    from rovval.vehicle import LIBRARY, load
 
-    vehicles.load(vehicle)
-    path = Path(vehicle) if vehicle.endswith(".toml") else vehicles.LIBRARY / f"{vehicle}.toml"
+    load(vehicle)
+    path = Path(vehicle) if vehicle.endswith(".toml") else LIBRARY / f"{vehicle}.toml"
     asked = [Question(case) for case in read_cases(cases, seed or 0)] if cases else None
-    made = maker.make(folder, path, seed, size, asked=asked, key=key, workers=workers, say=_steps(quiet))
+    made = make_set(folder, path, seed, size, asked=asked, key=key, workers=workers, say=_steps(quiet))
     manifest = made.manifest()
     output.result(f"{manifest['count']} logs in {made.logs}; labels sealed, SHA-256 {manifest['labels_sha256']}")
     output.say(f"key: {key or made.key}; next: rovval blind answer {folder}", quiet)
@@ -72,9 +72,9 @@ def answer(
     Example:
       rovval blind answer sets/small
     """
-    from rovval.blind.sealed import answer as answerer
+    from rovval.blind.sealed.answer import answer_set
 
-    done = answerer.answer(folder, workers=workers, floors=floors, fresh=fresh, say=_steps(quiet))
+    done = answer_set(folder, workers=workers, baselines=floors, fresh=fresh, say=_steps(quiet))
     output.result(f"answers of engine {done['engine']} committed at {done['committed']}, SHA-256 {done['sha256']}")
     output.say(f"next: rovval blind score {folder}", quiet)
 
@@ -96,12 +96,12 @@ def score(
     Example:
       rovval blind score sets/small
     """
-    from rovval.blind.scoring import score as scorer
+    from rovval.blind.scoring.score import score_set
     from rovval.report.blind import html as blind_html
     from rovval.report.blind import terminal as blind_terminal
     from rovval.storage.atomic import write_text
 
-    result = scorer.score(folder, key=key, kept=history, workers=workers, say=_steps(quiet))
+    result = score_set(folder, key=key, kept=history, workers=workers, say=_steps(quiet))
     write_text(folder / "score.html", blind_html.text(result))
     if json_:
         output.result_json(result)

@@ -1,1 +1,1 @@
-"""fly"""
+"""Commanded motion without a log: the test scenarios of the thesis."""

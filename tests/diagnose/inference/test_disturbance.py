@@ -10,12 +10,12 @@ import pytest
 from diagnose_case import LIBRARY, merlin, own
 
 from rovval import vehicle
+from rovval.blind.cases.csv_log import write_csv
 from rovval.blind.cases.flight import fly
-from rovval.blind.cases.log import write_csv
-from rovval.blind.plant.hull import read_hull
+from rovval.blind.plant.environment import Background
+from rovval.blind.plant.nominal_vehicle import read_vehicle
 from rovval.blind.plant.scales import scales
 from rovval.blind.plant.spec import stream
-from rovval.blind.plant.surroundings import Background
 from rovval.core.channels import AXES
 from rovval.diagnose import diagnose
 from rovval.diagnose.hypotheses.hypothesis import columns_of
@@ -82,7 +82,7 @@ def test_a_healthy_vehicle_on_station_is_not_blamed_and_the_push_is_found(tmp_pa
     hull = LIBRARY / "bluerov2_heavy.toml"
     write_csv(fly(Path(hull), "station", (), 6, 240.0, 0.03), tmp_path / "station.csv")
     run, v = open_run(tmp_path / "station.csv", "merlin"), vehicle.load("bluerov2_heavy")
-    true = Background(scales(read_hull(Path(hull))), 0.03, stream(1, "any")).size
+    true = Background(scales(read_vehicle(Path(hull))), 0.03, stream(1, "any")).size
     parts, _ = cut_all([run], v, "fossen", 10.0)
     found = pose(parts, columns_of(hypotheses(parts)[0]), 0.05).disturbance.rms
     assert (found > 0.4 * true).all() and (found < 2.5 * true).all()

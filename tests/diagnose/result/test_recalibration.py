@@ -14,8 +14,8 @@ from real_data import real
 from report_cases import make_diagnosis
 
 from rovval import vehicle
+from rovval.blind.cases.csv_log import write_csv
 from rovval.blind.cases.flight import fly
-from rovval.blind.cases.log import write_csv
 from rovval.comparison import compare
 from rovval.core.data import Run
 from rovval.diagnose import diagnose

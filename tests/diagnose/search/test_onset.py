@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from diagnose_case import LIBRARY, merlin, own
 
+from rovval.blind.cases.csv_log import write_csv
 from rovval.blind.cases.flight import fly
-from rovval.blind.cases.log import write_csv
 from rovval.blind.plant.spec import Planted
 from rovval.core.data import Run
 from rovval.core.errors import BadInput

@@ -119,8 +119,8 @@ def test_a_long_lag_is_found_though_it_is_no_multiple_of_a_short_one():
 
 def bluerov2(folder: Path, name: str, seed: int, seconds: float, slop: float, *effects: tuple[str, str, float]) -> Run:
     """A log of the independent plant, flown open-loop."""
+    from rovval.blind.cases.csv_log import write_csv
     from rovval.blind.cases.flight import fly
-    from rovval.blind.cases.log import write_csv
     from rovval.blind.plant.spec import Planted
 
     planted = [Planted(name, target or None, severity) for name, target, severity in effects]

@@ -12,18 +12,18 @@ from scipy.integrate import RK45
 from rovval.blind.missions.manoeuvres import MISSIONS, Mission
 from rovval.blind.missions.pilot import Nav
 from rovval.blind.plant.dynamics import Plant
-from rovval.blind.plant.effect import Effect, Kin, Setting
-from rovval.blind.plant.hull import Hull, read_hull
+from rovval.blind.plant.effect import Effect, Kinematics, Setting
+from rovval.blind.plant.environment import Background, Supply, draw_setting
+from rovval.blind.plant.equivalent_wrench import EVERY, Recorder, channel_change, realised
 from rovval.blind.plant.motor import motor
+from rovval.blind.plant.nominal_vehicle import NominalVehicle, read_vehicle
 from rovval.blind.plant.parameters import perturbed
 from rovval.blind.plant.rotation import euler, quaternion, to_body
 from rovval.blind.plant.scales import Scales, scales
 from rovval.blind.plant.sensors import finish, measure, spoil
-from rovval.blind.plant.sizes import EVERY, Recorder, channel_change, realised
 from rovval.blind.plant.spec import RATE_HZ, STEP_S, Array, Flight, Planted, stream
-from rovval.blind.plant.surroundings import Background, Supply, draw_setting
 from rovval.blind.planted.catalogue import build
-from rovval.blind.planted.tether import paid_out
+from rovval.blind.planted.tether_drag import paid_out
 
 SANE_SPEED = 8.0  # m/s; beyond this the flight is not an ROV's
 TOLERANCE = 1e-6  # relative, of the adaptive solver
@@ -64,7 +64,7 @@ def initial(plant: Plant, setting: Setting) -> Array:
     return y
 
 
-def instruments(k: Kin, y: Array, rng: np.random.Generator) -> Nav:
+def instruments(k: Kinematics, y: Array, rng: np.random.Generator) -> Nav:
     """What the pilot sees: the truth with a little noise."""
     phi, theta, psi = euler(*y[3:7].tolist())
     e = (0.01 * rng.standard_normal(5)).tolist()
@@ -74,17 +74,17 @@ def instruments(k: Kin, y: Array, rng: np.random.Generator) -> Nav:
 
 def fly(vehicle: Path, mission: str, effects: Sequence[Planted], seed: int, duration_s: float, slop: float = 0.03) -> Flight:
     """Generate one log. The same arguments give the same log to the last bit; severity 0 is the same as not planted."""
-    hull = read_hull(Path(vehicle))
-    scale = scales(hull)
-    setting = draw_setting(hull, scale, seed, duration_s)
-    planted = [build(item, hull, scale, setting) for item in effects if item.severity != 0.0]
-    healthy = perturbed(hull, scale, slop, stream(seed, "slop"))
-    plant = Plant(healthy, planted, scale, motor(scale, len(hull.thrusters), stream(seed, "motor")), setting.bottom)
-    pilot = MISSIONS[mission](hull, scale, setting, stream(seed, "mission"))
+    nominal = read_vehicle(Path(vehicle))
+    scale = scales(nominal)
+    setting = draw_setting(nominal, scale, seed, duration_s)
+    planted = [build(item, nominal, scale, setting) for item in effects if item.severity != 0.0]
+    healthy = perturbed(nominal, scale, slop, stream(seed, "slop"))
+    plant = Plant(healthy, planted, scale, motor(scale, len(nominal.thrusters), stream(seed, "motor")), setting.bottom)
+    pilot = MISSIONS[mission](nominal, scale, setting, stream(seed, "mission"))
     recorder = Recorder(plant)
-    true = _loop(plant, pilot, hull, setting, slop, recorder)
+    true = _loop(plant, pilot, nominal, setting, slop, recorder)
     t: Array = np.arange(len(true["x"]), dtype=np.float64) * STEP_S
-    log = measure(true, hull.thrusters, stream(seed, "sensors"))
+    log = measure(true, nominal.thrusters, stream(seed, "sensors"))
     changes: dict[int, dict[str, Any]] = {}
     for i, e in enumerate(planted):
         if e.overrides("record"):
@@ -96,11 +96,11 @@ def fly(vehicle: Path, mission: str, effects: Sequence[Planted], seed: int, dura
     finish(log)
     clock = stream(seed, "clock")
     start = round(float(clock.uniform(0.0, 86_399.0)), 3)
-    truth = _truth(hull, mission, seed, duration_s, slop, setting, planted, sizes)
-    return Flight(hull.name, mission, hull.thrusters, t, true, log, start, truth)
+    truth = _truth(nominal, mission, seed, duration_s, slop, setting, planted, sizes)
+    return Flight(nominal.name, mission, nominal.thrusters, t, true, log, start, truth)
 
 
-def _loop(plant: Plant, pilot: Mission, hull: Hull, setting: Setting, slop: float, recorder: Recorder) -> dict[str, Array]:
+def _loop(plant: Plant, pilot: Mission, nominal: NominalVehicle, setting: Setting, slop: float, recorder: Recorder) -> dict[str, Array]:
     """Control steps to the end: the true channels."""
     scale = plant.scale
     rng = stream(setting.seed, "pilot")
@@ -131,13 +131,13 @@ def _loop(plant: Plant, pilot: Mission, hull: Hull, setting: Setting, slop: floa
             raise RuntimeError(f"the flight left sane limits at {t:.1f} s")
         y, first = integrate(plant, t, y, first, atol)
     names = ["x", "y", "z", "phi", "theta", "psi", *"uvwpqr", "altitude", "voltage", "tether_length"]
-    names += [f"n:{n}" for n in hull.thrusters] + [f"n_cmd:{n}" for n in hull.thrusters]
+    names += [f"n:{n}" for n in nominal.thrusters] + [f"n_cmd:{n}" for n in nominal.thrusters]
     table = np.array(rows)
     return {name: table[:, j].copy() for j, name in enumerate(names)}
 
 
 def _truth(
-    hull: Hull,
+    nominal: NominalVehicle,
     mission: str,
     seed: int,
     duration_s: float,
@@ -148,7 +148,7 @@ def _truth(
 ) -> dict[str, Any]:
     """The label: JSON-able."""
     return {
-        "vehicle": hull.name,
+        "vehicle": nominal.name,
         "mission": mission,
         "seed": seed,
         "duration_s": duration_s,

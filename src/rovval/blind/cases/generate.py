@@ -16,9 +16,9 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
+from rovval.blind.cases.csv_log import write_csv
 from rovval.blind.cases.flight import fly
 from rovval.blind.cases.grid import DURATION_S, Case, grid
-from rovval.blind.cases.log import write_csv
 from rovval.blind.plant.spec import Planted, stream
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from rovval.blind.missions.manoeuvres import MISSIONS
-from rovval.blind.plant.hull import read_hull
+from rovval.blind.plant.nominal_vehicle import read_vehicle
 from rovval.blind.plant.spec import Planted, stream
 from rovval.blind.planted.catalogue import Entry, catalogue, names
 
@@ -37,7 +37,7 @@ def _targets(entry: Entry, thrusters: Sequence[str], rng: np.random.Generator) -
     return list(entry.targets[:AXES_A_CASE]) or [None]
 
 
-def _planted(name: str, target: str | None, severity: float, rng: np.random.Generator) -> Planted:
+def draw_planted(name: str, target: str | None, severity: float, rng: np.random.Generator) -> Planted:
     """One planting; the sign is drawn where it means something, the size varies by a fifth."""
     least = catalogue()[name].least
     sign = float(rng.choice([-1.0, 1.0])) if least < 0.0 else 1.0
@@ -47,7 +47,7 @@ def _planted(name: str, target: str | None, severity: float, rng: np.random.Gene
 def grid(vehicle: Path, seed: int, repeats: int = 1, nulls: int = 8) -> list[Case]:
     """The cases, shuffled; every flight has a seed of its own."""
     rng = stream(seed, "grid")
-    thrusters = read_hull(vehicle).thrusters
+    thrusters = read_vehicle(vehicle).thrusters
     rest = [m for m in MISSIONS if m not in ("rich", "survey")]
     plans: list[tuple[str, tuple[Planted, ...]]] = []
     for _ in range(repeats):
@@ -56,13 +56,13 @@ def grid(vehicle: Path, seed: int, repeats: int = 1, nulls: int = 8) -> list[Cas
             for target in _targets(entry, thrusters, rng):
                 for mission, severity in SINGLES:
                     where = mission or rest[int(rng.integers(len(rest)))]
-                    plans.append((where, (_planted(name, target, severity, rng),)))
+                    plans.append((where, (draw_planted(name, target, severity, rng),)))
         known = names(foreign=False)
         for count, many in ((2, 24), (3, 12)):
             for _ in range(many):
                 chosen = rng.choice(known, count, replace=False)
                 mission = str(rng.choice(["rich", "survey"]))
-                plans.append((mission, tuple(_planted(str(n), _any(str(n), thrusters, rng), 1.2, rng) for n in chosen)))
+                plans.append((mission, tuple(draw_planted(str(n), _any(str(n), thrusters, rng), 1.2, rng) for n in chosen)))
         plans += [(str(rng.choice(["rich", "survey"])), (_begun(str(n), thrusters, rng),)) for n in rng.choice(lasting(), BEGIN, replace=False)]
     order = rng.permutation(len(plans))
     seeds = rng.choice(2**31 - 1, len(plans), replace=False)
@@ -77,7 +77,7 @@ def lasting() -> tuple[str, ...]:
 def _begun(name: str, thrusters: Sequence[str], rng: np.random.Generator) -> Planted:
     """An effect that begins during the log."""
     late = round(DURATION_S * float(rng.uniform(*BEGINS)), 1)
-    return replace(_planted(name, _any(name, thrusters, rng), 1.5, rng), onset_s=late)
+    return replace(draw_planted(name, _any(name, thrusters, rng), 1.5, rng), onset_s=late)
 
 
 def _any(name: str, thrusters: Sequence[str], rng: np.random.Generator) -> str | None:

@@ -14,8 +14,8 @@ import numpy as np
 
 from rovval.blind.cases.flight import integrate, tolerances
 from rovval.blind.plant.dynamics import BASE, Plant
-from rovval.blind.plant.hull import read_hull
-from rovval.blind.plant.parameters import nominal
+from rovval.blind.plant.nominal_vehicle import read_vehicle
+from rovval.blind.plant.parameters import nominal_parameters
 from rovval.blind.plant.rotation import euler, quaternion
 from rovval.blind.plant.scales import scales
 from rovval.blind.plant.spec import RATE_HZ, STEP_S, Array, Flight
@@ -25,7 +25,7 @@ ANGLES = ("Roll", "Pitch", "Heading")
 
 
 @dataclass(slots=True)
-class Given:
+class RecordedSpeeds:
     """Shafts that turn as recorded: the speed rises in a straight line to the next row's."""
 
     rate: Array
@@ -44,13 +44,13 @@ def _filled(x: Array) -> Array:
 
 def gap(vehicle: Path, flight: Flight, window_s: float = 10.0) -> dict[str, float]:
     """Root mean square error of the nominal replay by channel (CSV units; depth and heading from the window's start)."""
-    hull = read_hull(vehicle)
-    scale = scales(hull)
+    nominal = read_vehicle(vehicle)
+    scale = scales(nominal)
     log = {name: _filled(x) for name, x in flight.measured.items()}
     log["Heading"] = np.degrees(np.unwrap(np.radians(log["Heading"])))
-    speeds = np.stack([log[f"{unit}_PV"] for unit in hull.thrusters], axis=1)
-    drive = Given(np.zeros(len(hull.thrusters)))
-    plant = Plant(nominal(hull), [], scale, drive, bottom=1e6)
+    speeds = np.stack([log[f"{unit}_PV"] for unit in nominal.thrusters], axis=1)
+    drive = RecordedSpeeds(np.zeros(len(nominal.thrusters)))
+    plant = Plant(nominal_parameters(nominal), [], scale, drive, bottom=1e6)
     atol, size = tolerances(plant, scale), round(window_s * RATE_HZ)
     wrong: list[list[float]] = []
     for first in range(0, len(flight.time_s) - size, size):

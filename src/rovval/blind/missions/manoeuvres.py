@@ -10,7 +10,7 @@ import numpy as np
 
 from rovval.blind.missions.pilot import Nav, Reflexes, set_points
 from rovval.blind.plant.effect import Setting
-from rovval.blind.plant.hull import Hull
+from rovval.blind.plant.nominal_vehicle import NominalVehicle
 from rovval.blind.plant.scales import Scales
 from rovval.blind.plant.spec import Array
 
@@ -18,10 +18,10 @@ from rovval.blind.plant.spec import Array
 class Mission:
     """Base: what every mission knows. ``__call__(t, nav)`` gives set-points in rpm."""
 
-    def __init__(self, hull: Hull, scale: Scales, setting: Setting, rng: np.random.Generator) -> None:
-        self.hull, self.scale, self.setting, self.rng = hull, scale, setting, rng
+    def __init__(self, nominal: NominalVehicle, scale: Scales, setting: Setting, rng: np.random.Generator) -> None:
+        self.nominal, self.scale, self.setting, self.rng = nominal, scale, setting, rng
         floor = 0.8 if scale.work_class else 0.4
-        self.reflexes = Reflexes(hull, scale, floor, 2.0 if scale.work_class else 0.8)
+        self.reflexes = Reflexes(nominal, scale, floor, 2.0 if scale.work_class else 0.8)
         self.prepare()
 
     def prepare(self) -> None:
@@ -37,7 +37,7 @@ class Mission:
         roll, pitch = self.reflexes.hold_level(nav)
         wrench[3] += roll
         wrench[4] += pitch
-        return set_points(wrench, self.hull, self.scale)
+        return set_points(wrench, self.nominal, self.scale)
 
 
 class Rich(Mission):
@@ -132,7 +132,7 @@ class Steps(Mission):
 
     def __call__(self, t: float, nav: Nav) -> Array:
         """Set-points (rpm): one unit at a time."""
-        many = len(self.hull.thrusters)
+        many = len(self.nominal.thrusters)
         count, resting = divmod(int(t / 5.0), 2)
         out = np.zeros(many)
         if not resting:
@@ -142,7 +142,7 @@ class Steps(Mission):
         heave = self.reflexes.keep_off(nav, 0.0)
         roll, pitch = self.reflexes.hold_level(nav)
         if heave or roll or pitch:
-            out += set_points(np.array([0.0, 0.0, heave, roll, pitch, 0.0]), self.hull, self.scale)
+            out += set_points(np.array([0.0, 0.0, heave, roll, pitch, 0.0]), self.nominal, self.scale)
         return out
 
 

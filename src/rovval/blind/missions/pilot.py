@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rovval.blind.plant.hull import Hull
+from rovval.blind.plant.nominal_vehicle import NominalVehicle
 from rovval.blind.plant.rotation import wrap
 from rovval.blind.plant.scales import LEVEL_RAD_S, Scales, rpm_for
 from rovval.blind.plant.spec import STEP_S, Array
@@ -56,11 +56,11 @@ class Hold:
 class Reflexes:
     """Holds of one vehicle, shared by the missions."""
 
-    def __init__(self, hull: Hull, scale: Scales, floor: float, ceiling: float) -> None:
-        self.scale, self.hull = scale, hull
+    def __init__(self, nominal: NominalVehicle, scale: Scales, floor: float, ceiling: float) -> None:
+        self.scale, self.nominal = scale, nominal
         self.floor, self.ceiling = floor, ceiling  # least altitude, least depth, m
-        mass = np.diag(hull.added_mass)[:3] + hull.mass
-        spin = float(hull.inertia[2, 2] + hull.added_mass[5, 5])
+        mass = np.diag(nominal.added_mass)[:3] + nominal.mass
+        spin = float(nominal.inertia[2, 2] + nominal.added_mass[5, 5])
         w = min(1.5, max(0.35, 1.2 / scale.time))
         stick = scale.stick
         self.heading = Hold(spin, 1.2 * w, float(max(stick[5], 1.5 * spin * w * w * 0.3)))
@@ -68,7 +68,7 @@ class Reflexes:
         self.north = Hold(float(mass[0]), 0.6 * w, float(stick[0]))
         self.east = Hold(float(mass[1]), 0.6 * w, float(stick[1]))
         small = 0.0 if scale.work_class else LEVEL_RAD_S
-        roll, pitch = (float(hull.inertia[i, i] + hull.added_mass[i + 3, i + 3]) for i in (0, 1))
+        roll, pitch = (float(nominal.inertia[i, i] + nominal.added_mass[i + 3, i + 3]) for i in (0, 1))
         self.roll = Hold(roll, small, float(0.5 * scale.capacity[3]), 0.0)
         self.pitch = Hold(pitch, small, float(0.5 * scale.capacity[4]), 0.0)
         self.guard = float(mass[2]) * w * w
@@ -104,7 +104,7 @@ class Reflexes:
         return heave
 
 
-def set_points(wrench: Array, hull: Hull, scale: Scales) -> Array:
+def set_points(wrench: Array, nominal: NominalVehicle, scale: Scales) -> Array:
     """Set-points (whole rpm) for a body wrench: least-squares allocation and square law.
 
     At the speed limit surge and sway give way first, in steps of a fifth, then everything together.
@@ -113,7 +113,7 @@ def set_points(wrench: Array, hull: Hull, scale: Scales) -> Array:
     ahead[2:] = 0.0
     for share in (1.0, 0.8, 0.6, 0.4, 0.2, 0.0):
         thrust = scale.share @ (wrench - (1.0 - share) * ahead)
-        rpm = rpm_for(thrust, hull.k_pos, hull.k_neg)
+        rpm = rpm_for(thrust, nominal.k_pos, nominal.k_neg)
         peak = float(np.max(np.abs(rpm)))
         if peak <= scale.rpm_limit:
             return np.round(rpm)

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rovval.blind.plant.effect import Effect, Kin
+from rovval.blind.plant.effect import Effect, Kinematics
 from rovval.blind.plant.motor import Drive
 from rovval.blind.plant.parameters import Params
 from rovval.blind.plant.rotation import matrix, to_body
@@ -37,7 +37,7 @@ class Plant:
         self.set_point = np.zeros(self.many)
         self.background = [0.0] * 6
         self.volts = 1.0
-        self.kin = Kin()
+        self.kin = Kinematics()
         self.changers = [e for e in effects if e.overrides("change")]
         self.flows = [e for e in effects if e.overrides("flow")]
         self.speeders = [e for e in effects if e.overrides("speed")]
@@ -55,10 +55,10 @@ class Plant:
         self.mass: Array = np.eye(6)
         self.refresh(0.0)
 
-    def kin_at_rest(self) -> Kin:
+    def kin_at_rest(self) -> Kinematics:
         """An instant with everything at zero (sizes of the own states do not depend on it)."""
         zero = np.zeros(self.many)
-        return Kin(n=zero, turn=zero, static=zero, thrust=zero)
+        return Kinematics(n=zero, turn=zero, static=zero, thrust=zero)
 
     def refresh(self, t: float) -> Array | None:
         """Bring the parameters to time ``t``; the matrix that carries the momentum over, where the mass has changed."""
@@ -105,7 +105,7 @@ class Plant:
         a, b, c = np.where(n >= 0.0, p.advance[0].T, p.advance[1].T)
         return np.asarray(1.0 + j * (a + j * (b + j * c)))
 
-    def see(self, t: float, y: Array) -> Kin:
+    def see(self, t: float, y: Array) -> Kinematics:
         """Fill ``self.kin`` from the state: attitude, velocities, water, thrust."""
         k = self.kin
         s = y[:BASE].tolist()
@@ -129,7 +129,7 @@ class Plant:
         k.thrust = thrust
         return k
 
-    def forces(self, k: Kin, y: Array) -> list[float]:
+    def forces(self, k: Kinematics, y: Array) -> list[float]:
         """Body wrench: thrust, drag, weight and buoyancy, background, effects."""
         f: list[float] = (self.reach @ k.thrust).tolist()
         rel, lin, quad = k.rel, self.lin, self.quad
@@ -156,7 +156,7 @@ class Plant:
             e.wrench(k, y[own], f)
         return f
 
-    def _edge(self, k: Kin, f: list[float]) -> None:
+    def _edge(self, k: Kinematics, f: list[float]) -> None:
         """Soft bottom and surface, so that a vehicle out of control stays in the water; no pilot comes this near."""
         depth = max(0.0, CLEAR_M - k.altitude) - max(0.0, CLEAR_M - k.z)
         sink = k.r[6] * k.vel[0] + k.r[7] * k.vel[1] + k.r[8] * k.vel[2]

@@ -12,7 +12,7 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from rovval.blind.plant.hull import Hull
+from rovval.blind.plant.nominal_vehicle import NominalVehicle
 from rovval.blind.plant.parameters import Params
 from rovval.blind.plant.rotation import Matrix
 from rovval.blind.plant.scales import Scales
@@ -38,7 +38,7 @@ class Setting:
 
 
 @dataclass(slots=True)
-class Kin:
+class Kinematics:
     """The instant, as the hooks see it; refilled by every call of the right-hand side."""
 
     t: float = 0.0
@@ -62,7 +62,7 @@ class Planting:
     """What an effect is built from."""
 
     item: Planted
-    hull: Hull
+    nominal: NominalVehicle
     scale: Scales
     setting: Setting
     rng: np.random.Generator
@@ -92,7 +92,7 @@ class Effect:
         self.setup(plan)
 
     def _aim(self, target: str | None, plan: Planting) -> str | None:
-        choices = plan.hull.thrusters if self.targets == ("thruster",) else self.targets
+        choices = plan.nominal.thrusters if self.targets == ("thruster",) else self.targets
         if target is None:
             return str(plan.rng.choice(choices)) if self.targets == ("thruster",) else next(iter(choices), None)
         if target not in choices:
@@ -117,34 +117,34 @@ class Effect:
     @property
     def unit_index(self) -> int:
         """Index of the target thruster."""
-        return self.plan.hull.thrusters.index(self.target or "")
+        return self.plan.nominal.thrusters.index(self.target or "")
 
     def change(self, p: Params, a: float) -> None:
         """Place ``vehicle``: alter the parameters in place, at level ``a``."""
 
-    def tick(self, k: Kin) -> None:
+    def tick(self, k: Kinematics) -> None:
         """Once a control step, before it is integrated: random walks, events, memory."""
 
     def flow(self, t: float, x: float, y: float, z: float) -> Flow:
         """Water velocity (NED), its local time derivative, and the z-derivative of the two horizontal components."""
         return STILL
 
-    def speed(self, n: Array, k: Kin) -> Array:
+    def speed(self, n: Array, k: Kinematics) -> Array:
         """Shaft speed (rpm) to the speed that makes thrust."""
         return n
 
-    def thrust(self, thrust: Array, k: Kin, own: Array) -> Array:
+    def thrust(self, thrust: Array, k: Kinematics, own: Array) -> Array:
         """Thrust (N) to the thrust that acts. ``own`` is this effect's slice of the state."""
         return thrust
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """Add a body wrench about the origin (N, N m) to ``f``."""
 
-    def start(self, k: Kin) -> Array:
+    def start(self, k: Kinematics) -> Array:
         """Initial values of this effect's own states (empty: none)."""
         return np.zeros(0)
 
-    def derivative(self, k: Kin, own: Array) -> Array:
+    def derivative(self, k: Kinematics, own: Array) -> Array:
         """Time derivative of the own states."""
         return own
 

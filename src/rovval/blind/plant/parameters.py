@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rovval.blind.plant.hull import Hull, allocation
+from rovval.blind.plant.nominal_vehicle import NominalVehicle, allocation
 from rovval.blind.plant.scales import Scales
 from rovval.blind.plant.spec import Array
 
@@ -63,35 +63,35 @@ def cross(v: Array) -> Array:
     return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
 
 
-def nominal(hull: Hull) -> Params:
+def nominal_parameters(nominal: NominalVehicle) -> Params:
     """The parameters exactly as the vehicle file states them."""
-    many = len(hull.thrusters)
+    many = len(nominal.thrusters)
     return Params(
-        mass=hull.mass,
-        inertia=hull.inertia.copy(),
-        added_mass=hull.added_mass.copy(),
-        lin=hull.linear_drag.copy(),
-        quad=hull.quadratic_drag.copy(),
+        mass=nominal.mass,
+        inertia=nominal.inertia.copy(),
+        added_mass=nominal.added_mass.copy(),
+        lin=nominal.linear_drag.copy(),
+        quad=nominal.quadratic_drag.copy(),
         drag_power=np.zeros(6),
-        volume=hull.volume,
-        gravity_centre=hull.gravity_centre.copy(),
-        buoyancy_centre=hull.buoyancy_centre.copy(),
-        density=hull.density,
-        gravity=hull.gravity,
-        k_pos=hull.k_pos.copy(),
-        k_neg=hull.k_neg.copy(),
+        volume=nominal.volume,
+        gravity_centre=nominal.gravity_centre.copy(),
+        buoyancy_centre=nominal.buoyancy_centre.copy(),
+        density=nominal.density,
+        gravity=nominal.gravity,
+        k_pos=nominal.k_pos.copy(),
+        k_neg=nominal.k_neg.copy(),
         thrust_power=np.zeros(many),
-        positions=hull.positions.copy(),
-        directions=hull.directions.copy(),
-        diameter=hull.diameter.copy(),
-        advance=hull.advance.copy(),
+        positions=nominal.positions.copy(),
+        directions=nominal.directions.copy(),
+        diameter=nominal.diameter.copy(),
+        advance=nominal.advance.copy(),
     )
 
 
-def perturbed(hull: Hull, scale: Scales, slop: float, rng: np.random.Generator) -> Params:
+def perturbed(nominal: NominalVehicle, scale: Scales, slop: float, rng: np.random.Generator) -> Params:
     """Nominal parameters with calibration slop: relative errors N(0, slop), and what depends on a difference of large
     numbers (net buoyancy, trim) in proportion to the vehicle's working force."""
-    p = nominal(hull)
+    p = nominal_parameters(nominal)
 
     def off(size: int) -> Array:
         return 1.0 + slop * np.clip(rng.standard_normal(size), -2.5, 2.5)

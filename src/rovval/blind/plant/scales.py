@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rovval.blind.plant.hull import Hull, allocation
+from rovval.blind.plant.nominal_vehicle import NominalVehicle, allocation
 from rovval.blind.plant.spec import Array
 
 HEAVY_KG = 200.0  # chosen: heavier vehicles right themselves, turn slowly and have large drives
@@ -34,9 +34,9 @@ class Scales:
     work_class: bool  # whether the vehicle is one of the heavy ones
 
 
-def _share(hull: Hull, length: float) -> Array:
+def _share(nominal: NominalVehicle, length: float) -> Array:
     """Weighted least-squares allocation; roll and pitch give way where the thrusters cannot do all six."""
-    reach = allocation(hull.positions, hull.directions)
+    reach = allocation(nominal.positions, nominal.directions)
     weight = np.array([1.0, 1.0, 1.0, 1.0 / length, 1.0 / length, 1.0 / length])
     if np.linalg.matrix_rank(reach * weight[:, None], tol=1e-3) < 6:
         weight[3:5] *= 0.05
@@ -48,20 +48,20 @@ def rpm_for(thrust: Array, k_pos: Array, k_neg: Array) -> Array:
     return np.asarray(np.sign(thrust) * np.sqrt(np.abs(thrust) / np.where(thrust >= 0.0, k_pos, k_neg)))
 
 
-def scales(hull: Hull) -> Scales:
+def scales(nominal: NominalVehicle) -> Scales:
     """Work out the yardsticks; speeds are chosen so that rpm lands where such vehicles are flown."""
-    speed = 0.8 if hull.mass > FAST_KG else 0.6
-    force = float(hull.linear_drag[0] * speed + hull.quadratic_drag[0] * speed**2)
-    length = max(0.1, float(np.max(np.linalg.norm(hull.positions, axis=1))))
-    share = _share(hull, length)
-    needed = max(float(np.max(np.abs(rpm_for(s * force * share[:, 0], hull.k_pos, hull.k_neg)))) for s in (1.0, -1.0))
+    speed = 0.8 if nominal.mass > FAST_KG else 0.6
+    force = float(nominal.linear_drag[0] * speed + nominal.quadratic_drag[0] * speed**2)
+    length = max(0.1, float(np.max(np.linalg.norm(nominal.positions, axis=1))))
+    share = _share(nominal, length)
+    needed = max(float(np.max(np.abs(rpm_for(s * force * share[:, 0], nominal.k_pos, nominal.k_neg)))) for s in (1.0, -1.0))
     limit = HEADROOM * needed
-    weak = np.minimum(hull.k_pos, hull.k_neg) * needed**2
+    weak = np.minimum(nominal.k_pos, nominal.k_neg) * needed**2
     capacity = [float(np.min(weak / np.maximum(np.abs(share[:, i]), 1e-6))) for i in range(6)]
-    arm = float(np.linalg.norm(hull.gravity_centre - hull.buoyancy_centre))
-    bar = hull.mass * hull.gravity * arm
-    spin = float(hull.inertia[1, 1] + hull.added_mass[4, 4])
-    turn = float(hull.linear_drag[5] * 0.5 + hull.quadratic_drag[5] * 0.25)  # drag at 0.5 rad/s, chosen
+    arm = float(np.linalg.norm(nominal.gravity_centre - nominal.buoyancy_centre))
+    bar = nominal.mass * nominal.gravity * arm
+    spin = float(nominal.inertia[1, 1] + nominal.added_mass[4, 4])
+    turn = float(nominal.linear_drag[5] * 0.5 + nominal.quadratic_drag[5] * 0.25)  # drag at 0.5 rad/s, chosen
     wanted = [force, force, force, 0.08 * bar, 0.08 * bar, max(turn, 0.04 * force * length)]
     return Scales(
         speed=speed,
@@ -69,12 +69,12 @@ def scales(hull: Hull) -> Scales:
         rpm=needed,
         rpm_limit=limit,
         length=length,
-        time=(hull.mass + float(hull.added_mass[0, 0])) * speed / force,
-        thrust=float(np.mean((hull.k_pos + hull.k_neg) / 2.0) * needed**2),
+        time=(nominal.mass + float(nominal.added_mass[0, 0])) * speed / force,
+        thrust=float(np.mean((nominal.k_pos + nominal.k_neg) / 2.0) * needed**2),
         stick=np.minimum(wanted, capacity),
         capacity=np.array(capacity),
         share=share,
         bar=bar,
-        work_class=hull.mass > HEAVY_KG,
-        upright=bar + (0.0 if hull.mass > HEAVY_KG else spin * LEVEL_RAD_S**2),
+        work_class=nominal.mass > HEAVY_KG,
+        upright=bar + (0.0 if nominal.mass > HEAVY_KG else spin * LEVEL_RAD_S**2),
     )

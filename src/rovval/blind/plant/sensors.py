@@ -1,7 +1,7 @@
 """The healthy instruments: true motion to the log's channels, in the log's units, with noise, drop-outs and outliers.
 
 Sizes are chosen after data sheets of the class of instrument (DVL 10 mm/s, fibre-optic or good MEMS gyro, pressure depth,
-transponder-aided position) and the prototype of the project's research (diagnosis.md F).
+transponder-aided position).
 """
 
 from __future__ import annotations

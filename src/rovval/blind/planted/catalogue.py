@@ -9,12 +9,12 @@ from importlib import import_module
 import numpy as np
 
 from rovval.blind.plant.effect import Effect, Planting, Setting
-from rovval.blind.plant.hull import Hull
+from rovval.blind.plant.nominal_vehicle import NominalVehicle
 from rovval.blind.plant.scales import Scales
 from rovval.blind.plant.spec import Planted, stream
 
 FAMILIES = (
-    "hydrodynamic", "hydrostatic", "thrusters", "propellers", "water", "near", "tether", "lines", "timing", "instruments",
+    "hydrodynamic", "hydrostatic", "thrusters", "propellers", "water", "proximity", "tether_drag", "tether_pull", "timing", "instruments",
     "foreign_flow", "foreign_machine", "foreign_events",
 )  # fmt: skip
 
@@ -57,7 +57,7 @@ def names(*, foreign: bool) -> tuple[str, ...]:
     return tuple(name for name, row in catalogue().items() if (row.place == "foreign") == foreign)
 
 
-def build(item: Planted, hull: Hull, scale: Scales, setting: Setting) -> Effect:
+def build(item: Planted, nominal: NominalVehicle, scale: Scales, setting: Setting) -> Effect:
     """One effect, ready to fly, with a random stream of its own."""
     try:
         entry = catalogue()[item.name]
@@ -66,4 +66,4 @@ def build(item: Planted, hull: Hull, scale: Scales, setting: Setting) -> Effect:
     if not np.isfinite(item.severity) or item.severity < entry.least:
         raise ValueError(f"{item.name}: severity {item.severity} means nothing here")
     rng = stream(setting.seed, "effect", item.name, item.target or "")
-    return entry.build(Planting(item, hull, scale, setting, rng))
+    return entry.build(Planting(item, nominal, scale, setting, rng))

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from rovval.blind.plant.effect import Kin, Planting
+from rovval.blind.plant.effect import Kinematics, Planting
 from rovval.blind.plant.rotation import to_body
 from rovval.blind.plant.sensors import DVL
 from rovval.blind.plant.spec import Array
@@ -30,7 +30,7 @@ class CollisionBumps(_Foreign):
         self.spot = 0.5 * plan.scale.length * rng.uniform(-1.0, 1.0, (count, 3))
         self.values = {"times_s": self.when.tolist(), "peak": 2.0 * self.s * plan.scale.force}
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """The bump of the moment, if any."""
         i = int(np.searchsorted(self.when, k.t)) - 1
         if i < 0 or k.t - self.when[i] > 0.4:
@@ -55,7 +55,7 @@ class WaterLeak(_Foreign):
         self.at = -0.3 * plan.scale.length
         self.values = {"final_weight": self.final, "tau_s": self.tau}
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """Weight at the stern."""
         since = max(0.0, k.t - (self.onset or 0.0))
         weight = 1.09 * self.final * (1.0 - math.exp(-since / self.tau))
@@ -78,7 +78,7 @@ class BallastPump(_Foreign):
         self.force, self.phase = 0.15 * self.s * plan.scale.force, float(plan.rng.uniform(0.0, 60.0))
         self.values = {"force": self.force, "phase_s": self.phase}
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """Square wave with soft edges."""
         beat = math.sin(math.tau * (k.t + self.phase) / 60.0)
         push = self.level(k.t) * self.force * math.tanh(8.0 * beat)

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from rovval.blind.plant.effect import Effect, Kin, Planting
+from rovval.blind.plant.effect import Effect, Kinematics, Planting
 from rovval.blind.plant.rotation import to_body
 from rovval.blind.plant.spec import Array
 from rovval.blind.planted.hydrodynamic import working_drag
@@ -30,17 +30,17 @@ class VortexShedding(_Foreign):
         self.force = 0.45 * self.s * plan.scale.force
         self.values = {"force": self.force, "width_m": self.width, "strouhal": 0.2}
 
-    def start(self, k: Kin) -> Array:
+    def start(self, k: Kinematics) -> Array:
         """Oscillator near its limit cycle."""
         return np.array([0.5, 0.0])
 
-    def derivative(self, k: Kin, own: Array) -> Array:
+    def derivative(self, k: Kinematics, own: Array) -> Array:
         """q'' + 0.3 w (q^2 - 1) q' + w^2 q = 0 with w the shedding frequency; states q and q'/w."""
         w = math.tau * 0.2 * (math.hypot(k.rel[0], k.rel[1]) + 1e-3) / self.width
         q, d = float(own[0]), float(own[1])
         return np.array([w * d, -w * (q + 0.3 * (q * q - 1.0) * d)])
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """Across the motion in the horizontal plane, a little ahead of the middle."""
         u, v = k.rel[0], k.rel[1]
         size = math.hypot(u, v) + 1e-6
@@ -60,23 +60,23 @@ class MemoryDrag(_Foreign):
     def setup(self, plan: Planting) -> None:
         """Length of the memory, m."""
         self.reach = 1.5 * self.s * plan.scale.length
-        self.lin, self.quad = plan.hull.linear_drag[:3], plan.hull.quadratic_drag[:3]
+        self.lin, self.quad = plan.nominal.linear_drag[:3], plan.nominal.quadratic_drag[:3]
         self.values = {"length_m": self.reach}
 
-    def start(self, k: Kin) -> Array:
+    def start(self, k: Kinematics) -> Array:
         """Remembered drag of the three axes, N."""
         return np.zeros(3)
 
-    def _steady(self, k: Kin) -> Array:
+    def _steady(self, k: Kinematics) -> Array:
         v = np.array(k.rel[:3])
         return np.asarray((self.lin + self.quad * np.abs(v)) * v)
 
-    def derivative(self, k: Kin, own: Array) -> Array:
+    def derivative(self, k: Kinematics, own: Array) -> Array:
         """First order, faster at speed, never quicker than 20/s."""
         speed = math.sqrt(sum(a * a for a in k.rel[:3])) + 0.05 * self.plan.scale.speed
         return np.asarray((self._steady(k) - own) * min(20.0, speed / max(self.reach, 1e-6)))
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """Remembered instead of steady."""
         gap = self.level(k.t) * (self._steady(k) - own)
         for i in range(3):
@@ -95,7 +95,7 @@ class PositionJet(_Foreign):
         self.shift = plan.rng.uniform(-1.0, 1.0, 2).tolist()
         self.values = {"force": self.force, "lattice_m": 6.0, "shift": self.shift}
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """Raised cosine in x and y."""
         a = math.cos(math.pi * (k.x - self.shift[0]) / 6.0) * math.cos(math.pi * (k.y - self.shift[1]) / 6.0)
         push = self.level(k.t) * self.force * a**6
@@ -115,7 +115,7 @@ class OneSidedDrag(_Foreign):
         self.coefficient = self.s * drag / ref**2
         self.values = {"coefficient": self.coefficient}
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """Astern only, tied a third of the length below."""
         u = min(0.0, k.rel[0])
         push = self.level(k.t) * self.coefficient * u * u
@@ -135,7 +135,7 @@ class BodyLift(_Foreign):
         self.arm = 0.3 * plan.scale.length
         self.values = {"coefficient": self.coefficient, "arm_m": self.arm}
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """Side and heave force with their moments."""
         c = -self.level(k.t) * self.coefficient * k.rel[0]
         fy, fz = c * k.rel[1], 0.6 * c * k.rel[2]
@@ -156,7 +156,7 @@ class DryFriction(_Foreign):
         self.force = 0.2 * self.s * plan.scale.force
         self.values = {"force": self.force}
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """Against u and v, smooth through zero."""
         u, v = k.vel[0], k.vel[1]
         pull = -self.level(k.t) * self.force / math.sqrt(u * u + v * v + 0.03**2)

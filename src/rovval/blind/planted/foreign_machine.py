@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from rovval.blind.plant.effect import Kin, Planting
+from rovval.blind.plant.effect import Kinematics, Planting
 from rovval.blind.plant.parameters import Params
 from rovval.blind.plant.spec import STEP_S, Array
 from rovval.blind.planted.foreign_flow import _Foreign
@@ -29,13 +29,13 @@ class StickyThruster(_Foreign):
         self.held = float(plan.rng.choice((-1.0, 1.0)) * plan.rng.uniform(0.5, 1.0)) * plan.scale.rpm
         self.values = {"band_rpm": self.band, "first_rpm": self.held}
 
-    def tick(self, k: Kin) -> None:
+    def tick(self, k: Kinematics) -> None:
         """Slip when the pull exceeds the band."""
         n = float(k.n[self.at])
         if abs(n - self.held) > self.band:
             self.held = n
 
-    def speed(self, n: Array, k: Kin) -> Array:
+    def speed(self, n: Array, k: Kinematics) -> Array:
         """The held speed acts."""
         out = n.copy()
         out[self.at] += self.level(k.t) * (self.held - out[self.at])
@@ -54,7 +54,7 @@ class PowerLimit(_Foreign):
         self.full = plan.scale.thrust * plan.scale.rpm
         self.values = {"half_power_share": 1.0 / max(self.s, 1e-9)}
 
-    def thrust(self, thrust: Array, k: Kin, own: Array) -> Array:
+    def thrust(self, thrust: Array, k: Kinematics, own: Array) -> Array:
         """Divide by one plus the power share."""
         power = float(np.abs(thrust * k.turn).mean()) / self.full
         return np.asarray(thrust / (1.0 + self.level(k.t) * self.s * power))
@@ -74,11 +74,11 @@ class IntermittentThruster(_Foreign):
         self.out, self.back = STEP_S / 3.0, STEP_S / 1.5
         self.values = {"loss": self.s, "mean_off_s": 1.5, "mean_on_s": 3.0}
 
-    def tick(self, k: Kin) -> None:
+    def tick(self, k: Kinematics) -> None:
         """Two-state chain."""
         self.off = bool(self.plan.rng.random() < (1.0 - self.back if self.off else self.out))
 
-    def thrust(self, thrust: Array, k: Kin, own: Array) -> Array:
+    def thrust(self, thrust: Array, k: Kinematics, own: Array) -> Array:
         """Nothing while off."""
         if not self.off:
             return thrust
@@ -100,15 +100,15 @@ class HiddenTrim(_Foreign):
         self.spin = 0.15 * self.s * float(sc.stick[5]) / (5.0 * 0.3)
         self.values = {"gain": self.gain, "yaw_gain": self.spin, "leak_s": 20.0}
 
-    def start(self, k: Kin) -> Array:
+    def start(self, k: Kinematics) -> Array:
         """Sway, heave and yaw trim, in metres and radians."""
         return np.zeros(3)
 
-    def derivative(self, k: Kin, own: Array) -> Array:
+    def derivative(self, k: Kinematics, own: Array) -> Array:
         """Leaky integral."""
         return np.asarray(np.array([k.vel[1], k.vel[2], k.vel[5]]) - own / 20.0)
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """Against the sum."""
         a = self.level(k.t)
         f[1] -= a * self.gain * float(own[0])
@@ -128,16 +128,16 @@ class LimitCycle(_Foreign):
         self.force = 0.25 * self.s * plan.scale.force
         self.values = {"period_s": math.tau / self.beat, "force": self.force}
 
-    def start(self, k: Kin) -> Array:
+    def start(self, k: Kinematics) -> Array:
         """On the cycle."""
         return np.array([2.0, 0.0])
 
-    def derivative(self, k: Kin, own: Array) -> Array:
+    def derivative(self, k: Kinematics, own: Array) -> Array:
         """q'' + w (q^2 - 1) q' + w^2 q = 0; states q and q'/w."""
         q, d = float(own[0]), float(own[1])
         return np.array([self.beat * d, -self.beat * (q + (q * q - 1.0) * d)])
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """Heave and pitch."""
         push = 0.5 * self.level(k.t) * self.force * float(own[0])
         f[2] += push
@@ -153,7 +153,7 @@ class Manipulator(_Foreign):
 
     def setup(self, plan: Planting) -> None:
         """Reach of the centre of gravity (m), and the plan."""
-        arm = plan.scale.upright / (plan.hull.mass * plan.hull.gravity)
+        arm = plan.scale.upright / (plan.nominal.mass * plan.nominal.gravity)
         self.reach = math.tan(math.radians(6.0)) * self.s * arm
         self.times = np.cumsum(plan.rng.uniform(5.0, 11.0, 200))
         self.places = self.reach * plan.rng.uniform(-1.0, 1.0, (201, 2))
@@ -182,19 +182,19 @@ class SwingingLoad(_Foreign):
 
     def setup(self, plan: Planting) -> None:
         """Mass (kg), frequency (rad/s), place below."""
-        self.load, self.w = 0.12 * self.s * plan.hull.mass, 1.3
+        self.load, self.w = 0.12 * self.s * plan.nominal.mass, 1.3
         self.below = 0.6 * plan.scale.length
         self.values = {"mass": self.load, "frequency_rad_s": self.w, "below_m": self.below}
 
-    def start(self, k: Kin) -> Array:
+    def start(self, k: Kinematics) -> Array:
         """Displacement and velocity over ground, surge and sway."""
         return np.zeros(4)
 
-    def _spring(self, k: Kin, own: Array) -> tuple[float, float]:
+    def _spring(self, k: Kinematics, own: Array) -> tuple[float, float]:
         a, b = self.load * self.w**2, 0.16 * self.load * self.w
         return a * own[0] + b * (own[2] - k.vel[0]), a * own[1] + b * (own[3] - k.vel[1])
 
-    def derivative(self, k: Kin, own: Array) -> Array:
+    def derivative(self, k: Kinematics, own: Array) -> Array:
         """The load in the body's turning frame."""
         r = k.vel[5]
         fx, fy = self._spring(k, own)
@@ -207,7 +207,7 @@ class SwingingLoad(_Foreign):
             ]
         )
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """Pull of the sling at its hook."""
         fx, fy = (self.level(k.t) * x for x in self._spring(k, own))
         f[0] += fx

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rovval.blind.plant.effect import Effect, Kin, Planting
+from rovval.blind.plant.effect import Effect, Kinematics, Planting
 from rovval.blind.plant.parameters import Params
 from rovval.blind.plant.spec import AXES, Array
 
@@ -15,7 +15,7 @@ SURE = 0.8  # of a coefficient of the file, four standard deviations of 5 % slop
 def working_drag(plan: Planting, axis: int) -> tuple[float, float]:
     """Working speed of an axis (m/s or rad/s) and the nominal drag there (N or N m)."""
     speed = plan.scale.speed if axis < 3 else TURN
-    lin, quad = float(plan.hull.linear_drag[axis]), float(plan.hull.quadratic_drag[axis])
+    lin, quad = float(plan.nominal.linear_drag[axis]), float(plan.nominal.quadratic_drag[axis])
     return speed, lin * speed + quad * speed * speed
 
 
@@ -36,10 +36,10 @@ class QuadraticDrag(Effect):
     def setup(self, plan: Planting) -> None:
         """Coefficient at working speed."""
         self.ref, drag = working_drag(plan, self.axis)
-        self.coefficient = passive(float(plan.hull.quadratic_drag[self.axis]), 0.5 * self.s * drag / self.ref**2)
+        self.coefficient = passive(float(plan.nominal.quadratic_drag[self.axis]), 0.5 * self.s * drag / self.ref**2)
         self.values = {"coefficient": self.coefficient, "reference_speed": self.ref, "reynolds_power": -0.2}
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """-c |v| v (|v|/v_ref)^-0.2."""
         v = k.rel[self.axis]
         size = abs(v)
@@ -58,10 +58,10 @@ class LinearDrag(Effect):
     def setup(self, plan: Planting) -> None:
         """Coefficient, N s/m or N m s."""
         ref, drag = working_drag(plan, self.axis)
-        self.coefficient = passive(float(plan.hull.linear_drag[self.axis]), 0.4 * self.s * drag / ref)
+        self.coefficient = passive(float(plan.nominal.linear_drag[self.axis]), 0.4 * self.s * drag / ref)
         self.values = {"coefficient": self.coefficient}
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """-d v."""
         f[self.axis] -= self.level(k.t) * self.coefficient * k.rel[self.axis]
 
@@ -78,9 +78,9 @@ class AddedMass(Effect):
     def setup(self, plan: Planting) -> None:
         """Extra, kg or kg m2."""
         i = self.axis
-        rigid = plan.hull.mass if i < 3 else float(plan.hull.inertia[i - 3, i - 3])
+        rigid = plan.nominal.mass if i < 3 else float(plan.nominal.inertia[i - 3, i - 3])
         self.extra = 0.35 * self.s * rigid
-        self.values = {"extra": self.extra, "nominal": float(plan.hull.added_mass[i, i])}
+        self.values = {"extra": self.extra, "nominal": float(plan.nominal.added_mass[i, i])}
 
     def change(self, p: Params, a: float) -> None:
         """One diagonal term."""
@@ -104,7 +104,7 @@ class CrossDrag(Effect):
         self.qy, self.qz = (working_drag(plan, i)[1] / plan.scale.speed**2 for i in (1, 2))
         self.values = {"arm": arm}
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """Strip theory: -w_j q |v + x_j r| (v + x_j r) at station x_j."""
         a = self.level(k.t)
         v, w, q, r = k.rel[1], k.rel[2], k.rel[4], k.rel[5]

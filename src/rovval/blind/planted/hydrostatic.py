@@ -20,7 +20,7 @@ class BuoyancyError(Effect):
     def setup(self, plan: Planting) -> None:
         """Extra volume (m3) for the wanted lift (N)."""
         self.lift = 0.15 * self.s * plan.scale.force
-        self.volume = self.lift / (plan.hull.density * plan.hull.gravity)
+        self.volume = self.lift / (plan.nominal.density * plan.nominal.gravity)
         self.values = {"lift": self.lift, "volume": self.volume}
 
     def change(self, p: Params, a: float) -> None:
@@ -39,7 +39,7 @@ class CgOffset(Effect):
 
     def setup(self, plan: Planting) -> None:
         """Offset (m) for the tilt, by the vehicle's own stiffness."""
-        self.offset = float(np.tan(np.radians(4.0)) * self.s * plan.scale.upright / (plan.hull.mass * plan.hull.gravity))
+        self.offset = float(np.tan(np.radians(4.0)) * self.s * plan.scale.upright / (plan.nominal.mass * plan.nominal.gravity))
         self.values = {"offset": self.offset}
 
     def change(self, p: Params, a: float) -> None:
@@ -59,8 +59,8 @@ class PayloadChange(Effect):
     def setup(self, plan: Planting) -> None:
         """Mass (kg), volume (m3) and place (m) of the payload: a body of four thirds the density of water."""
         wet = 0.15 * self.s * plan.scale.force
-        self.mass = 4.0 * wet / plan.hull.gravity
-        self.volume = 3.0 * wet / (plan.hull.density * plan.hull.gravity)
+        self.mass = 4.0 * wet / plan.nominal.gravity
+        self.volume = 3.0 * wet / (plan.nominal.density * plan.nominal.gravity)
         self.at = np.array([0.25 * plan.scale.length, 0.1 * plan.scale.length, 0.2 * plan.scale.length])
         self.values = {"mass": self.mass, "wet_weight": wet, "at": self.at.tolist()}
 

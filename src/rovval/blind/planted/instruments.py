@@ -113,7 +113,7 @@ class CompassDeviation(_Sensor):
     def record(self, log: dict[str, Array], true: Mapping[str, Array], t: Array) -> None:
         """Deviation by true heading and by the mean of the horizontal units' speed."""
         psi = true["psi"]
-        load = np.mean([true[f"n:{n}"] for n in self.plan.hull.thrusters], axis=0) / self.plan.scale.rpm
+        load = np.mean([true[f"n:{n}"] for n in self.plan.nominal.thrusters], axis=0) / self.plan.scale.rpm
         error = self.first * np.sin(psi + self.phase[0]) + self.second * np.sin(2.0 * psi + self.phase[1])
         log["Heading"] = log["Heading"] + self.levels(t) * (error + self.thrust_part * load)
 

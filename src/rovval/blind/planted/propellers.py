@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from rovval.blind.plant.effect import Effect, Kin, Planting
+from rovval.blind.plant.effect import Effect, Kinematics, Planting
 from rovval.blind.plant.parameters import Params
 from rovval.blind.plant.spec import Array
 
 OBLIQUE = 0.70710678  # share of the working speed along a 45-degree thruster
 
 
-def inflow(k: Kin, positions: Array) -> Array:
+def inflow(k: Kinematics, positions: Array) -> Array:
     """Velocity of each unit through the water, (N, 3), body axes."""
     rel = np.array(k.rel)
     return np.asarray(rel[:3] + np.cross(rel[3:], positions))
@@ -24,7 +24,7 @@ class _Inflow(Effect):
 
     def setup(self, plan: Planting) -> None:
         """Geometry, with the moment arm of rotation as a matrix so that the axial speed is one product."""
-        e, r = plan.hull.directions, plan.hull.positions
+        e, r = plan.nominal.directions, plan.nominal.positions
         self.axial = np.hstack([e, np.cross(r, e)])  # (N, 6) times nu_r gives the axial speed
         self.aim, self.at = e, r
         self.scale()
@@ -45,7 +45,7 @@ class InflowLoss(_Inflow):
         self.per = 0.35 * self.s * sc.rpm / (OBLIQUE * sc.speed)
         self.values = {"loss_at_working_point": 0.35 * self.s, "critical_speed_at_rpm": OBLIQUE * sc.speed / (0.35 * self.s)}
 
-    def thrust(self, thrust: Array, k: Kin, own: Array) -> Array:
+    def thrust(self, thrust: Array, k: Kinematics, own: Array) -> Array:
         """Subtract the linear term, never more than 1.3 times nor less than -0.6 times the thrust at rest."""
         ahead = self.axial @ np.array(k.rel)
         n = k.turn
@@ -65,7 +65,7 @@ class CrossflowLoss(_Inflow):
         self.inverse = self.s / speed**2
         self.values = {"loss_at_0.7_speed": self.s / (1.0 + self.s)}
 
-    def thrust(self, thrust: Array, k: Kin, own: Array) -> Array:
+    def thrust(self, thrust: Array, k: Kinematics, own: Array) -> Array:
         """Divide by one plus the squared cross-flow ratio."""
         v = inflow(k, self.at)
         along = np.sum(v * self.aim, axis=1)
@@ -94,12 +94,12 @@ class HullInteraction(_Inflow):
         self.loss, self.bend = min(1.0, 0.35 * self.s), 0.2 * self.s
         self.values = {"loss": self.loss, "side_share": self.bend}
 
-    def thrust(self, thrust: Array, k: Kin, own: Array) -> Array:
+    def thrust(self, thrust: Array, k: Kinematics, own: Array) -> Array:
         """Scale what blows at the hull."""
         hit = thrust * self.hits > 0.0
         return np.asarray(np.where(hit, thrust * (1.0 - self.level(k.t) * self.loss), thrust))
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """Side force of the bent jets (Coanda)."""
         hit = np.where(k.thrust * self.hits > 0.0, np.abs(k.thrust), 0.0)
         push = (self.level(k.t) * self.bend * hit) @ self.side
@@ -118,13 +118,13 @@ class ThrusterInteraction(Effect):
     def setup(self, plan: Planting) -> None:
         """The nearest other unit (the first, of two as near)."""
         self.at = self.unit_index
-        gap = np.linalg.norm(plan.hull.positions - plan.hull.positions[self.at], axis=1)
+        gap = np.linalg.norm(plan.nominal.positions - plan.nominal.positions[self.at], axis=1)
         gap[self.at] = np.inf
         self.other = int(np.argmin(gap))
         self.loss = min(1.0, 0.6 * self.s)
-        self.values = {"loss": self.loss, "upstream": plan.hull.thrusters[self.other]}
+        self.values = {"loss": self.loss, "upstream": plan.nominal.thrusters[self.other]}
 
-    def thrust(self, thrust: Array, k: Kin, own: Array) -> Array:
+    def thrust(self, thrust: Array, k: Kinematics, own: Array) -> Array:
         """Loss by the share of the neighbour's thrust in the sum."""
         out = thrust.copy()
         mine, theirs = abs(float(thrust[self.at])), abs(float(thrust[self.other]))
@@ -146,7 +146,7 @@ class ThrusterMisaligned(Effect):
     def setup(self, plan: Planting) -> None:
         """The sideways unit vector and the angle."""
         self.at = self.unit_index
-        e = plan.hull.directions[self.at]
+        e = plan.nominal.directions[self.at]
         across = np.cross(e, plan.rng.standard_normal(3))
         self.across = across / np.linalg.norm(across)
         self.angle = float(np.radians(20.0) * self.s)
@@ -168,10 +168,10 @@ class PropellerTorque(Effect):
     def setup(self, plan: Planting) -> None:
         """Arm (m)."""
         self.arm = 0.12 * self.s * plan.scale.length
-        self.aim = plan.hull.directions
+        self.aim = plan.nominal.directions
         self.values = {"arm": self.arm}
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """Moment against the rotation; a tenth of it goes as |n| n^2 (tip losses)."""
         fast = 0.9 + 0.1 * np.abs(k.turn) / self.plan.scale.rpm
         push = (-self.level(k.t) * self.arm * np.abs(k.static) * np.sign(k.turn) * fast) @ self.aim

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rovval.blind.plant.effect import Effect, Kin, Planting
+from rovval.blind.plant.effect import Effect, Kinematics, Planting
 from rovval.blind.plant.spec import Array
 
 
@@ -22,7 +22,7 @@ class _OneUnit(Effect):
         self.at = self.unit_index
         self.values = {"loss": self.loss}
 
-    def thrust(self, thrust: Array, k: Kin, own: Array) -> Array:
+    def thrust(self, thrust: Array, k: Kinematics, own: Array) -> Array:
         """Scale one unit."""
         out = thrust.copy()
         out[self.at] *= 1.0 - self.level(k.t) * self.loss
@@ -61,7 +61,7 @@ class Reversed(Effect):
         self.at = self.unit_index
         self.values = {"turn": self.turn}
 
-    def speed(self, n: Array, k: Kin) -> Array:
+    def speed(self, n: Array, k: Kinematics) -> Array:
         """Turn one shaft round."""
         out = n.copy()
         out[self.at] *= 1.0 + self.level(k.t) * (self.turn - 1.0)
@@ -80,7 +80,7 @@ class Deadband(Effect):
         self.width = 0.45 * self.s * plan.scale.rpm
         self.values = {"width_rpm": self.width}
 
-    def thrust(self, thrust: Array, k: Kin, own: Array) -> Array:
+    def thrust(self, thrust: Array, k: Kinematics, own: Array) -> Array:
         """Suppress the low speeds."""
         return np.asarray(thrust * (1.0 - self.level(k.t) * np.exp(-((k.turn / self.width) ** 4))))
 
@@ -98,7 +98,7 @@ class ReverseAsymmetry(Effect):
         self.loss = min(1.0, 0.35 * self.s)
         self.values = {"loss": self.loss}
 
-    def thrust(self, thrust: Array, k: Kin, own: Array) -> Array:
+    def thrust(self, thrust: Array, k: Kinematics, own: Array) -> Array:
         """Scale the negative half."""
         return np.asarray(np.where(k.turn < 0.0, thrust * (1.0 - self.level(k.t) * self.loss), thrust))
 
@@ -113,20 +113,20 @@ class ThrustLag(Effect):
     def setup(self, plan: Planting) -> None:
         """Total lag, s."""
         self.lag = self.s * max(0.3, 0.15 * plan.scale.time)
-        self.many = len(plan.hull.thrusters)
+        self.many = len(plan.nominal.thrusters)
         self.values = {"lag_s": self.lag}
 
-    def start(self, k: Kin) -> Array:
+    def start(self, k: Kinematics) -> Array:
         """Three stages a unit, at rest."""
         return np.zeros(3 * self.many)
 
-    def thrust(self, thrust: Array, k: Kin, own: Array) -> Array:
+    def thrust(self, thrust: Array, k: Kinematics, own: Array) -> Array:
         """The last stage acts."""
         self.feed = thrust
         a = self.level(k.t)
         return np.asarray(thrust + a * (own[2 * self.many :] - thrust))
 
-    def derivative(self, k: Kin, own: Array) -> Array:
+    def derivative(self, k: Kinematics, own: Array) -> Array:
         """Each stage follows the one before it."""
         before = np.concatenate([self.feed, own[: 2 * self.many]])
         return np.asarray((before - own) * (3.0 / self.lag))
@@ -146,7 +146,7 @@ class RpmScale(Effect):
         self.excess = 0.12 * self.s
         self.values = {"relative": self.excess}
 
-    def speed(self, n: Array, k: Kin) -> Array:
+    def speed(self, n: Array, k: Kinematics) -> Array:
         """What turns, from what is read."""
         return np.asarray(n / (1.0 + self.level(k.t) * self.excess))
 
@@ -162,6 +162,6 @@ class VoltageSag(Effect):
         """Power of the voltage ratio."""
         self.values = {"power": self.s, "droop_at_end": plan.setting.droop}
 
-    def speed(self, n: Array, k: Kin) -> Array:
+    def speed(self, n: Array, k: Kinematics) -> Array:
         """Speed times voltage ratio to the power of the severity."""
         return np.asarray(n * k.volts ** (self.s * self.level(k.t)))

@@ -44,7 +44,7 @@ class TimeOffset(_Sensor):
 
     def record(self, log: dict[str, Array], true: Mapping[str, Array], t: Array) -> None:
         """Read each channel earlier."""
-        names = GROUPS.get(self.target or "velocity") or tuple(f"{n}_PV" for n in self.plan.hull.thrusters)
+        names = GROUPS.get(self.target or "velocity") or tuple(f"{n}_PV" for n in self.plan.nominal.thrusters)
         for name in names:
             log[name] = np.interp(t - self.delay * self.levels(t), t, log[name])
 
@@ -64,7 +64,7 @@ class ClockDrift(_Sensor):
     def record(self, log: dict[str, Array], true: Mapping[str, Array], t: Array) -> None:
         """Shift the thruster rows by a square law in time."""
         late = self.levels(t) * self.end * (t / t[-1]) ** 2
-        for unit in self.plan.hull.thrusters:
+        for unit in self.plan.nominal.thrusters:
             for name in (f"{unit}_PV", f"{unit}_SP"):
                 log[name] = np.interp(t - late, t, log[name])
             log[f"{unit}_SP"] = np.round(log[f"{unit}_SP"])

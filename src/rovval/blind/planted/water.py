@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from rovval.blind.plant.effect import RAMP_S, Effect, Flow, Kin, Planting
+from rovval.blind.plant.effect import RAMP_S, Effect, Flow, Kinematics, Planting
 from rovval.blind.plant.spec import STEP_S, Array
 
 SALT = 14.0  # kg/m3, half of what sea water is heavier than fresh (1027 - 999): a small vehicle's step would else be that to a brine
@@ -33,7 +33,7 @@ class _Moving(Effect):
         self.since = 0.0
         self.now = (float(self.here[0]), float(self.here[1]), 0.0, 0.0)
 
-    def tick(self, k: Kin) -> None:
+    def tick(self, k: Kinematics) -> None:
         """One step of the walk."""
         if not hasattr(self, "keep"):
             return
@@ -133,7 +133,7 @@ class Waves(_Moving):
         self.parts: list[tuple[float, float, float, float]] = []
         for share, factor in ((0.8, 1.0), (0.4, 1.17)):
             w = math.tau / (period / factor)
-            number = w * w / plan.hull.gravity
+            number = w * w / plan.nominal.gravity
             surface = share * orbit * math.exp(number * depth)
             self.parts.append((w, number, surface, float(plan.rng.uniform(0.0, math.tau))))
         self.values = {"period_s": period, "towards_rad": self.way, "orbital_speed": orbit}
@@ -165,20 +165,20 @@ class DensityGradient(Effect):
 
     def setup(self, plan: Planting) -> None:
         """Half step (N), middle and thickness (m)."""
-        salt = SALT * plan.hull.gravity * plan.hull.volume
+        salt = SALT * plan.nominal.gravity * plan.nominal.volume
         self.step = float(np.clip(0.15 * self.s * plan.scale.force, -salt, salt))
         self.middle = plan.setting.depth + float(plan.rng.uniform(-1.5, 0.5))
         self.values = {
             "half_step_n": self.step,
             "middle_m": self.middle,
             "thickness_m": 3.0,
-            "half_step_density": self.step / (plan.hull.gravity * plan.hull.volume),
+            "half_step_density": self.step / (plan.nominal.gravity * plan.nominal.volume),
         }
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """More lift below, less above, at the centre of buoyancy."""
         lift = self.level(k.t) * self.step * math.tanh((k.z - self.middle) / 1.5)
-        rb = self.plan.hull.buoyancy_centre
+        rb = self.plan.nominal.buoyancy_centre
         fx, fy, fz = -lift * k.r[6], -lift * k.r[7], -lift * k.r[8]
         f[0] += fx
         f[1] += fy

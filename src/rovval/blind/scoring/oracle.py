@@ -38,13 +38,13 @@ def oracle(
     """Shares that the hypotheses ``true`` close: ``dynamic`` of the log's gap, ``seen`` the larger of that and of the gap with the
     kinematic checks, where faults of sensors show; of several, ``each`` is the least that one of them closes of what the others leave,
     fitted without it. Empty where the library has none of them or no window is usable."""
-    from rovval import vehicle as vehicles
     from rovval.blind.sealed.answer import PROFILE
     from rovval.core.errors import RovvalError
     from rovval.storage.archive import open_run
+    from rovval.vehicle import load as load_vehicle
 
     try:
-        found = _fit(open_run(log, PROFILE), vehicles.load(vehicle), true, onsets, **asked)
+        found = _fit(open_run(log, PROFILE), load_vehicle(vehicle), true, onsets, **asked)
         if found is None:
             return {}
         problem, healthy, wanted, beta = found

@@ -9,10 +9,9 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from rovval import vehicle as vehicles
-from rovval.blind.scoring import history, tables, truth
-from rovval.blind.scoring.marks import marks
+from rovval.blind.scoring import ground_truth, history, tables
 from rovval.blind.scoring.oracle import oracle
+from rovval.blind.scoring.rules import score_log
 from rovval.blind.scoring.strata import strata
 from rovval.blind.sealed import sealing
 from rovval.blind.sealed.answer import one_thread_each
@@ -20,6 +19,7 @@ from rovval.blind.sealed.folder import Folder, write
 from rovval.blind.sealed.make import now
 from rovval.core.errors import UsageProblem
 from rovval.core.version import __version__
+from rovval.vehicle import load as load_vehicle
 
 SCHEMA = "rovval.blind-score/1"
 HEADLINE = (
@@ -40,7 +40,7 @@ HEADLINE = (
 Say = Callable[[str, float], None]
 
 
-def score(
+def score_set(
     root: Path,
     *,
     key: Path | None = None,
@@ -65,7 +65,7 @@ def score(
     labels = sealed["logs"]
     answers = {row["log"]: row for row in (json.loads(p.read_text(encoding="utf-8")) for p in place.answer_files())}
     best = _oracles(place, manifest, labels, commit, workers, say)
-    result = marked(labels, answers, best, manifest["vehicle"])
+    result = score_logs(labels, answers, best, manifest["vehicle"])
     result = {
         "schema": SCHEMA, "opened": opened, "seed": sealed["seed"], "size": sealed["size"], "vehicle": sealed["vehicle"],
         "rovval": __version__, "engine": commit["engine"], "committed": commit["committed"],
@@ -79,23 +79,23 @@ def score(
     return result
 
 
-def marked(
+def score_logs(
     labels: Mapping[str, Any], answers: Mapping[str, Any], oracles: Mapping[str, Mapping[str, float]], vehicle: str
 ) -> dict[str, Any]:
     """Marks of every log, the tables over strata, and the wrong answers."""
-    path, nominal = Path(vehicle), vehicles.load(vehicle)
+    path, nominal = Path(vehicle), load_vehicle(vehicle)
     rows = []
     for name, label in labels.items():
         answer = answers.get(name, {"failed": "no answer", "cpu_s": 0.0})
         best = _at_least(oracles.get(name, {}), label, answer)
-        row = marks(label, answer, best, nominal, path)
+        row = score_log(label, answer, best, nominal, path)
         row |= {
             "log": name,
             "mission": label["mission"],
             "strata": strata(label, best),
             "truth": tables.names_of(label),
         }
-        row |= {"foreign": [truth.foreign(e) for e in label["effects"]], "left_out": label["left_out"]}
+        row |= {"foreign": [ground_truth.foreign(e) for e in label["effects"]], "left_out": label["left_out"]}
         row |= {
             "severity": [e["severity"] for e in label["effects"]],
             "library": len(answer.get("document", {}).get("ranking", [])),
@@ -148,9 +148,9 @@ def _oracles(
     with one_thread_each(), ProcessPoolExecutor(workers, mp_context=get_context("forkserver")) as pool:
         jobs = {}
         for name, label in labels.items():
-            effects = [e for e in label["effects"] if not truth.foreign(e)]
-            onsets = {truth.name(e): e["onset_s"] for e in effects if e["onset_s"] is not None}
-            true = list(dict.fromkeys(truth.name(e) for e in effects))
+            effects = [e for e in label["effects"] if not ground_truth.foreign(e)]
+            onsets = {ground_truth.name(e): e["onset_s"] for e in effects if e["onset_s"] is not None}
+            true = list(dict.fromkeys(ground_truth.name(e) for e in effects))
             if true:
                 jobs[pool.submit(oracle, place.logs / name, manifest["vehicle"], true, onsets, asked)] = name
         for job in as_completed(jobs):

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
-from rovval.blind.scoring import truth
+from rovval.blind.scoring import ground_truth
 from rovval.blind.scoring.intervals import Number, mean, median, share
 
 Row = Mapping[str, Any]
@@ -62,10 +62,10 @@ def _stratum(rows: Sequence[Row]) -> dict[str, Any]:
     if numbers:
         found["parameter_error"] = median([p["error"] for p in numbers])
         found["coverage_90"] = share([p["covered"] for p in numbers])
-    return found | {"floors": _floors(rows)}
+    return found | {"floors": _baselines(rows)}
 
 
-def _floors(rows: Sequence[Row]) -> dict[str, Number]:
+def _baselines(rows: Sequence[Row]) -> dict[str, Number]:
     """Top-1 of each simple method where there is a known effect, else how often it names one; guesses by arithmetic."""
     found = {}
     for method in sorted({m for row in rows for m in row["floors"]}):
@@ -95,12 +95,12 @@ def confusions(rows: Sequence[Row]) -> list[dict[str, Any]]:
             "kind": kind,
         }
         for row in rows
-        if (kind := fault(row))
+        if (kind := error_kind(row))
     ]
     return sorted(wrong, key=lambda w: (w["kind"], -(w["oracle"] or 0.0)))
 
 
-def fault(row: Row) -> str:
+def error_kind(row: Row) -> str:
     """What is wrong with an answer, "" where nothing is."""
     if row["verdict"] == "failed":
         return "failed"
@@ -122,4 +122,4 @@ def _order(stratum: str) -> tuple[int, str]:
 
 def names_of(label: Mapping[str, Any]) -> list[str]:
     """Names of what was planted, as the library has them."""
-    return [truth.name(e) for e in label["effects"]]
+    return [ground_truth.name(e) for e in label["effects"]]

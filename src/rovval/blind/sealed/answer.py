@@ -24,8 +24,8 @@ ONE_THREAD = ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "M
 Say = Callable[[str, float], None]
 
 
-def answer(
-    root: Path, *, workers: int = 2, floors: bool = True, fresh: bool = False, say: Say = lambda text, share: None
+def answer_set(
+    root: Path, *, workers: int = 2, baselines: bool = True, fresh: bool = False, say: Say = lambda text, share: None
 ) -> dict[str, Any]:
     """Diagnose what is not answered yet and commit; the commitment.
 
@@ -41,7 +41,7 @@ def answer(
         shutil.rmtree(place.answers, ignore_errors=True)
     if place.commit.is_file():
         return place.committed()
-    engine, asked = engine_hash(), {"calibration_slop": 0.05, "window_s": 10.0, "model": manifest["model"], "floors": floors}
+    engine, asked = engine_hash(), {"calibration_slop": 0.05, "window_s": 10.0, "model": manifest["model"], "floors": baselines}
     done = _done(place, engine)
     left = [name for name in manifest["logs"] if name not in done]
     began = time.monotonic()
@@ -68,13 +68,13 @@ def answer(
 
 
 def one(log: Path, vehicle: str, without: Sequence[str], asked: Mapping[str, Any]) -> dict[str, Any]:
-    """Diagnosis of one log without its pictures, what the floors say, and CPU seconds; ``failed`` where the engine refused."""
-    from rovval import vehicle as vehicles
-    from rovval.blind.baselines.floors import floors
+    """Diagnosis of one log without its pictures, what the simple methods name, and CPU seconds; ``failed`` where the engine refused."""
+    from rovval.blind.baselines.methods import baseline_answers
     from rovval.diagnose import diagnose
     from rovval.storage.archive import open_run
+    from rovval.vehicle import load as load_vehicle
 
-    nominal = vehicles.load(vehicle)
+    nominal = load_vehicle(vehicle)
     began = time.process_time()
     try:
         run = open_run(log, PROFILE)
@@ -90,7 +90,7 @@ def one(log: Path, vehicle: str, without: Sequence[str], asked: Mapping[str, Any
         return {"failed": f"{type(problem).__name__}: {problem}", "cpu_s": time.process_time() - began}
     spent = time.process_time() - began
     document = {key: value for key, value in found.document().items() if key not in BULKY}
-    simple = floors(run, nominal, without, asked["model"], asked["window_s"]) if asked["floors"] else {}
+    simple = baseline_answers(run, nominal, without, asked["model"], asked["window_s"]) if asked["floors"] else {}
     return {"document": document, "floors": simple, "cpu_s": spent}
 
 

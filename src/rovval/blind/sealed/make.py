@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from rovval.blind.cases import generate
-from rovval.blind.cases.plan import Question, questions
+from rovval.blind.cases.questions import Question, questions
 from rovval.blind.sealed import sealing
 from rovval.blind.sealed.folder import MANIFEST, Folder, write
 from rovval.core.errors import UsageProblem
@@ -22,7 +22,7 @@ EPOCH_S = 1_600_000_000  # every log's file time: September 2020
 Say = Callable[[str, float], None]
 
 
-def make(
+def make_set(
     root: Path,
     vehicle: Path,
     seed: int | None = None,

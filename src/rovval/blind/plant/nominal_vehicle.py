@@ -20,7 +20,7 @@ T200_REVERSE = 3.2465e-6  # N/rpm^2, same table
 
 
 @dataclass(frozen=True, slots=True)
-class Hull:
+class NominalVehicle:
     """Nominal numbers of one vehicle. Thruster rows are in the order of the file."""
 
     name: str
@@ -55,14 +55,14 @@ def _six(value: Any) -> Array:
     return np.diag(given).copy() if given.ndim == 2 else given
 
 
-def read_hull(path: Path) -> Hull:
-    """Vehicle file to ``Hull``. Missing keys are a KeyError: the file is ours, not a user's."""
+def read_vehicle(path: Path) -> NominalVehicle:
+    """A vehicle file as `NominalVehicle`. Missing keys are a KeyError: the file is ours, not a user's."""
     with path.open("rb") as file:
         table = tomllib.load(file)
     body, water, units = table["body"], table["water"], table["thruster"]
     added = np.array(body["added_mass"], dtype=float)
     aim = np.array([unit["direction"] for unit in units], dtype=float)
-    return Hull(
+    return NominalVehicle(
         name=path.stem,
         mass=float(body["mass"]),
         inertia=_inertia(body),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rovval.blind.plant.effect import Effect, Kin, Planting
+from rovval.blind.plant.effect import Effect, Kinematics, Planting
 from rovval.blind.plant.rotation import to_body
 from rovval.blind.plant.spec import Array
 
@@ -24,7 +24,7 @@ class GroundEffect(Effect):
         self.force = 0.35 * self.s * plan.scale.force
         self.values = {"reach_m": self.reach, "force": self.force, "start_altitude": plan.setting.bottom - plan.setting.depth}
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """Lift away from the bottom, less with forward speed, more on the way down."""
         near = max(0.05, k.altitude) / self.reach
         share = self.level(k.t) * (1.0 + near * near) ** -1.5
@@ -51,7 +51,7 @@ class WallSuction(Effect):
         self.force = 0.3 * self.s * plan.scale.force
         self.values = {"towards_rad": way, "distance_m": self.distance, "force": self.force}
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """Pull along the normal; the gap is never less than 0.6 m (fenders)."""
         gap = max(0.6, self.distance - self.north * k.x - self.east * k.y)
         sc = self.plan.scale

@@ -6,15 +6,15 @@ import math
 
 import numpy as np
 
-from rovval.blind.plant.effect import Kin, Setting
-from rovval.blind.plant.hull import Hull
+from rovval.blind.plant.effect import Kinematics, Setting
+from rovval.blind.plant.nominal_vehicle import NominalVehicle
 from rovval.blind.plant.scales import Scales
 from rovval.blind.plant.spec import STEP_S, stream
 
 VOLTS_WORK, VOLTS_SMALL = 600.0, 16.0  # V, chosen: a work-class DC bus; a four-cell battery
 
 
-def draw_setting(hull: Hull, scale: Scales, seed: int, duration_s: float) -> Setting:
+def draw_setting(nominal: NominalVehicle, scale: Scales, seed: int, duration_s: float) -> Setting:
     """Depth, altitude, heading, anchor of the tether, supply."""
     rng = stream(seed, "setting")
     depth = float(np.exp(rng.uniform(np.log(5.0), np.log(30.0))))
@@ -61,7 +61,7 @@ class Supply:
         self.energy, self.volts = 0.0, setting.volts
         self.full = 0.35 * scale.thrust * scale.rpm * setting.duration_s
 
-    def step(self, t: float, k: Kin) -> float:
+    def step(self, t: float, k: Kinematics) -> float:
         """Voltage over nominal, for the next control step."""
         power = float(np.abs(k.static * k.turn).mean())
         self.energy += power * STEP_S

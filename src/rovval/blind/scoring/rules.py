@@ -9,7 +9,7 @@ from math import log
 from pathlib import Path
 from typing import Any
 
-from rovval.blind.scoring import truth
+from rovval.blind.scoring import ground_truth
 from rovval.blind.scoring.true_values import true_values
 from rovval.vehicle.model import Vehicle
 
@@ -18,7 +18,7 @@ LEAST = 1e-3  # probability on the truth is never counted lower, so that a log s
 GROUP = 3  # names of a confusion group that count
 
 
-def marks(
+def score_log(
     label: Mapping[str, Any], answer: Mapping[str, Any], oracle: Mapping[str, float], vehicle: Vehicle, path: Path
 ) -> dict[str, Any]:
     """Everything that can be said about one log. Marks that do not apply are None."""
@@ -27,7 +27,7 @@ def marks(
         return _failed(label, answer)
     document = answer["document"]
     causes, ranking = document["causes"], document["ranking"]
-    known = [e for e in effects if not truth.foreign(e)] if not label["left_out"] else []
+    known = [e for e in effects if not ground_truth.foreign(e)] if not label["left_out"] else []
     pairs = _paired(known, causes)
     first = causes[0] if causes else ({"effect": ranking[0]["effect"]} if ranking else {"effect": ""})
     one = known[0] if len(known) == 1 else None
@@ -46,12 +46,12 @@ def marks(
         "blamed": bool(causes),
         "fully_blamed": document["verdict"] == "explained",
         "said_unknown": document["verdict"] == "unknown",
-        "top_1": any(truth.accepts(e, first) for e in known) if known else None,
+        "top_1": any(ground_truth.accepts(e, first) for e in known) if known else None,
         "named_one": len(causes) > 0 and len(group) == 1,
         "right_when_named": bool(pairs) if known and causes else None,
-        "right_when_one_named": truth.accepts(known[0], causes[0]) if one and causes and len(group) == 1 else None,
-        "group_hit": any(truth.accepts(e, g) for e in known for g in group) if known and causes else None,
-        "truth_named": any(truth.accepts(one, g) for g in group) if one else None,
+        "right_when_one_named": ground_truth.accepts(known[0], causes[0]) if one and causes and len(group) == 1 else None,
+        "group_hit": any(ground_truth.accepts(e, g) for e in known for g in group) if known and causes else None,
+        "truth_named": any(ground_truth.accepts(one, g) for g in group) if one else None,
         "group_size": len(group) if causes else None,
         "p_truth": _p_truth(one, causes, group, len(ranking)) if one else None,
         "errors": len(causes) + len(effects if not label["left_out"] else []) - 2 * len(pairs),
@@ -68,14 +68,14 @@ def marks(
     found["log_score"] = log(max(found["p_truth"], LEAST)) if found["p_truth"] is not None else None
     found["parameters"] = [row for e, c in pairs for row in _numbers(e, c, vehicle)]
     found["floors"] = {
-        method: any(truth.accepts(e, {"effect": name}) for e in known) if known else bool(name)
+        method: any(ground_truth.accepts(e, {"effect": name}) for e in known) if known else bool(name)
         for method, name in answer["floors"].items()
     }  # on a log without a known effect: whether it names one all the same
     return found
 
 
 def _failed(label: Mapping[str, Any], answer: Mapping[str, Any]) -> dict[str, Any]:
-    known = [e for e in label["effects"] if not truth.foreign(e)] if not label["left_out"] else []
+    known = [e for e in label["effects"] if not ground_truth.foreign(e)] if not label["left_out"] else []
     none: dict[str, Any] = {
         "verdict": "failed",
         "named": [],
@@ -89,27 +89,27 @@ def _failed(label: Mapping[str, Any], answer: Mapping[str, Any]) -> dict[str, An
     return none | missed | {"errors": len(label["effects"]), "cpu_s": answer["cpu_s"]}
 
 
-def _paired(known: Sequence[truth.Row], causes: Sequence[truth.Row]) -> list[tuple[truth.Row, truth.Row]]:
+def _paired(known: Sequence[ground_truth.Row], causes: Sequence[ground_truth.Row]) -> list[tuple[ground_truth.Row, ground_truth.Row]]:
     """The largest matching of planted effects and causes; each is used once."""
-    best: list[tuple[truth.Row, truth.Row]] = []
+    best: list[tuple[ground_truth.Row, ground_truth.Row]] = []
     small, large, swap = (known, causes, False) if len(known) <= len(causes) else (causes, known, True)
     for order in permutations(large, len(small)):
         both = [(b, a) if swap else (a, b) for a, b in zip(small, order, strict=True)]
-        right = [(e, c) for e, c in both if truth.accepts(e, c)]
+        right = [(e, c) for e, c in both if ground_truth.accepts(e, c)]
         best = max(best, right, key=len)
     return best
 
 
-def _p_truth(effect: truth.Row, causes: Sequence[truth.Row], group: Sequence[truth.Row], library: int) -> float:
+def _p_truth(effect: ground_truth.Row, causes: Sequence[ground_truth.Row], group: Sequence[ground_truth.Row], library: int) -> float:
     """The answer's probability of the truth: the stated one for the first name; `IN_GROUP` of the rest over its group, what then
     remains over the library; an answer that names nothing says 1 / library."""
     if not causes:
         return 1.0 / max(library, 1)
     stated = float(causes[0]["probability"])
-    if truth.accepts(effect, causes[0]):
+    if ground_truth.accepts(effect, causes[0]):
         return stated
     inside = IN_GROUP if len(group) > 1 else 0.0
-    if any(truth.accepts(effect, g) for g in group):
+    if any(ground_truth.accepts(effect, g) for g in group):
         return (1.0 - stated) * inside / (len(group) - 1)
     return (1.0 - stated) * (1.0 - inside) / max(library - len(group), 1)
 
@@ -119,7 +119,7 @@ def _axis(label: Mapping[str, Any], document: Mapping[str, Any], path: Path) -> 
     where = document["gap"]["where"]
     said = document["left"]["axes"][0] if document["verdict"] == "unknown" and document.get("left") else None
     said = said or (where[0]["axis"] if where else None)
-    true = {axis for e in label["effects"] for axis in truth.axes(e, path)}
+    true = {axis for e in label["effects"] for axis in ground_truth.axes(e, path)}
     return None if said is None or not true else said in true
 
 
@@ -127,21 +127,21 @@ def _regime(label: Mapping[str, Any], document: Mapping[str, Any]) -> bool | Non
     """Whether one of the worst regimes, or of the unknown force's features, is what the effect goes with (logs with one effect)."""
     if len(label["effects"]) != 1 or not document["gap"]["where"]:
         return None
-    pattern = truth.goes_with(label["effects"][0])
+    pattern = ground_truth.goes_with(label["effects"][0])
     said = [row["regime"] for row in document["gap"]["where"]] + list((document.get("left") or {}).get("depends_on", []))
     return None if pattern is None else any(re.search(pattern, words) for words in said)
 
 
-def _onset(pairs: Sequence[tuple[truth.Row, truth.Row]]) -> float | None:
+def _onset(pairs: Sequence[tuple[ground_truth.Row, ground_truth.Row]]) -> float | None:
     for effect, cause in pairs:
         if effect["onset_s"] is not None and cause.get("onset_s") is not None:
             return abs(float(cause["onset_s"]) - float(effect["onset_s"]))
     return None
 
 
-def _numbers(effect: truth.Row, cause: truth.Row, vehicle: Vehicle) -> list[dict[str, Any]]:
+def _numbers(effect: ground_truth.Row, cause: ground_truth.Row, vehicle: Vehicle) -> list[dict[str, Any]]:
     """Each parameter whose true value maps onto the library's: relative error and whether the 90 % interval holds the truth."""
-    if cause["effect"] != truth.name(effect):
+    if cause["effect"] != ground_truth.name(effect):
         return []
     rows = []
     for key, true in true_values(effect, vehicle).items():

@@ -11,14 +11,14 @@ import math
 
 import numpy as np
 
-from rovval.blind.plant.effect import Effect, Kin, Planting
+from rovval.blind.plant.effect import Effect, Kinematics, Planting
 from rovval.blind.plant.rotation import to_body, to_world
 from rovval.blind.plant.spec import Array
 
 SEGMENTS = 5
 NORMAL = 1.2  # drag coefficient of a cylinder across the flow
 TANGENTIAL = 0.02
-THICK = {True: 0.03, False: 0.0076}  # m, line of a work-class vehicle (chosen) and of a small one (diagnosis.md T1)
+THICK = {True: 0.03, False: 0.0076}  # m, line of a work-class vehicle (chosen) and of a small one (Blue Robotics, Fathom ROV tether)
 PULSE = 30.0  # rad/s, natural frequency of a node on its segments (chosen, see above)
 
 
@@ -40,33 +40,33 @@ class TetherDrag(Effect):
 
     def setup(self, plan: Planting) -> None:
         """Length in bights for the wanted drag; masses; anchor."""
-        sc, hull, st = plan.scale, plan.hull, plan.setting
+        sc, nominal, st = plan.scale, plan.nominal, plan.setting
         self.anchor = st.anchor
         self.length = paid_out(st.anchor, np.array([0.0, 0.0, st.depth]), 0.0)
         full = 2.5 * self.s * sc.force
-        self.diameter = full / (0.5 * hull.density * NORMAL * self.length * sc.speed**2)  # of a line without bights
+        self.diameter = full / (0.5 * nominal.density * NORMAL * self.length * sc.speed**2)  # of a line without bights
         thick = THICK[sc.work_class]
         bights = self.length * self.diameter / thick
-        self.node_mass = 2.0 * hull.density * math.pi / 4.0 * thick**2 * bights / SEGMENTS  # line and its added mass, neutral
+        self.node_mass = 2.0 * nominal.density * math.pi / 4.0 * thick**2 * bights / SEGMENTS  # line and its added mass, neutral
         self.stiffness = self.node_mass * PULSE**2 / 4.0
         self.damping = 0.4 * math.sqrt(self.stiffness * self.node_mass)
-        self.rho = hull.density
+        self.rho = nominal.density
         self.tie = fairlead(plan)
         self.values = {"diameter_m": thick, "length_m": bights, "span_m": self.length}
         self.values |= {"normal_drag": NORMAL, "anchor": st.anchor.tolist()}
 
-    def start(self, k: Kin) -> Array:
+    def start(self, k: Kinematics) -> Array:
         """Nodes on a straight line from the anchor to the start, at rest: (SEGMENTS - 1) places, then velocities."""
         share = np.arange(1, SEGMENTS)[:, None] / SEGMENTS
         end = np.array([0.0, 0.0, self.plan.setting.depth])
         places = self.anchor + share * (end - self.anchor)
         return np.concatenate([places.ravel(), np.zeros(3 * (SEGMENTS - 1))])
 
-    def tick(self, k: Kin) -> None:
+    def tick(self, k: Kinematics) -> None:
         """The winch follows."""
         self.length = paid_out(self.anchor, np.array([k.x, k.y, k.z]), self.length)
 
-    def _pull(self, k: Kin, own: Array) -> tuple[Array, Array, Array, Array]:
+    def _pull(self, k: Kinematics, own: Array) -> tuple[Array, Array, Array, Array]:
         """Places and velocities of all ends, segment directions and tensions (N)."""
         c = k.vel
         p, q, r = c[3], c[4], c[5]
@@ -86,7 +86,7 @@ class TetherDrag(Effect):
         tension = np.maximum(0.0, self.stiffness * np.maximum(stretch, 0.0) + grip * self.damping * rate)
         return place, speed, along, tension
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """Pull of the last segment at the fairlead, and half of that segment's own drag."""
         _, speed, along, tension = self._pull(k, own)
         load = -tension[-1] * along[-1] + 0.5 * self._drag(speed[-2:].mean(axis=0)[None], along[-1:], k)[0]
@@ -99,7 +99,7 @@ class TetherDrag(Effect):
         f[4] += z * fx - x * fz
         f[5] += x * fy - y * fx
 
-    def _drag(self, speed: Array, along: Array, k: Kin) -> Array:
+    def _drag(self, speed: Array, along: Array, k: Kinematics) -> Array:
         """Morison drag (N) of one segment each with velocity ``speed`` and direction ``along``."""
         rel = speed - np.array(k.water[:3])
         tangent = np.einsum("ij,ij->i", rel, along)[:, None] * along
@@ -109,7 +109,7 @@ class TetherDrag(Effect):
         slide = np.sqrt(np.einsum("ij,ij->i", tangent, tangent))[:, None]
         return np.asarray(-area * (NORMAL * size * across + TANGENTIAL * slide * tangent))
 
-    def derivative(self, k: Kin, own: Array) -> Array:
+    def derivative(self, k: Kinematics, own: Array) -> Array:
         """Newton for every node."""
         _, speed, along, tension = self._pull(k, own)
         pull = tension[:, None] * along

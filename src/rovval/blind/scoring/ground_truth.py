@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from rovval.blind.plant.hull import read_hull
+from rovval.blind.plant.nominal_vehicle import read_vehicle
 from rovval.blind.plant.scales import scales
 from rovval.blind.plant.spec import AXES
 
@@ -65,9 +65,9 @@ def axes(effect: Row, vehicle: Path) -> set[str]:
     size = effect["realised"]
     if "channel_rms" in size:
         return {CHANNEL_AXIS[c] for c in size["channel_rms"] if c in CHANNEL_AXIS}
-    hull = read_hull(vehicle)
-    mass = [hull.mass + float(hull.added_mass[i, i]) for i in range(3)]
-    turn = [(float(hull.inertia[i, i]) + float(hull.added_mass[i + 3, i + 3])) / scales(hull).length for i in range(3)]
+    nominal = read_vehicle(vehicle)
+    mass = [nominal.mass + float(nominal.added_mass[i, i]) for i in range(3)]
+    turn = [(float(nominal.inertia[i, i]) + float(nominal.added_mass[i + 3, i + 3])) / scales(nominal).length for i in range(3)]
     push = {axis: size["wrench_rms"][axis] / m for axis, m in zip(AXES, [*mass, *turn], strict=True)}
     return {axis for axis, value in push.items() if value >= MAIN * max(push.values())}
 

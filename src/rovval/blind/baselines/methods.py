@@ -1,4 +1,4 @@
-"""What simple methods answer on the same logs: they are the floor that the engine must stand on.
+"""What simple methods answer on the same logs: a diagnosis that names no more than they do is not worth its computing time.
 
 ``derivative``: pointwise accelerations, ordinary least squares of each hypothesis of the library, the best by BIC. ``sindy``: sparse
 regression of the residual acceleration (`stlsq`). ``ridge``: all parameters of the library at once on the engine's own windows, the
@@ -29,7 +29,7 @@ REAL = 10.0  # BIC gain that counts as "very strong" (Kass and Raftery 1995)
 PAIR_S = 0.2  # two samples
 
 
-def floors(run: Run, vehicle: Vehicle, without: Sequence[str], model: str = "fossen", window_s: float = 10.0) -> dict[str, str]:
+def baseline_answers(run: Run, vehicle: Vehicle, without: Sequence[str], model: str = "fossen", window_s: float = 10.0) -> dict[str, str]:
     """The effect that each simple method names, "" where it names none."""
     return _pointwise(run, vehicle, without, model) | {"ridge": _ridge(run, vehicle, without, model, window_s)}
 

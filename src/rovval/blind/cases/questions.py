@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from rovval.blind.cases.grid import Case, _planted, grid
-from rovval.blind.plant.hull import read_hull
+from rovval.blind.cases.grid import Case, draw_planted, grid
+from rovval.blind.plant.nominal_vehicle import read_vehicle
 from rovval.blind.plant.spec import Planted, stream
 from rovval.blind.planted.catalogue import catalogue, names
 from rovval.core.errors import UsageProblem
@@ -85,10 +85,10 @@ def questions(vehicle: Path, seed: int, size: str) -> list[Question]:
 def _full(vehicle: Path, seed: int) -> list[Question]:
     rng = stream(seed, "questions")
     asked = [Question(case, _decoy(case, rng)) for case in grid(vehicle, seed)]
-    thrusters = read_hull(vehicle).thrusters
+    thrusters = read_vehicle(vehicle).thrusters
     left = [
         Question(
-            Case(mission, (_planted(name, target, 2.0, rng),), int(rng.integers(2**31 - 1))),
+            Case(mission, (draw_planted(name, target, 2.0, rng),), int(rng.integers(2**31 - 1))),
             same_law(name),
             True,
         )
@@ -101,7 +101,7 @@ def _full(vehicle: Path, seed: int) -> list[Question]:
 
 def _small(vehicle: Path, seed: int) -> list[Question]:
     rng = stream(seed, "questions")
-    thrusters = read_hull(vehicle).thrusters
+    thrusters = read_vehicle(vehicle).thrusters
     asked = []
     for mission, effects, left_out in SMALL:
         planted = tuple(Planted(n, _on(vehicle, n, t, thrusters), s) for n, t, s in effects)

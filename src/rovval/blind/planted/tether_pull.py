@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from rovval.blind.plant.effect import Effect, Kin, Planting
+from rovval.blind.plant.effect import Effect, Kinematics, Planting
 from rovval.blind.plant.rotation import to_body, to_world
 from rovval.blind.plant.spec import Array
-from rovval.blind.planted.tether import fairlead
+from rovval.blind.planted.tether_drag import fairlead
 
 
 class _Pull(Effect):
@@ -21,7 +21,7 @@ class _Pull(Effect):
     def numbers(self, plan: Planting) -> None:
         """Numbers of the effect."""
 
-    def pull(self, k: Kin, f: list[float], point: tuple[float, float, float], tension: float, beyond: float) -> None:
+    def pull(self, k: Kinematics, f: list[float], point: tuple[float, float, float], tension: float, beyond: float) -> None:
         """Add ``tension`` towards ``point``; ``beyond`` > 0 multiplies a softened stretch beyond that length instead."""
         x, y, z = self.tie
         ex, ey, ez = to_world(k.r, x, y, z)
@@ -55,7 +55,7 @@ class TetherTension(_Pull):
         self.point = (x, y, z)
         self.values = {"tension": self.tension, "anchor": [x, y, z]}
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """Towards the anchor."""
         self.pull(k, f, self.point, self.tension, 0.0)
 
@@ -74,13 +74,13 @@ class TetherSnag(_Pull):
         self.point: tuple[float, float, float] | None = None
         self.values = {"stiffness": self.stiff, "free_length": self.free}
 
-    def tick(self, k: Kin) -> None:
+    def tick(self, k: Kinematics) -> None:
         """Catch at the onset."""
         if self.point is None and self.onset is not None and k.t >= self.onset:
             self.point = (k.x, k.y, k.z)
             self.values["point"] = [k.x, k.y, k.z]
 
-    def wrench(self, k: Kin, own: Array, f: list[float]) -> None:
+    def wrench(self, k: Kinematics, own: Array, f: list[float]) -> None:
         """One-sided spring, softened."""
         if self.point is not None:
             self.pull(k, f, self.point, self.stiff, self.free)
