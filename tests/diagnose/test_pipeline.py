@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from diagnose_case import bare, diagnosed, foreign, merlin, own
+from diagnosis_schema import check_document
 
 from rovval import demo
 from rovval.comparison import compare
@@ -79,6 +80,7 @@ def check_shrinkage(s: dict[str, Any]) -> None:
 @pytest.mark.parametrize("case", [explained, diagnosed, strange], ids=["explained", "no_gap", "strange"])
 def test_documents_keep_the_contract(case):
     document = written(case())
+    check_document(document)
     check_schema(document)
     assert document["sentence"] == sentence(document)
 

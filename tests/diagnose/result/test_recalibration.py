@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from diagnose_case import LIBRARY, foreign, merlin, own
+from diagnosis_schema import check_document
 from real_data import real
 from report_cases import make_diagnosis
 
@@ -64,6 +65,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_file_off_in_many_coefficients_is_told_and_is_no_cause(folder: Path):
     d = told(folder)
+    check_document(d)
     found = d["calibration"]
     assert d["verdict"] == "unknown" and d["causes"] == []
     assert {"quadratic_drag[surge].scale", "quadratic_drag[heave].scale", "quadratic_drag[yaw].scale"} <= set(found["beyond"])
@@ -103,7 +105,9 @@ def test_nor_are_they_of_an_independent_plant(tmp_path_factory: pytest.TempPathF
 
 def test_the_tank_runs_are_a_matter_of_calibration_on_the_run_left_out():
     runs = [open_run(real(f"bluerov2_tank/run_{name}.csv")) for name in "abc"]
-    found = diagnose(runs, vehicle.load("bluerov2_heavy")).document()["calibration"]
+    document = written(diagnose(runs, vehicle.load("bluerov2_heavy")))
+    check_document(document)
+    found = document["calibration"]
     assert found["held_out"] == "runs" and found["shrinkage"]["low"] > 0.4
     assert {"quadratic_drag[surge].scale", *(f"thruster_degraded[T{i}].loss" for i in (1, 2, 3, 4))} <= set(found["beyond"])
 

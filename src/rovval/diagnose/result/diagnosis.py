@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from typing import Any, Final, Literal, Self
 
 from pydantic import AliasChoices, BaseModel, ConfigDict, Field, ValidationError, computed_field
-from pydantic.json_schema import SkipJsonSchema
+from pydantic.json_schema import GenerateJsonSchema, SkipJsonSchema
 
 from rovval.core.errors import BadInput, all_at_once
 from rovval.diagnose.decision.verdict import Verdict
@@ -28,6 +28,13 @@ class Record(BaseModel):
     model_config = ConfigDict(
         frozen=True, extra="ignore", populate_by_name=True, json_schema_serialization_defaults_required=True
     )
+
+
+class _Untitled(GenerateJsonSchema):
+    """A schema without titles that only repeat a key."""
+
+    def field_title_should_be_set(self, schema: Any) -> bool:
+        return False
 
 
 class AxisGap(Record):
@@ -368,6 +375,12 @@ class Diagnosis(Record):
     def document(self) -> dict[str, Any]:
         """The diagnosis as JSON-ready dictionary (schema rovval.diagnosis/1), every key always there."""
         return self.model_dump(mode="json", by_alias=True)
+
+    @classmethod
+    def published_schema(cls) -> dict[str, Any]:
+        """The JSON schema (draft 2020-12) of the documents that this version writes; further keys are welcome in it."""
+        dialect = {"$schema": GenerateJsonSchema.schema_dialect}
+        return dialect | cls.model_json_schema(mode="serialization", schema_generator=_Untitled)
 
     @classmethod
     def read(cls, document: Mapping[str, Any]) -> Self:
