@@ -1,0 +1,55 @@
+"""Which names are right for what was planted, and which numbers."""
+from __future__ import annotations
+
+import pytest
+from blind_case import cause, planted
+
+from rovval import vehicle
+from rovval.blind.planted.catalogue import catalogue, names
+from rovval.blind.scoring import ground_truth
+from rovval.plant import Plant
+
+MERLIN = vehicle.LIBRARY / "merlin.toml"
+
+
+ALIASES = [
+    (planted("inertia_error", "surge", relative=0.2), cause("payload_change"), True),
+    (planted("inertia_error", "yaw", relative=0.2), cause("added_mass[yaw]"), True),
+    (planted("inertia_error", "yaw", relative=0.2), cause("added_mass[roll]"), False),
+    (planted("added_mass", "pitch"), cause("inertia_error[pitch]"), True),
+    (planted("added_mass", "surge"), cause("inertia_error[surge]"), False),
+    (planted("thruster_degraded", "HFP", loss=0.5), cause("thruster_fault_onset[HFP]", onset=4.0), True),
+    (planted("thruster_degraded", "HFP", loss=0.5), cause("thruster_fault_onset[HFP]", onset=0.0), True),
+    (planted("thruster_degraded", "HFP", loss=0.5), cause("thruster_fault_onset[HFP]", onset=90.0), False),
+    (planted("thruster_degraded", "HFP", loss=0.5), cause("thruster_fault_onset[HFS]", onset=4.0), False),
+    (planted("thruster_fault_onset", "HFP", loss=0.5), cause("thruster_degraded[HFP]"), False),
+    (planted("thruster_degraded", "HFP", loss=1.0), cause("thruster_reversed[HFP]", fraction=0.48), False),
+    (planted("thruster_interaction", "HFP", loss=0.6), cause("thruster_interaction[HFP]"), True),
+    (planted("thruster_interaction", "HFP", loss=0.6), cause("thruster_interaction[VFP]"), False),
+    (planted("thruster_interaction", "HFP", loss=0.6), cause("thruster_degraded[HFP]"), False),
+    (planted("time_offset", "velocity", delay_s=0.4), cause("time_offset[velocity]"), True),
+    (planted("time_offset", "velocity", delay_s=0.4), cause("time_offset"), False),
+    (planted("time_offset", "velocity", delay_s=0.4), cause("velocity_filter_lag"), False),
+    (planted("time_offset", "thruster_feedback", delay_s=0.4), cause("time_offset"), True),
+    (planted("time_offset", "thruster_feedback", delay_s=0.4), cause("time_offset[velocity]"), False),
+    (planted("time_offset", "attitude", delay_s=0.4), cause("time_offset[attitude]"), True),
+    (planted("time_offset", "attitude", delay_s=0.4), cause("time_offset"), False),
+    (planted("time_offset", "attitude", delay_s=0.4), cause("velocity_filter_lag"), False),
+    (planted("time_offset", "depth", delay_s=0.4), cause("time_offset[depth]"), True),
+    (planted("velocity_filter_lag", None), cause("time_offset"), False),
+    (planted("current_constant", None), cause("current_varying"), False),
+]
+
+
+@pytest.mark.parametrize(("effect", "said", "same"), ALIASES, ids=[f"{e['name']}-{c['effect']}-{s}" for e, c, s in ALIASES])
+def test_aliases_are_few(effect, said, same):
+    assert ground_truth.accepts(effect, said) is same
+
+
+def test_every_planted_name_is_a_hypothesis_of_the_library():
+
+    known = set(Plant(vehicle.load("merlin")).hypotheses)
+    for name in names(foreign=False):
+        targets = catalogue()[name].targets
+        for target in ("HFP",) if targets == ("thruster",) else targets or (None,):
+            assert ground_truth.name(planted(name, target)) in known
