@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -74,11 +74,11 @@ def command(
         progress=output.progress(quiet),
     )  # fmt: skip
     typed = Typed(dict(zip((run.id for run in runs), sources, strict=True)), vehicle or "", _unusual(window, profile, archive))
-    document = diagnosis_json.document(found, typed)
+    found = diagnosis_json.worded(found, typed)
     for line in found.runs_left_out:
         output.say(f"left out: {line}", quiet)
-    _print(document, json_, quiet)
-    _write(found, document, _folder(out, json_, runs[0].id), write_vehicle, quiet)
+    _print(found, json_, quiet)
+    _write(found, _folder(out, json_, runs[0].id), write_vehicle, quiet)
 
 
 def _folder(out: Path | None, json_: Path | None, run: str) -> Path | None:
@@ -92,27 +92,27 @@ def _unusual(window: float, profile: str | None, archive: Path) -> tuple[str, ..
     return tuple(word for flag, value in given.items() if value for word in (flag, value))
 
 
-def _print(document: dict[str, Any], json_: Path | None, quiet: bool) -> None:
+def _print(found: Diagnosis, json_: Path | None, quiet: bool) -> None:
     """The diagnosis on stdout as text, or as JSON where that was asked for; JSON into its file."""
     from rovval.report.diagnosis.terminal import text as diagnosis_text
     from rovval.storage.atomic import write_json
 
     if str(json_) == "-":
-        output.result_json(document)
+        output.result_json(found.document())
         return
-    output.result(diagnosis_text(document))
+    output.result(diagnosis_text(found))
     if json_ is not None:
-        write_json(json_, document)
+        write_json(json_, found.document())
         output.say(f"written: {json_}", quiet)
 
 
-def _write(found: Diagnosis, document: dict[str, Any], folder: Path | None, mended: Path | None, quiet: bool) -> None:
+def _write(found: Diagnosis, folder: Path | None, mended: Path | None, quiet: bool) -> None:
     """The report and the mended vehicle, each where it was asked for."""
     from rovval import report
     from rovval.storage.atomic import write_text
 
     if folder is not None:
-        report.write_diagnosis(document, folder)
+        report.write_diagnosis(found, folder)
         output.say(f"written: {folder}", quiet)
     if mended is not None and not found.vehicle_fixed:
         output.say(f"{mended} not written: no cause was found that could be added to the vehicle")

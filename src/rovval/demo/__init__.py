@@ -68,16 +68,17 @@ def run(folder: Path, with_diagnosis: bool, progress: Callable[[str, float], Non
     parts, corrected = [text(comparison)], None
     if with_diagnosis:
         found = diagnose([dive], vehicle, progress=lambda step, share: progress(step, 0.2 + 0.6 * share))
-        document["diagnosis"] = diagnosis_json.document(found)
+        found = diagnosis_json.worded(found)
+        document["diagnosis"] = found.document()
         parts += [
-            diagnosis_text(document["diagnosis"]),
+            diagnosis_text(found),
             f"The effect that was left in this SYNTHETIC log, to judge the diagnosis by: {EFFECT}",
         ]
         corrected = simulate(dive, vehicle, effects=found.settings)
     progress("report", 0.8)
     files = {"log": log, **report.write(comparison, folder, vehicle, corrected)}
     if with_diagnosis:
-        files |= report.write_diagnosis(document["diagnosis"], folder)
+        files |= report.write_diagnosis(found, folder)
     progress("demo", 1.0)
     document["files"] = {kind: str(path) for kind, path in files.items()}
     return Shown("\n\n".join(parts), document, files)

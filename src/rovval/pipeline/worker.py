@@ -149,15 +149,15 @@ class _Bench:
         from rovval import report
         from rovval.diagnose import diagnose
         from rovval.report.diagnosis import json as diagnosis_json
-        from rovval.report.diagnosis.words import verdict
+        from rovval.report.diagnosis.sentence import verdict
 
         task, place = self.task, self.task.folder / "diagnosis"
         found = diagnose(
             [self.run], self.vehicle, model=task.model, window_s=task.window_s, calibration_slop=task.calibration_slop
         )
         document = diagnosis_json.document(found)
-        files = report.write_diagnosis(document, place)
+        files = report.write_diagnosis(found, place)
         if found.vehicle_fixed:
             write_text(place / "vehicle_fixed.toml", found.vehicle_fixed)
         facts = {key: document[key] for key in ("vehicle", "verdict", "causes")}
-        return {**facts, "said": verdict(document), "gap": document["gap"]["axes"]}, list(files.values())
+        return {**facts, "said": verdict(found), "gap": document["gap"]["axes"]}, list(files.values())

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rovval.core.data import Comparison, SimResult
+    from rovval.diagnose.result.diagnosis import Diagnosis
     from rovval.vehicle.model import Vehicle
 
 
@@ -32,7 +33,7 @@ def write(comparison: Comparison, folder: Path, vehicle: Vehicle, corrected: Sim
 
 
 def write_diagnosis(
-    document: Mapping[str, Any],
+    diagnosis: Diagnosis,
     folder: Path,
     comparison: Comparison | None = None,
     vehicle: Vehicle | None = None,
@@ -46,15 +47,16 @@ def write_diagnosis(
     from rovval.report.comparison import json
     from rovval.report.diagnosis import html as diagnosis_html
     from rovval.report.diagnosis import markdown as diagnosis_markdown
+    from rovval.report.diagnosis.json import worded
     from rovval.report.recording import write as recording
 
-    if comparison is not None and "synthetic" not in document and "synthetic" in comparison.run.properties:
-        document = {**document, "synthetic": comparison.run.properties["synthetic"]}
-    recorded = comparison is not None and vehicle is not None
+    if comparison is not None and not diagnosis.synthetic:
+        diagnosis = diagnosis.model_copy(update={"synthetic": comparison.run.properties.get("synthetic", "")})
+    diagnosis = worded(diagnosis)
     files: dict[str, str | Writer] = {
-        "diagnosis.json": json.text(document),
-        "diagnosis.md": diagnosis_markdown.text(document),
-        "diagnosis.html": diagnosis_html.text(document, recorded),
+        "diagnosis.json": json.text(diagnosis.document()),
+        "diagnosis.md": diagnosis_markdown.text(diagnosis),
+        "diagnosis.html": diagnosis_html.text(diagnosis, comparison is not None and vehicle is not None),
     }
     if comparison is not None and vehicle is not None:
         files["run.rrd"] = lambda path: recording.write(comparison, path, vehicle, corrected)

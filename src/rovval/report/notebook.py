@@ -44,13 +44,13 @@ def page_of(result: object) -> Page:
     from rovval.fit import FitResult
     from rovval.report.comparison import html as comparison_html
     from rovval.report.diagnosis import html as diagnosis_html
-    from rovval.report.diagnosis.json import document
+    from rovval.report.diagnosis.json import worded
 
     match result:
         case Comparison():
             return Page(comparison_html.text(result, recording=False))
         case Diagnosis():
-            return Page(diagnosis_html.text(document(result)))
+            return Page(diagnosis_html.text(worded(result)))
         case FitResult():
             return Page(_fit(result.document, result.text))
         case SimResult():

@@ -5,7 +5,7 @@ Terminal, Markdown and HTML all format here, so that a value reads the same wher
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from math import floor, isfinite, log10
 
 from rovval.comparison import metrics
@@ -72,12 +72,11 @@ def per_cents(low: float | None, high: float | None) -> str:
     return MISSING if low is None or high is None else f"[{_whole(100.0 * low)}, {_whole(100.0 * high)}] %"
 
 
-def share(entry: Mapping[str, float | None] | None) -> str:
-    """A share with its interval, from ``total``, ``low`` and ``high``: 66 % [58, 72]; "-" where there is none."""
-    if not entry or entry.get("total") is None:
-        return MISSING
-    span = per_cents(entry.get("low"), entry.get("high")).removesuffix(" %")
-    return per_cent(entry["total"]) + (f" {span}" if span != MISSING else "")
+def share(total: float | None, low: float | None = None, high: float | None = None) -> str:
+    """A share with its interval: 66 % [58, 72]; without brackets where no interval is known."""
+    if total is None or low is None or high is None:
+        return per_cent(total)
+    return f"{per_cent(total)} {per_cents(low, high).removesuffix(' %')}"
 
 
 def probability(value: float) -> str:

@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from rovval.diagnose import Diagnosis
+from rovval.diagnose.result.diagnosis import Diagnosis
 
 USUAL_MODEL = "fossen"
 
