@@ -2,6 +2,8 @@
 
 from html.parser import HTMLParser
 
+from rovval.diagnose.result.diagnosis import Diagnosis
+
 VOID = {"meta", "br", "link", "input", "img"}
 
 
@@ -26,6 +28,16 @@ class Balance(HTMLParser):
 
 
 def check_html(text: str) -> None:
+    """Every tag is closed, and nothing is fetched."""
     parser = Balance()
     parser.feed(text)
     assert parser.open == [] and parser.fetched == []
+
+
+def formats(d: Diagnosis) -> tuple[str, str, str]:
+    """The diagnosis as page, Markdown and text of the terminal, the latter on one line."""
+    from rovval.report.diagnosis import html, markdown, terminal
+
+    page = html.text(d)
+    check_html(page)
+    return page, markdown.text(d), " ".join(terminal.text(d).split())

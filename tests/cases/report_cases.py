@@ -12,6 +12,7 @@ from rovval.core.channels import POSE, VELOCITIES
 from rovval.core.data import Array, ClockReport, Reason, Resampled, Run, SimResult, Trajectory
 from rovval.core.errors import Finding
 from rovval.core.frames import euler_rates, rotation_from_euler, wrap
+from rovval.diagnose.result.diagnosis import Diagnosis
 
 DT = 0.1
 
@@ -115,6 +116,17 @@ def make_sim(run: Run, gap: tuple[float, ...] = (0.06, -0.02, 0.01, 0.002, 0.001
     )
 
 
+def diagnosis(**changes: Any) -> Diagnosis:
+    """A full diagnosis with the keys ``changes`` of its document as they are given here."""
+    return Diagnosis.read(make_diagnosis() | changes)
+
+
+def detection(noise: float, tolerance: float, departure: float = 0.0) -> dict[str, float]:
+    """What a verdict rests on, where noise and coefficients within their tolerances account for these shares of the gap."""
+    zero = ("p_value", "last_p", "last_evidence", "null_evidence", "causes", "generic_instead", "generic_beside")
+    return dict.fromkeys(zero, 0.0) | {"noise": noise, "tolerance_share": tolerance, "largest_departure": departure}
+
+
 def make_diagnosis() -> dict[str, Any]:
     """A full diagnosis document: one cause in a group of two, every picture."""
     t = np.arange(0, 60, DT)
@@ -157,7 +169,7 @@ def make_diagnosis() -> dict[str, Any]:
                     "loss": {"value": 0.31, "low": 0.26, "high": 0.36, "unit": "1"},
                     "lag": {"value": 0.12, "low": -0.02, "high": 0.24, "unit": "s"},
                 },
-                "shrinkage": {**total, "axes": {"surge": 0.71, "sway": 0.05, "yaw": -0.08}},
+                "shrinkage": {**total, "axes": {"surge": 0.71, "sway": 0.05, "yaw": -0.08}, "axes_interval": {"surge": {"low": 0.6, "high": 0.8}}},
             }
         ],
         "shrinkage": {**total, "held_out": True},

@@ -82,7 +82,7 @@ def test_documents_keep_the_contract(case):
     document = written(case())
     check_document(document)
     check_schema(document)
-    assert document["sentence"] == sentence(document)
+    assert document["sentence"] == sentence(case())
 
 
 def test_a_planted_effect_is_named_with_its_size():

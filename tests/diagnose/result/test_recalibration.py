@@ -12,7 +12,6 @@ import pytest
 from diagnose_case import LIBRARY, foreign, merlin, own
 from diagnosis_schema import check_document
 from real_data import real
-from report_cases import make_diagnosis
 
 from rovval import vehicle
 from rovval.blind.cases.csv_log import write_csv
@@ -20,13 +19,10 @@ from rovval.blind.cases.flight import fly
 from rovval.comparison import compare
 from rovval.core.data import Run
 from rovval.diagnose import diagnose
+from rovval.diagnose.result.diagnosis import Diagnosis
 from rovval.fit import fit
-from rovval.report.diagnosis import html as diagnosis_html
-from rovval.report.diagnosis import markdown as diagnosis_markdown
-from rovval.report.diagnosis import terminal as diagnosis_terminal
-from rovval.report.diagnosis.calibration_words import calibration
+from rovval.report.diagnosis import recalibration
 from rovval.report.diagnosis.json import document as written
-from rovval.report.diagnosis.sentence import sentence
 from rovval.simulation import simulate
 from rovval.storage.archive import open_run
 from rovval.vehicle.model import Vehicle
@@ -74,7 +70,8 @@ def test_a_file_off_in_many_coefficients_is_told_and_is_no_cause(folder: Path):
     off = [abs(found["parameters"][name]["tolerances"]) for name in found["beyond"]]
     assert off == sorted(off, reverse=True) and min(off) > 1.0
     assert found["held_out"] == "windows" and found["shrinkage"]["low"] > 0.8
-    assert calibration(d) in d["sentence"] and d["answer"].endswith(calibration(d))
+    said = recalibration.sentence(Diagnosis.read(d))
+    assert said in d["sentence"] and d["answer"].endswith(said)
     assert "No one effect: " in d["sentence"] and "on windows left out of the fit" in d["sentence"]
 
 
@@ -91,9 +88,9 @@ def test_the_command_writes_a_vehicle_that_is_nearer_on_another_dive(folder: Pat
 
 @pytest.mark.parametrize("planted", [(), ("inflow_loss:loss=0.3",), ("quadratic_drag[surge]:scale=0.6",)])
 def test_a_healthy_log_and_one_cause_are_not_a_matter_of_calibration(planted: tuple[str, ...]):
-    d = diagnose([own(planted, 5, 100.0)], merlin()).document()
-    assert d["calibration"] is None and calibration(d) == ""
-    assert bool(d["causes"]) == bool(planted)
+    found = diagnose([own(planted, 5, 100.0)], merlin())
+    assert found.calibration is None and recalibration.sentence(found) == ""
+    assert bool(found.causes) == bool(planted)
 
 
 def test_nor_are_they_of_an_independent_plant(tmp_path_factory: pytest.TempPathFactory):
@@ -110,37 +107,3 @@ def test_the_tank_runs_are_a_matter_of_calibration_on_the_run_left_out():
     found = document["calibration"]
     assert found["held_out"] == "runs" and found["shrinkage"]["low"] > 0.4
     assert {"quadratic_drag[surge].scale", *(f"thruster_degraded[T{i}].loss" for i in (1, 2, 3, 4))} <= set(found["beyond"])
-
-
-ROW = {"low": -0.95, "high": -0.7, "unit": "1", "was": 0.0, "tolerance": 0.05, "beyond": True, "at_bound": False, "of_cause": False}
-
-
-def off(causes: bool) -> dict[str, Any]:
-    """A document with many coefficients off, beside a cause or none."""
-    d = make_diagnosis()
-    rows = {f"quadratic_drag[{axis}].scale": ROW | {"value": -0.845, "tolerances": -16.9} for axis in ("surge", "sway", "heave", "yaw")}
-    shrunk = {"total": 0.68, "low": 0.61, "high": 0.72, "axes": {"surge": 0.7, "sway": -0.41}, "axes_interval": {"surge": {"low": 0.6, "high": 0.8}}}
-    d["calibration"] = {
-        "parameters": rows, "beyond": list(rows), "shrinkage": shrunk, "held_out": "runs", "harm": [{"axis": "sway", "change": 0.41}],
-        "command": "rovval fit dive <a> --parameters 'x'",
-    }  # fmt: skip
-    return d if causes else d | {"verdict": "unknown", "causes": []}
-
-
-@pytest.mark.parametrize("causes", [True, False])
-def test_every_format_tells_it_and_says_that_it_is_no_cause(causes: bool):
-    d = off(causes)
-    said = sentence(d)
-    assert ("No one effect is shown to explain the rest: 4 coefficients" in said) is causes
-    assert ("inflow_loss among them" in said) is causes
-    assert "quadratic_drag[surge].scale = -0.845 [-0.95, -0.7] (17 times its tolerance)" in said
-    assert "shrinks by 68 % [61, 72] on runs left out of the fit (worse: sway by 41 %)" in said
-    for text in (diagnosis_html.text(d), diagnosis_markdown.text(d), diagnosis_terminal.text(d)):
-        assert "any coefficients off together" in text and "17 times its tolerance" in text and "68 % (61 % to 72 %)" in text
-    assert "rovval fit dive &lt;a&gt;" in diagnosis_html.text(d)
-
-
-def test_without_it_nothing_is_said():
-    for d in (make_diagnosis(), make_diagnosis() | {"calibration": None}):
-        for text in (sentence(d), diagnosis_html.text(d), diagnosis_markdown.text(d), diagnosis_terminal.text(d)):
-            assert "off together" not in text

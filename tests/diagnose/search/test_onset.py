@@ -51,16 +51,18 @@ def logs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Run, Run]:
 
 
 def test_what_begins_in_mid_log_is_told_from_there_on(logs: tuple[Run, Run]) -> None:
-    document = written(diagnose([logs[0]], merlin()))
+    found = diagnose([logs[0]], merlin())
+    document = written(found)
     assert document["since_s"] == pytest.approx(BEGINS, abs=15.0)
     assert [c["effect"] for c in document["causes"]] == ["inflow_loss"]
     assert document["causes"][0]["onset_s"] == document["since_s"] and document["shrinkage"]["total"] > 0.5
-    assert document["sentence"].startswith(since(document)) and since(document)
+    assert document["sentence"].startswith(since(found)) and since(found)
 
 
 def test_what_is_always_there_has_no_beginning(logs: tuple[Run, Run]) -> None:
-    document = diagnose([logs[1]], merlin()).document()
-    assert document["since_s"] is None and since(document) == "" and [c["effect"] for c in document["causes"]] == ["inflow_loss"]
+    found = diagnose([logs[1]], merlin())
+    document = found.document()
+    assert document["since_s"] is None and since(found) == "" and [c["effect"] for c in document["causes"]] == ["inflow_loss"]
     assert document["causes"][0]["onset_s"] is None
 
 

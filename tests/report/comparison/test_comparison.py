@@ -19,7 +19,7 @@ from rovval import report, vehicle
 from rovval.comparison import compare
 from rovval.core.data import Array, Comparison
 from rovval.core.errors import Finding, UsageProblem
-from rovval.report.common import curves, numbers
+from rovval.report.common import curves
 from rovval.report.common.files import write_all
 from rovval.report.comparison import html, markdown, terminal, words
 from rovval.report.comparison import json as report_json
@@ -153,24 +153,11 @@ def test_stops_are_reported() -> None:
         assert "pitch beyond 80 deg" in text
 
 
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [(0.0712, "0.0712"), (12.345, "12.3"), (1240.4, "1240"), (0.0, "0"), (9.996, "10.0"), (2e-7, "2.00e-07"), (None, "-"), (-0.5, "-0.500")],
-)
-def test_numbers(value: float | None, text: str) -> None:
-    assert numbers.number(value) == text
-
-
 def test_nothing_heavy_is_imported_with_the_package() -> None:
     modules = "rovval.report, rovval.report.comparison.terminal, rovval.report.comparison.html"
     code = f"import sys, {modules}; print([m for m in ('rerun','polars','scipy') if m in sys.modules])"
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert out.strip() == "[]"
-
-
-def test_the_assets_carry_their_licence() -> None:
-    assets = Path(report.__file__).parent / "assets"
-    assert "Leon Sorokin" in (assets / "uPlot.LICENSE").read_text() and "Leon Sorokin" in html.text(case(200))
 
 
 def test_a_log_without_velocities_has_no_empty_table_and_no_empty_plots() -> None:

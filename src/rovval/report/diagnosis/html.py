@@ -11,7 +11,8 @@ from rovval.report.common.numbers import MISSING, listed, number, per_cent, per_
 from rovval.report.common.page import render
 from rovval.report.common.versions import versions
 from rovval.report.diagnosis import figures, recalibration, tables, words
-from rovval.report.diagnosis.sentence import facts, headline, next_flight, undecided, unexplained
+from rovval.report.diagnosis.no_cause import undecided, unexplained
+from rovval.report.diagnosis.sentence import facts, headline, next_flight
 
 WHICH = {
     "unknown": "No effect of the library removes enough of the gap on held-out data to be named. The least bad one is not a cause.",

@@ -6,7 +6,17 @@ from collections.abc import Mapping
 
 from rovval.diagnose.result.diagnosis import AxisGap, Cause, Diagnosis, ScheduleLeg, Shrinkage
 from rovval.report.common.markdown import bullets, grid, under
-from rovval.report.common.numbers import MISSING, estimate, iae_unit, interval, number, per_cent, per_cents, probability, quantity
+from rovval.report.common.numbers import (
+    MISSING,
+    estimate,
+    iae_unit,
+    interval,
+    number,
+    per_cent,
+    per_cents,
+    probability,
+    quantity,
+)
 from rovval.report.diagnosis import recalibration, tables, words
 from rovval.report.diagnosis.sentence import facts, headline, next_flight
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from rovval.report.common.numbers import per_cent
 from rovval.diagnose.result.diagnosis import Candidate, Diagnosis
+from rovval.report.common.numbers import per_cent
 
 MOST_CANDIDATES, MOST_RANKED = 8, 16  # of a step of the search, of the screen
 WEIGHED = (
@@ -16,7 +16,7 @@ SCREEN = "Score: the share by which an effect reduces the squared gap on held-ou
 _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 
 
-def steps(d: Diagnosis) -> list[tuple[str, Sequence[Candidate]]]:
+def steps(d: Diagnosis) -> list[tuple[str, tuple[Candidate, ...]]]:
     """Every step of the search that had candidates, with what it asked: on their own, beside what was found, or that it named none."""
     found = [c.effect for c in d.causes]
     titled = []

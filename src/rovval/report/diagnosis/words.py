@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-
 from rovval.core.units import in_degrees
 from rovval.diagnose.inference.prior import SENSORS
 from rovval.diagnose.result.diagnosis import AxisGap, Cause, Coefficient, Diagnosis, GapSlice, Parameter, SensorFault, Shrinkage
