@@ -1,6 +1,7 @@
 """Templates escape every value, refuse a name that they were not given, and are part of the package."""
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 from jinja2 import UndefinedError
@@ -9,7 +10,7 @@ from page_case import check_html
 from rovval import report
 from rovval.report.common.page import render
 
-HEAD = {"title": "<t>", "eyebrow": "e", "name": "<b>n", "banner": "<i>", "said": ["a & b", "<u>"], "facts": {"<k>": "<v>", "empty": ""}, "footer": "f"}
+HEAD: dict[str, Any] = {"title": "<t>", "eyebrow": "e", "name": "<b>n", "banner": "<i>", "said": ["a & b", "<u>"], "facts": {"<k>": "<v>", "empty": ""}, "footer": "f"}
 
 
 def test_every_value_is_escaped() -> None:
