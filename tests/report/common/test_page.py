@@ -10,7 +10,9 @@ from page_case import check_html
 from rovval import report
 from rovval.report.common.page import render
 
-HEAD: dict[str, Any] = {"title": "<t>", "eyebrow": "e", "name": "<b>n", "banner": "<i>", "said": ["a & b", "<u>"], "facts": {"<k>": "<v>", "empty": ""}, "footer": "f"}
+HEAD: dict[str, Any] = {
+    "title": "<t>", "eyebrow": "e", "name": "<b>n", "banner": "<i>", "said": ["a & b", "<u>"], "facts": {"<k>": "<v>", "empty": ""}, "footer": "f",
+}  # fmt: skip
 
 
 def test_every_value_is_escaped() -> None:
