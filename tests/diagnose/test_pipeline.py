@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import json
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -127,6 +128,15 @@ def test_diagnosing_the_mended_vehicle_finds_nothing_left():
 def test_the_same_log_and_seed_give_the_same_document():
     again = diagnose([own((), 5, 100.0)], merlin())
     assert json.dumps(again.document()) == json.dumps(diagnosed().document())
+
+
+def test_logged_accelerations_change_nothing():
+    """Nothing is differentiated, so that no diagnosis misses them where they are not logged."""
+    run = own((), 5, 100.0)
+    accelerations = {name: np.random.default_rng(0).normal(size=len(run)) for name in ("udot", "vdot", "wdot")}
+    reasons = {**run.reasons, **dict.fromkeys(accelerations, np.zeros(len(run), np.uint8))}
+    document = diagnose([replace(run, values={**run.values, **accelerations}, reasons=reasons)], merlin()).document()
+    assert json.dumps(document) == json.dumps(diagnosed().document())
 
 
 @pytest.mark.slow

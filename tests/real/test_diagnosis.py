@@ -1,4 +1,4 @@
-"""Real logs whose answer is known: ballast bags, and logs damaged on purpose. Physics knocked out of a fitted model: `test_real_knocked_out`."""
+"""Real logs whose answer is known: ballast bags, and logs damaged on purpose. Physics knocked out of a fitted model: `test_knocked_out`."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def named(document: dict[str, Any]) -> set[str]:
     return {name for cause in document["causes"] for name in (cause["effect"], *cause["group"])}
 
 
-def test_ballast_is_found_in_heave_alone():
+def test_ballast_is_fitted_as_its_publishers_fitted_it():
     """The vehicle released without ballast: the bags' README has a net buoyancy of -4.8 to -5.6 N from its own fit."""
     result = fit([open_run(real("bluerov2_ballast/ff_nb1.bag"))], vehicle.load("bluerov2_heavy"), ["buoyancy_error"])
     tuned = result.document["parameters"]["buoyancy_error.force"]

@@ -1,4 +1,5 @@
 """Sparse regression, the simple method beside which the engine is scored."""
+
 from __future__ import annotations
 
 import numpy as np

@@ -1,4 +1,5 @@
 """Flights and their logs: the same seed gives the same log, every mission stays sane, and nothing of the simulator is in them."""
+
 from __future__ import annotations
 
 import csv

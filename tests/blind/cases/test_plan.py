@@ -1,4 +1,5 @@
 """The questions of a set: every stratum is asked about, and what is left out is gone under every name."""
+
 import pytest
 
 from rovval import vehicle

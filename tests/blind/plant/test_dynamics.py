@@ -1,4 +1,5 @@
 """The independent plant against closed forms and conservation laws."""
+
 from __future__ import annotations
 
 import math

@@ -1,4 +1,5 @@
 """What can be planted: every effect of the contract and foreign ones act, at severity zero not at all, and stay what nature has."""
+
 from __future__ import annotations
 
 import json

@@ -1,4 +1,5 @@
 """Which names are right for what was planted, and which numbers."""
+
 from __future__ import annotations
 
 import pytest

@@ -1,4 +1,5 @@
 """What counts as right: marks of one answer beside its label."""
+
 from __future__ import annotations
 
 from typing import Any

@@ -1,4 +1,5 @@
 """The score of a set: chance scores chance, intervals hold, and every stratum and fault is told."""
+
 from __future__ import annotations
 
 import json

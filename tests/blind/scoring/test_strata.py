@@ -1,4 +1,5 @@
 """Strata: which logs are counted together."""
+
 from __future__ import annotations
 
 import pytest

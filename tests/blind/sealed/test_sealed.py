@@ -1,4 +1,5 @@
 """A sealed set: its folder tells nothing, it is answered and scored once, and what was changed is not scored."""
+
 import json
 import shutil
 from pathlib import Path

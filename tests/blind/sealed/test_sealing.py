@@ -1,4 +1,5 @@
 """The seal: what goes in comes out with the key, and shows nothing without it."""
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
