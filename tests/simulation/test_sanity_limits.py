@@ -16,7 +16,7 @@ from rovval.core.data import Run
 from rovval.core.errors import SimulationStopped
 from rovval.pipeline.steps import checked_against
 from rovval.simulation import simulate
-from rovval.simulation.sanity_limits import RATE, SPEED, first_beyond, overspeed
+from rovval.simulation.sanity_limits import first_beyond, overspeed
 
 MERLIN = vehicle.load("merlin")
 
@@ -44,14 +44,16 @@ def test_a_file_without_a_limit_raises_none():
     assert free.hash == MERLIN.hash, "it moves nothing"
 
 
-def test_the_limits_are_those_of_a_log_and_a_turn_a_second():
-    assert channel("u").high == SPEED and pytest.approx(np.radians(360)) == RATE
+def test_the_first_motion_beyond_the_limits_is_told_with_its_axis_and_limit():
+    """No faster than a log may hold, and no more than a turn a second."""
+    fastest = channel("u").high
     nu = np.zeros((5, 6))
+    nu[1, :3], nu[1, 3:] = fastest, -2 * np.pi
     assert first_beyond(nu) is None
-    nu[3, 4], nu[4, 0] = -11.9, 16.0
+    nu[3, 4], nu[4, 0] = -11.9, fastest + 1
     assert first_beyond(nu) == (3, "pitch at -682 deg/s, limit 360 deg/s")
-    nu[2, 1] = SPEED + 1
-    assert first_beyond(nu) == (2, "sway at 16 m/s, limit 15 m/s")
+    nu[2, 1] = -fastest - 1
+    assert first_beyond(nu) == (2, f"sway at {-fastest - 1:g} m/s, limit {fastest:g} m/s")
 
 
 @pytest.mark.parametrize("rpm", [3000.0, 300000.0])

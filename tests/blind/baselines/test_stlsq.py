@@ -22,11 +22,21 @@ def test_sparse_regression_finds_the_terms():
     assert not stlsq.stlsq(x, 0.01 * y).any()
 
 
-def test_sparse_regression_is_pysindy_s():
-    pysindy = pytest.importorskip("pysindy", reason="pysindy is not installed (`uv pip install pysindy`)")
-    x, y = sparse_case()
-    theirs = pysindy.STLSQ(threshold=stlsq.THRESHOLD, alpha=stlsq.RIDGE, unbias=False).fit(x, y).coef_
-    np.testing.assert_allclose(stlsq.stlsq(x, y), np.ravel(theirs), atol=1e-9)
+@pytest.mark.parametrize(
+    ("threshold", "ridge", "theirs"),
+    [
+        (0.1, 0.05, {2: 1.499706563758, 4: 0.130038171903, 6: -0.699970675321}),
+        (0.3, 30.0, {2: 1.349825642808, 6: -0.563780217738}),
+    ],
+)
+def test_sparse_regression_is_that_of_pysindy(threshold, ridge, theirs):
+    """Coefficients of `pysindy.STLSQ(threshold, alpha=ridge, unbias=False)`, PySINDy 2.1.0, of terms that resemble one another."""
+    k = np.arange(400)
+    x = np.stack([np.sin((0.3 + 0.11 * j) * k + j) + 0.6 * np.sin(0.05 * k) for j in range(8)], axis=1)
+    y = 1.5 * x[:, 2] - 0.7 * x[:, 6] + 0.13 * x[:, 4] + 0.05 * np.cos(1.7 * k**1.1)
+    want = np.zeros(8)
+    want[list(theirs)] = list(theirs.values())
+    np.testing.assert_allclose(stlsq.stlsq(x, y, threshold, ridge), want, atol=1e-8)
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,7 @@
 """A SINDy-style floor: sparse regression of the residual acceleration on a generic library of terms, its largest term put into words.
 
 Sequentially thresholded least squares (Brunton, Proctor, Kutz 2016), the optimizer of pysindy, written out here so that the floor is the
-same with and without pysindy installed; a test holds it against pysindy's own where that is installed.
+same with and without pysindy installed; a test holds it against what pysindy gives.
 """
 
 from __future__ import annotations
