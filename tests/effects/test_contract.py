@@ -14,6 +14,8 @@ from rovval.core.channels import AXES, CHANNELS
 from rovval.core.frames import wrap
 from rovval.effects.lanes import jet_on_hull
 from rovval.effects.library import thruster_deadband
+from rovval.effects.literature import REFERENCES
+from rovval.effects.literature import key as reference
 from rovval.effects.log import Log
 from rovval.plant import Inputs, Plant
 from rovval.plant.codegen import spec as compose
@@ -35,16 +37,28 @@ def test_an_effect_says_what_an_engineer_needs(name):
     effect = effects.load(name)
     assert effect.name == name and effect.title and effect.signature and effect.separates
     assert effect.place in ("vehicle", "input", "water", "wrench", "sensor")
-    assert "(" in effect.equation, "an equation names its source"
+    assert effect.equation and effect.symbols and all(effect.symbols.values())
+    assert effect.literature and {reference(cited) for cited in effect.literature} <= set(REFERENCES)
     assert effect.confused_with and set(effect.confused_with) <= set(effects.names()) - {name}
-    for p in effect.parameters:
-        assert p.source and p.unit and p.low <= p.null <= p.high and p.typical > 0
     assert (effect.per == "axis") == bool(effect.axes) and set(effect.axes) <= set(AXES)
     assert set(effect.needs) <= set(CHANNELS)
-    assert set(effect.grid) <= {p.name for p in effect.parameters}
+
+
+@pytest.mark.parametrize("name", effects.names())
+def test_the_parameters_of_an_effect_are_what_the_search_needs(name):
+    effect = effects.load(name)
+    assert set(effect.refines) <= {p.name for p in effect.parameters}
+    assert any(not p.places for p in effect.parameters), "nothing says how strong it is"
     for p in effect.parameters:
-        if p.name != "onset":
-            assert all(p.low <= v <= p.high for v in effect.grid.get(p.name, ()))
+        assert p.source and p.unit and p.low <= p.null <= p.high and p.typical > 0
+        assert all(p.low <= v <= p.high for v in p.starts)
+        assert not p.channel or p.channel in CHANNELS
+        assert p.compared_with in ("", *effects.names())
+        assert p.tolerance is None or p.tolerance.source
+    assert {effect.onset_of, effect.continues} <= {"", *effects.names()}
+    assert not effect.onset_of or effect.begins
+    assert not effect.continues or all(p.starts for p in effect.parameters), "it begins as large as it is searched from"
+    assert bool(effect.stage) == hasattr(effects.module(name), "observe"), "a sensor's effect says where on the way into the log it acts"
 
 
 @pytest.mark.parametrize("name", effects.names())
@@ -164,9 +178,11 @@ def test_the_true_heading_is_found_at_the_corners_of_every_deviation_card():
     rng, compass, n = np.random.default_rng(0), effects.module("compass_deviation"), 4000
     p = {part.name: rng.choice([part.low, part.high], n) for part in compass.EFFECT.parameters}
     psi = rng.uniform(-np.pi, np.pi, (n, 1))
-    shown = psi + compass._deviation(psi, p)
-    _, eta = compass.unobserve(np.zeros((n, 6)), np.concatenate([np.zeros((n, 5)), shown], axis=1), p)
-    np.testing.assert_allclose(eta[:, 5:], psi, atol=1e-12)
+    true = np.concatenate([np.zeros((n, 5)), psi], axis=1)
+    seen = compass.observe(Log(np.zeros((n, 1, 6)), true[:, None], 0.1, np.zeros((n, 6)), true), p).eta[:, 0]
+    assert np.abs(wrap(seen[:, 5] - true[:, 5])).max() > 1.0
+    _, eta = compass.unobserve(np.zeros((n, 6)), seen, p)
+    np.testing.assert_allclose(wrap(eta[:, 5:] - psi), 0.0, atol=1e-12)
 
 
 def test_what_a_dead_band_takes_is_made_up_beyond_it_and_no_more():

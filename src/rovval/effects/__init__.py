@@ -3,7 +3,8 @@
 A file declares ``EFFECT`` (`effects.effect`) and, where it needs them, any of these functions (``p[name]`` is (B,), (B, 6) per axis or (B, k) per
 thruster; every one changes nothing at the null value, to the last bit):
 
-- ``lower(lanes, p) -> Lanes``           vehicle and input numbers of each lane (`effects.lanes`)
+- ``lower(lanes, p) -> Lanes``           vehicle and input numbers of each lane (`effects.lanes`); with ``FULL_KERNEL = True`` where these are
+  numbers that the nominal kernel does without
 - ``rows(lanes, p) -> {row: array}``     the effect's own numbers for its functions of the state, in ``ROWS`` order: (B,), or (B, k)
   for functions of a thruster unless the file says ``SHARED = True``
 - ``water(...)``                         north-east-down velocity of the water, its change along the path and at a fixed point (9)
@@ -25,9 +26,9 @@ from pathlib import Path
 from types import ModuleType
 
 from rovval.core.errors import UsageProblem
-from rovval.effects.effect import Effect, Parameter
+from rovval.effects.effect import FAMILIES, Effect, Parameter, Tolerance
 
-__all__ = ["Effect", "Parameter", "load", "module", "names"]
+__all__ = ["FAMILIES", "Effect", "Parameter", "Tolerance", "load", "module", "names", "sensor_tolerance"]
 FOLDER = Path(__file__).parent / "library"
 
 
@@ -59,3 +60,10 @@ def load(name: str) -> Effect:
     if not isinstance(effect, Effect) or effect.name != name:
         raise UsageProblem(f"effects/library/{name}.py does not declare EFFECT with the name {name!r}")
     return effect
+
+
+def sensor_tolerance(name: str) -> float | None:
+    """By how much a healthy sensor may be off, one standard deviation in the unit of the effect's parameters; None for a name that is no fault of a
+    sensor, or none of the library."""
+    stated = [p.tolerance for p in load(name).parameters if p.tolerance] if name in names() else []
+    return next((t.sd for t in stated if not t.calibrated and isinstance(t.sd, float)), None)

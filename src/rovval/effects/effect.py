@@ -1,23 +1,78 @@
-"""What an effect is: everything that an engineer, the plant and the diagnosis have to know of one, stated in its own file."""
+"""What an effect is: everything that an engineer, the plant and the diagnosis have to know of one, stated in its own file.
+
+Nothing outside `rovval.effects` decides by the name of an effect: it asks for the properties that are defined here.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Literal
+from typing import Literal, get_args
+
+from rovval.vehicle.model import Vehicle
 
 Place = Literal["vehicle", "input", "water", "wrench", "sensor"]
-Kind = Literal["", "weight", "drag", "speed"]
+Growth = Literal["", "weight", "drag", "speed"]
+Role = Literal["size", "amplitude", "onset", "period", "phase", "direction", "datum", "extent", "anchor", "lever"]
+Error = Literal["additive", "factor", "delay"]
+Stage = Literal["", "position", "mounting", "scale", "bias", "filter", "delay"]
+Family = Literal["", "drag", "thrust", "allocation", "mass", "trim"]
+STAGES: tuple[str, ...] = get_args(Stage)
+FAMILIES: tuple[str, ...] = get_args(Family)[1:]
+SIZES = ("size", "amplitude", "lever")  # roles of parameters that have a null value of their own; the others only place an effect
+
+
+@dataclass(frozen=True, slots=True)
+class Tolerance:
+    """By how much a parameter of a healthy vehicle or sensor may be off: the standard deviation of its prior, before anything is blamed.
+
+    ``sd`` is in the parameter's unit, a number or a function of (parameter as this vehicle has it, vehicle, axis or thruster). Of a ``calibrated``
+    one it is per unit of the declared calibration tolerance (`--calibration-slop`, relative, 0.05 by default); of others, which are a matter of
+    mounting and sensors, it is as it stands. ``source`` says where it comes from. ``loop_gain``: under an autopilot that steadies the axis, or any
+    axis for a parameter that belongs to none, it widens by (1 + loop gain) to this power, since the motion shows that much less of the coefficient.
+    """
+
+    sd: float | Callable[[Parameter, Vehicle, str], float]
+    source: str
+    calibrated: bool = True
+    loop_gain: float = 0.0
+
+    def of(self, parameter: Parameter, vehicle: Vehicle, target: str, calibration: float) -> float:
+        """Standard deviation in the parameter's unit, for a vehicle, an axis or thruster, and a relative calibration tolerance."""
+        sd = self.sd(parameter, vehicle, target) if callable(self.sd) else self.sd
+        return calibration * sd if self.calibrated else sd
+
+    def widened(self, sd: float, target: str, gain: Mapping[str, float]) -> float:
+        """``sd`` under an autopilot with the loop ``gain`` of each axis that it steadies."""
+        own = gain.get(target, 0.0) if target else max(gain.values())
+        return sd * (1.0 + own) ** self.loop_gain if self.loop_gain else sd
 
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """One number of an effect. ``typical`` is the 1-sigma prior size of its departure from ``null``; ``low`` and ``high`` are
-    refused beyond, never clipped. ``sized`` says that low, high and typical are for a BlueROV2 and grow with the vehicle's
-    weight, surge drag or thruster speed (`plant.slots`). ``target`` sets a parameter of an effect that is neither per axis nor per
-    thruster apart, as a hypothesis of its own: ``time_offset[velocity]``, ``p["delay[velocity]"]``. ``needs``: the channel without which it
-    does nothing and is refused."""
+    """One number of an effect.
+
+    - ``name``, ``unit`` (SI, rad), ``source``: where its range comes from.
+    - ``low``, ``high``: refused beyond, never clipped. ``null``: the value at which it changes nothing, to the last bit. ``typical``: standard
+      deviation of its departure from ``null`` where the effect is at work.
+    - ``sized``: low, high and typical are those of a BlueROV2 and grow with the vehicle's weight, surge drag or thruster speed (`plant.slots`).
+    - ``target`` sets a parameter of an effect that is neither per axis nor per thruster apart, as a hypothesis of its own:
+      ``time_offset[velocity]``, ``p["delay[velocity]"]``.
+    - ``needs``: the channel without which it does nothing and is refused.
+    - ``role``: what it says of the effect. ``size``: how strong it is; ``amplitude``: the size of a swing, which below zero is the same swing half a
+      period later; ``onset``: when it begins (s since the run's start); ``period`` (s), ``phase`` (rad) and ``direction`` (rad from north) of a
+      swing; ``datum``: the depth (m) at which what changes with depth is zero; ``extent``: how far it reaches or how long it takes; ``anchor``: a
+      coordinate of a point that it is tied to; ``lever``: a coordinate, body axes, of the point where its force acts.
+    - ``starts``: values from which the search begins, for what a linearisation at the null value cannot see.
+    - ``channel``: of an anchor, the channel that holds the vehicle's own coordinate; the search begins where the vehicle was.
+    - ``tolerance``: how far off it is in a healthy vehicle or log; None: not at all.
+    - ``vanishes_at``: the bound at which nothing is left of what it scales (a coefficient, a thruster's thrust): an answer that rests there is one,
+      at any other bound the search would have gone on.
+    - ``compared_with``: the effect whose tolerance a departure is held against where there is none of its own.
+    - ``genuine_from``: the least value at which the effect is what its name says.
+    - ``error``: how a sensor's parameter enters what it measures: added, as a factor, or as a delay, which its opposite undoes.
+    """
 
     name: str
     unit: str
@@ -26,26 +81,53 @@ class Parameter:
     null: float
     typical: float
     source: str
-    sized: Kind = ""
+    sized: Growth = ""
     target: str = ""
     needs: str = ""
+    role: Role = "size"
+    starts: tuple[float, ...] = ()
+    channel: str = ""
+    tolerance: Tolerance | None = None
+    vanishes_at: Literal["", "low", "high"] = ""
+    compared_with: str = ""
+    genuine_from: float | None = None
+    error: Error = "additive"
 
     def __post_init__(self) -> None:
         if not self.low <= self.null <= self.high or not self.low < self.high or not self.typical > 0:
             raise ValueError(f"parameter {self.name}: needs low <= null <= high, low < high and typical > 0")
+        if (self.role == "anchor") != bool(self.channel):
+            raise ValueError(f"parameter {self.name}: an anchor, and nothing else, names the channel of its coordinate")
+
+    @property
+    def places(self) -> bool:
+        """Whether it only places an effect in time or space: it has no null value of its own, and is no departure."""
+        return self.role not in SIZES
 
 
 @dataclass(frozen=True, slots=True)
 class Effect:
-    """One effect as an engineer reads it: where it enters, its equation with source, its parameters, what one sees, what it is
-    confused with and what separates it. ``needs``: channels without which it cannot be tested; ``within``: what a channel has to
-    come below, in its unit, for it to act at all. ``grid``: start points for parameters that linearisation at the null value
-    cannot see (``onset`` as a fraction of the run); ``where``: parameters that begin where a channel stood at the onset;
-    ``levers``: coordinates of the point where a force acts, which it cannot see either, the one ahead first. ``apart``: each
-    parameter may well be at work without the others, as an offset along one of three axes, and is tried by itself, too.
-    ``refines``: parameters that only refine the others, which are tried without them as well; of an effect that is also
-    ``apart`` they say of one axis what the others say of all, and are tried one by one only. ``competes`` False: a tolerance
-    that healthy vehicles have, which a diagnosis takes into account and never names."""
+    """One effect, as an engineer reads it and as the diagnosis needs it.
+
+    To read: ``title``; ``place`` where it enters; ``equation`` in plain mathematics and ``symbols``, each with what it is, its unit and frame;
+    ``parameters``; ``signature``: what one sees in a log; ``confused_with``: effects that look alike and what ``separates`` them; ``literature``.
+
+    What the engine asks:
+
+    - ``per``: its parameters belong to each axis of ``axes``, to each thruster, or to the vehicle (empty).
+    - ``needs``: channels without which it cannot be tested; ``within``: what a channel has to come below, in its unit, for it to act at all.
+    - ``separable``: each parameter may well be at work without the others, as an offset along one of three axes, and is tried by itself, too.
+    - ``refines``: parameters that only refine the others, which are tried without them as well; of an effect that is also ``separable`` they say of
+      one axis what the others say of all, and are tried one by one only.
+    - ``far``: sizes, in typical ones, of initial points well away from the null value, of every parameter in turn.
+    - ``competes`` False: a tolerance that healthy vehicles have, which a diagnosis takes into account and never names.
+    - ``wanders``: its value drifts by nature, so that it does not hold still speaks in no way against it.
+    - ``onset_of``: the effect that it is from an onset on.
+    - ``continues``: the effect that imitates it as far as that goes, and which it exceeds (a dead thruster is one that is half reversed).
+    - ``family``: the name by which `rovval fit` tunes it along with others of its kind.
+    - ``absent_in``: platforms whose equations lack what it scales: there is nothing to take away.
+    - ``stage``: where on the way from the true motion into the log a sensor's effect acts.
+    """
 
     name: str
     title: str
@@ -55,32 +137,45 @@ class Effect:
     signature: str
     confused_with: tuple[str, ...]
     separates: str
+    symbols: Mapping[str, str] = field(default_factory=dict)
+    literature: tuple[str, ...] = ()
     per: Literal["", "axis", "thruster"] = ""
     axes: tuple[str, ...] = ()
     needs: tuple[str, ...] = ()
     within: Mapping[str, float] = field(default_factory=dict)
-    grid: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
-    where: Mapping[str, str] = field(default_factory=dict)
-    levers: tuple[str, ...] = ()
-    apart: bool = False
+    separable: bool = False
     refines: tuple[str, ...] = ()
+    far: tuple[float, ...] = ()
     competes: bool = True
+    wanders: bool = False
+    onset_of: str = ""
+    continues: str = ""
+    family: Family = ""
+    absent_in: tuple[str, ...] = ()
+    stage: Stage = ""
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "symbols", MappingProxyType(dict(self.symbols)))
         object.__setattr__(self, "within", MappingProxyType(dict(self.within)))
-        object.__setattr__(self, "grid", MappingProxyType(dict(self.grid)))
-        object.__setattr__(self, "where", MappingProxyType(dict(self.where)))
+
+    def has(self, role: Role) -> bool:
+        """Whether one of its parameters has that role."""
+        return any(p.role == role for p in self.parameters)
+
+    def names_of(self, role: Role) -> tuple[str, ...]:
+        """Names of the parameters with that role, in order."""
+        return tuple(p.name for p in self.parameters if p.role == role)
 
     @property
     def begins(self) -> bool:
         """Whether it has an onset of its own."""
-        return any(p.name == "onset" for p in self.parameters)
+        return self.has("onset")
 
     @property
     def searched(self) -> bool:
         """Whether it begins or turns at a time or place that a diagnosis searches for: a fit from the null value cannot find it."""
-        return bool(self.grid) or self.begins
+        return self.begins or any(p.starts for p in self.parameters)
 
     def of_one_axis(self, parameter: str) -> bool:
         """Whether a parameter says of one axis what another says of all."""
-        return self.apart and parameter in self.refines
+        return self.separable and parameter in self.refines

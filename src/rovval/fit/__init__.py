@@ -54,7 +54,7 @@ def fit(
     """Tune ``parameters`` of ``vehicle`` to one or several of its logs.
 
     ``parameters`` are parameters (``thruster_degraded[HFP].loss``), hypotheses (``quadratic_drag[surge]``), effects
-    (``quadratic_drag``), patterns with * or families (`tunable.FAMILIES`). ``calibration_slop`` is what the rest may be off by.
+    (``quadratic_drag``), patterns with * or families (`tunable.families`). ``calibration_slop`` is what the rest may be off by.
 
     Raises:
         UsageProblem: names every parameter that does not exist, or that needs `diagnose`, at once.

@@ -10,10 +10,11 @@ from rovval import effects
 from rovval.core.errors import UsageProblem, all_at_once
 from rovval.plant import Plant
 
-FAMILIES = {
-    "drag": "linear_drag quadratic_drag", "thrust": "thruster_degraded", "allocation": "thruster_misaligned",
-    "mass": "added_mass inertia_error", "trim": "buoyancy_error cg_offset",
-}  # fmt: skip
+
+def families() -> dict[str, tuple[str, ...]]:
+    """Effects by the name under which they are tuned together."""
+    every = [effects.load(name) for name in effects.names()]
+    return {family: tuple(e.name for e in every if e.family == family) for family in effects.FAMILIES}
 
 
 def chosen(plant: Plant, parameters: Sequence[str]) -> tuple[int, ...]:
@@ -22,9 +23,9 @@ def chosen(plant: Plant, parameters: Sequence[str]) -> tuple[int, ...]:
     Raises:
         UsageProblem: names every unknown one with near matches, and those that are not a matter of tuning.
     """
-    found, problems = set[int](), []
+    found, problems, of_family = set[int](), [], families()
     for asked in parameters:
-        slots = [s for one in FAMILIES.get(asked, asked).split() for s in _meant(plant, one)]
+        slots = [s for one in of_family.get(asked, (asked,)) for s in _meant(plant, one)]
         searched = sorted({plant.slots[s].hypothesis for s in slots if effects.load(plant.slots[s].effect).searched})
         if not slots:
             problems.append(f"{asked!r}: no such parameter{_near(plant, asked)}")
@@ -34,7 +35,7 @@ def chosen(plant: Plant, parameters: Sequence[str]) -> tuple[int, ...]:
     if not parameters:
         problems.append("none was named")
     if problems:
-        hint = f"`rovval list effect` has the names; families: {', '.join(FAMILIES)}; * stands for any axis or thruster"
+        hint = f"`rovval list effect` has the names; families: {', '.join(of_family)}; * stands for any axis or thruster"
         raise UsageProblem(all_at_once(problems, "parameters to tune"), hint)
     return tuple(sorted(found))
 
@@ -45,6 +46,6 @@ def _meant(plant: Plant, one: str) -> list[int]:
 
 
 def _near(plant: Plant, asked: str) -> str:
-    names = dict.fromkeys([*FAMILIES, *(n for s in plant.slots for n in (s.effect, s.hypothesis, s.key))])
+    names = dict.fromkeys([*effects.FAMILIES, *(n for s in plant.slots for n in (s.effect, s.hypothesis, s.key))])
     close = difflib.get_close_matches(asked, list(names), n=3, cutoff=0.6)
     return f", perhaps {' or '.join(close)}" if close else ""

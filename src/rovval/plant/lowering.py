@@ -17,8 +17,6 @@ from rovval.plant.codegen import spec as compose
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-# Effects that only lower numbers, but numbers that the nominal kernel does not hold.
-BEYOND_NOMINAL = {"thrust_lag", "time_offset", "clock_drift", "thruster_interaction", "hull_interaction", "payload_change"}
 ROUNDING = 1e-9  # of a step, in the time of a sample
 
 
@@ -68,7 +66,7 @@ def lower(nominal: Lanes, found: tuple[slots.Slot, ...], index: Mapping[str, int
 
 def _full(found: tuple[slots.Slot, ...], null: Array, beta: Array) -> Flags:
     """Lanes (B,) that need the kernel with every effect in it: some effect acts on more than the numbers of the nominal one."""
-    beyond = {name for name in effects.names() if any(hasattr(effects.module(name), kind) for kind in compose.HOOKS)} | BEYOND_NOMINAL
+    beyond = {name for name in effects.names() if any(hasattr(effects.module(name), kind) for kind in (*compose.HOOKS, "FULL_KERNEL"))}
     columns = [c for c, slot in enumerate(found) if slot.effect in beyond]
     return np.asarray((beta[:, columns] != null[columns]).any(axis=1))
 

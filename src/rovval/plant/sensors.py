@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval import effects
+from rovval.effects.effect import STAGES
 from rovval.effects.log import Log
 from rovval.plant import slots
 from rovval.plant.sensor_delay import Delay
@@ -19,18 +20,12 @@ from rovval.vehicle.model import Vehicle
 Array = NDArray[np.float64]
 Part = NDArray[np.int64] | slice  # of the lanes; those that lie side by side are a view
 
-# In the order in which they act on the true motion: where the sensor sits, how it is turned, its scale, then bias, filter and delay.
-ORDER = (
-    "dvl_lever_arm", "dvl_misalignment", "dvl_scale", "gyro_bias", "attitude_bias", "compass_deviation", "velocity_filter_lag",
-    "time_offset",
-)
-
 
 @cache
 def order() -> tuple[str, ...]:
-    """Effects that act on the log, in the order in which they act; those of new files come last."""
+    """Effects that act on the log, in the order in which they act on the true motion: by the stage that each states."""
     acting = [n for n in effects.names() if hasattr(effects.module(n), "observe")]
-    return (*(n for n in ORDER if n in acting), *(n for n in acting if n not in ORDER))
+    return tuple(sorted(acting, key=lambda n: STAGES.index(effects.load(n).stage)))
 
 
 def observe(vehicle: Vehicle, index: Mapping[str, int], null: Array, beta: Array, log: Log) -> Log:

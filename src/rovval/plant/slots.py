@@ -63,8 +63,8 @@ def slots(vehicle: Vehicle, model: str) -> tuple[Slot, ...]:
                 hypothesis = _hypothesis(name, target or parameter.target)
                 f = factor[parameter.sized]
                 sized = replace(parameter, low=parameter.low * f, high=parameter.high * f, null=parameter.null * f, typical=parameter.typical * f)
-                if model == "freefloating" and name in ("added_mass", "linear_drag"):
-                    sized = replace(sized, low=0.0)  # the model has none: there is nothing to take away
+                if model in effect.absent_in:
+                    sized = replace(sized, low=0.0)  # there is nothing to take away
                 found.append(Slot(f"{hypothesis}.{parameter.name}", hypothesis, name, target or parameter.target, sized))
     return tuple(found)
 

@@ -25,9 +25,6 @@ from rovval.vehicle.model import allocation
 
 DRIFT, SURE = 0.4, 5.0  # of the value, and standard errors (opened sets: 30 true causes drift by 0.24 at most, or by 3.3 standard errors)
 SHARES = (0.1, 0.2, 0.4, 0.8)  # of the value, or of the thruster's thrust: rms by which it may vary
-WANDERS = (  # by nature: in-run instability in a gyro's, an AHRS's and a clock's data sheet; a sea comes in groups (Longuet-Higgins 1984)
-    "gyro_bias", "attitude_bias", "clock_drift", "waves",
-)  # fmt: skip
 
 
 def wavering(problem: Problem, final: Confirmed, named: Sequence[Named]) -> dict[str, float]:
@@ -67,7 +64,7 @@ def _windowed(problem: Problem, point: Point, step: Array, slot: int) -> tuple[f
 
 def _sized(problem: Problem, point: Point, named: Named) -> list[int]:
     """Slots of a cause that have a size: not those that only place it (an onset), nor one that rests at nothing, nor what wanders by nature."""
-    wanders = named.hypothesis.name.partition("[")[0] in WANDERS
+    wanders = named.hypothesis.effect.wanders
     return [s for s in named.hypothesis.slots if not wanders and point.beta[s] != problem.origin[s] and not places(problem, s)]
 
 

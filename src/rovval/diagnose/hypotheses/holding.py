@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from rovval import effects
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, beginning
 from rovval.diagnose.windows.shooting import Stretches
 from rovval.plant import Plant
@@ -34,11 +33,10 @@ def placed(parts: Sequence[Stretches], plant: Plant, slots: tuple[int, ...], t: 
     """Values of the slots that an onset at ``t`` s since the first run's start places: itself, and where the vehicle was then."""
     run, found = parts[0].run, dict[int, float]()
     for slot in slots:
-        name = plant.slots[slot].parameter.name
-        channel = effects.load(plant.slots[slot].effect).where.get(name)
-        if name == "onset":
+        parameter = plant.slots[slot].parameter
+        if parameter.role == "onset":
             found[slot] = t
-        elif channel:
-            known = np.flatnonzero(run.ok(channel))
-            found[slot] = float(np.interp(t / run.dt, known, run.get(channel)[known]))
+        elif parameter.role == "anchor":
+            known = np.flatnonzero(run.ok(parameter.channel))
+            found[slot] = float(np.interp(t / run.dt, known, run.get(parameter.channel)[known]))
     return found

@@ -32,6 +32,11 @@ class Hypothesis:
         return load(self.name.partition("[")[0])
 
     @property
+    def of(self) -> str:
+        """The axis, thruster or sensor that it belongs to, as its name has it: ``[HFP]``; empty for the vehicle."""
+        return self.name.removeprefix(self.effect.name)
+
+    @property
     def whole(self) -> bool:
         """Whether it begins with its full size, well away from nothing, and not with a slope."""
         return any(d.slot < 0 for d in self.directions)

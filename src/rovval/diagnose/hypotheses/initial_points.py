@@ -19,9 +19,6 @@ from rovval.diagnose.windows.shooting import Stretches
 from rovval.plant import Plant
 
 ONSETS = 9  # starting points for an onset, evenly inside the log
-FAR = {  # typical sizes of starting points away from the null value (chosen)
-    "cg_offset": (-5.0, -2.0, 2.0, 5.0), "time_offset": (-8.0, -4.0, 4.0, 8.0), "thrust_lag": (3.0,), "velocity_filter_lag": (3.0,),
-}  # fmt: skip
 LEVER = 0.7  # of the furthest thruster's distance: where a force may act (chosen)
 DEPTHS = (0.25, 0.5, 0.75)  # quantiles of a log's depth where what changes with depth may have its datum (chosen)
 LINES = 3  # periods that an effect begins from
@@ -34,37 +31,37 @@ def starts(
     periods: Mapping[float | None, Sequence[float]], breaks_s: Sequence[float], held: Sequence[Mapping[str, float]],
 ) -> list[Hypothesis]:  # fmt: skip
     """One hypothesis, or one for each starting point of the parameters that linearisation at the null value cannot see."""
-    if effect.where:
+    if effect.has("anchor"):
         return holding(plant, name, slots, held or [somewhere(parts, plant, slots)], next_id)
     grids = _grids(plant, effect, slots, parts, periods.get(None, ()), breaks_s)
     if not grids:
         far = _far(plant, name, effect, slots, next_id)
         return [*_near(plant, name, effect, slots), *_alone(plant, name, effect, slots), *far, *_levers(plant, name, effect, slots, next_id + len(far))]
-    named = {plant.slots[s].parameter.name: s for s in slots}
+    by_role: dict[str, int] = {plant.slots[s].parameter.role: s for s in slots}
     own = tuple(s for s in slots if s not in grids and plant.slots[s].parameter.name not in effect.refines) or (-1,)
     points, most = [dict(zip(grids, point, strict=True)) for point in product(*grids.values())], MOST_STARTS * (3 if own == (-1,) else 1)
     chosen = points if len(points) <= most else [points[i] for i in np.linspace(0, len(points) - 1, most).astype(int)]
-    chosen = [point | _met(named, point, periods) for point in chosen]
+    chosen = [point | _met(by_role, point, periods) for point in chosen]
     return [beginning(plant, f"{name}@{i}", slots, own, tuple(at.items()), next_id + i * len(own)) for i, at in enumerate(chosen)]
 
 
-def _met(named: Mapping[str, int], point: Mapping[int, float], periods: Mapping[float | None, Sequence[float]]) -> dict[int, float]:
+def _met(by_role: Mapping[str, int], point: Mapping[int, float], periods: Mapping[float | None, Sequence[float]]) -> dict[int, float]:
     """The period that waves have which run where those of a starting point do: a vehicle under way meets them at another one."""
-    of_waves = periods.get(point.get(named.get("direction", -1)), ()) if "period" in named and "direction" in named else ()
-    return {named["period"]: of_waves[0]} if of_waves else {}
+    of_waves = periods.get(point.get(by_role.get("direction", -1)), ()) if "period" in by_role and "direction" in by_role else ()
+    return {by_role["period"]: of_waves[0]} if of_waves else {}
 
 
 def _near(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...]) -> list[Hypothesis]:
     """All parameters from the null value; where some only refine the others, these without them first, and not with them where each of them is tried
     alone: an axis on which nothing moves would take up whatever is left."""
     plain = tuple(s for s in slots if plant.slots[s].parameter.name not in effect.refines)
-    sets = {name: plain} | ({f"{name}@fine": slots} if len(plain) < len(slots) and not effect.apart else {})
+    sets = {name: plain} | ({f"{name}@fine": slots} if len(plain) < len(slots) and not effect.separable else {})
     return [Hypothesis(name, label, free, free, tuple(PRIOR_WIDTH * plant.slots[s].parameter.typical for s in free)) for label, free in sets.items()]
 
 
 def _alone(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...]) -> list[Hypothesis]:
     """Each parameter without the others, where they may be apart: three that are free for one that is off are evidence lost."""
-    chosen = [(s, plant.slots[s].parameter) for s in slots if effect.apart]
+    chosen = [(s, plant.slots[s].parameter) for s in slots if effect.separable]
     return [Hypothesis(name, f"{name}@{p.name}", (s,), (s,), (PRIOR_WIDTH * p.typical,)) for s, p in chosen]
 
 
@@ -74,7 +71,7 @@ def _far(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...]
     found = list[Hypothesis]()
     for slot in slots:
         p = plant.slots[slot].parameter
-        for value in (p.null + size * p.typical for size in FAR.get(effect.name, ())):
+        for value in (p.null + size * p.typical for size in effect.far):
             if p.low <= value <= p.high:
                 found.append(beginning(plant, f"{name}@far{len(found)}", slots, (-1,), ((slot, value),), next_id + len(found)))
     return found
@@ -83,7 +80,7 @@ def _far(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...]
 def _levers(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], next_id: int) -> list[Hypothesis]:
     """Starting points with the force well away from the origin, `LEVER` of the thrusters' reach ahead or astern: a force that is not there
     yet turns nothing, wherever it would act, and once it is there the other levers show."""
-    levers = [s for s in slots if plant.slots[s].parameter.name in effect.levers]
+    levers = [s for s in slots if plant.slots[s].parameter.role == "lever"]
     if not levers:
         return []
     own, p = tuple(s for s in slots if s not in levers), plant.slots[levers[0]].parameter
@@ -115,13 +112,13 @@ def _grids(
     found = {}
     for slot in slots:
         parameter = plant.slots[slot].parameter
-        if parameter.name == "onset":
+        if parameter.role == "onset":
             found[slot] = _onsets(parts, breaks_s)
-        elif parameter.name == "depth":
+        elif parameter.role == "datum":
             found[slot] = _depths(parts)
-        elif parameter.name in effect.grid:
-            found[slot] = tuple(v for v in effect.grid[parameter.name] if parameter.low <= v <= parameter.high)
-            if parameter.name == "period" and (here := [p for p in periods if parameter.low <= p <= parameter.high]):
-                others = int(np.prod([len(values) for name, values in effect.grid.items() if name != "period"]))
+        elif parameter.starts:
+            found[slot] = tuple(v for v in parameter.starts if parameter.low <= v <= parameter.high)
+            if parameter.role == "period" and (here := [p for p in periods if parameter.low <= p <= parameter.high]):
+                others = int(np.prod([len(p.starts) for p in effect.parameters if p.starts and p.role != "period"]))
                 found[slot] = tuple(here[: min(LINES, max(MOST_STARTS // others, 1))])
     return {slot: values for slot, values in found.items() if values}

@@ -69,9 +69,9 @@ def retuned(problem: Problem, library: list[Hypothesis], point: Point) -> list[H
     met = [period for period, _ in lines(problem, point)]
     periods: dict[float | None, Sequence[float]] = {None: met}
     for slot in problem.plant.slots:
-        p, towards = slot.parameter, effects.load(slot.effect).grid.get("direction", ())
-        if p.name == "period" and towards and slot.hypothesis in kept:
+        p, towards = slot.parameter, [d for p in effects.load(slot.effect).parameters if p.role == "direction" for d in p.starts]
+        if p.role == "period" and towards and slot.hypothesis in kept:
             periods |= waves(problem, point, met, (p.low, p.high), towards)
-    held = caught(problem) if any(h.effect.where for h in library) else []
+    held = caught(problem) if any(h.effect.has("anchor") for h in library) else []
     fresh, _ = hypotheses(problem.parts, periods=periods, breaks_s=breaks(problem), held=held)
     return [h for h in fresh if h.name in kept]

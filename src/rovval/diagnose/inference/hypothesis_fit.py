@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import stats
 
-from rovval import effects
 from rovval.core.data import Array
 from rovval.diagnose.inference.cross_validation import Fold, losses
 from rovval.diagnose.inference.laplace import Point, whole_evidence
@@ -21,7 +20,6 @@ from rovval.diagnose.inference.problem import Problem, gap_at
 from rovval.diagnose.residuals.normal_equations import Scaled
 
 INTERVAL = 0.90
-PLACING = ("onset", "period", "phase", "direction", "height", "reach", "radius", "depth", "dead", "nearness")
 ONSET_SEARCH_S = (-12.0, -6.0, -3.0, -1.5, 1.5, 3.0, 6.0, 12.0)
 
 
@@ -55,7 +53,7 @@ def roughly(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[
 
 def _onset_tuned(problem: Problem, point: Point, slots: tuple[int, ...]) -> Point:
     """An onset moved along the log in shrinking steps, since windows before it carry no slope towards it; then all settled again."""
-    onsets = [s for s in slots if problem.plant.slots[s].parameter.name == "onset"]
+    onsets = [s for s in slots if problem.plant.slots[s].parameter.role == "onset"]
     best = point
     for slot in onsets:
         for shift in ONSET_SEARCH_S:
@@ -88,8 +86,8 @@ def _held_losses(problem: Problem, fitted: Confirmed) -> tuple[Array, Array]:
 
 def held_steps(problem: Problem, fitted: Confirmed) -> list[tuple[Fold, Array]]:
     """Each fold with the step (k,) of the fitted slots that its training windows give, as its held-out losses are scored with."""
-    slots = [problem.plant.slots[s].parameter.name for s in fitted.slots]
-    moves = np.array([name != "onset" for name in slots], dtype=bool)  # no fold extrapolates an onset
+    slots = [problem.plant.slots[s].parameter.role for s in fitted.slots]
+    moves = np.array([role != "onset" for role in slots], dtype=bool)  # no fold extrapolates an onset
     return [(fold, np.where(moves, fitted.point.step(fold.train)[: len(slots)], 0.0)) for fold in problem.folds]
 
 
@@ -121,8 +119,7 @@ def significance(problem: Problem, fitted: Confirmed, slots: tuple[int, ...]) ->
 
 def places(problem: Problem, slot: int) -> bool:
     """Whether a parameter only places an effect, in time or in space."""
-    one = problem.plant.slots[slot]
-    return one.parameter.name in (*PLACING, *effects.load(one.effect).where)
+    return problem.plant.slots[slot].parameter.places
 
 
 def interval(value: float, error: float, blocks: int) -> tuple[float, float]:

@@ -17,7 +17,6 @@ from rovval.effects.log import Log
 from rovval.plant.sensors import observe
 
 STEP = 0.25  # finite-difference step, in typical sizes
-UNDONE = ("delay",)  # faults that their opposite undoes, whatever their size
 
 
 @dataclass(frozen=True, slots=True)

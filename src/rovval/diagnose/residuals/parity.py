@@ -15,14 +15,13 @@ from scipy import signal
 
 from rovval.core.data import Array, Flags
 from rovval.diagnose.residuals.dead_reckoning import RELATIONS, complete, drift, inside, measured
-from rovval.diagnose.residuals.delays import UNDONE, Traces, traced
+from rovval.diagnose.residuals.delays import Traces, traced
 from rovval.diagnose.residuals.normal_equations import Products
 from rovval.diagnose.windows.shooting import Stretches
 from rovval.effects import load
 
 LEAST_SIGMA = (0.005, 0.005, 0.002, 0.001, 0.001, 0.001)  # m, rad: no sensor is believed below these (chosen)
 SMOOTH = 11  # samples of the quadratic by which motion is smoothed for traces: a delay's is a slope, which noise would drown and correlate
-FACTORS = ("dvl_scale",)  # faults that multiply what they measure
 DEAD_RECKONED = 0.5  # a position that follows the integrated velocity closer than half its noise allows was integrated from it
 
 
@@ -146,8 +145,8 @@ def _weighted(of: Traces, nominal: Array, traces: Array, columns: tuple[int, ...
     scaled = (traces[..., keep, :] / sigma[:, None]).reshape(m, rows.shape[1], k)
     inflation = _inflation(rows, scaled, free)
     gram = _gram(rows, scaled[..., seen], tuple(columns[i] for i in seen))
-    factor = np.array([slots[i].effect in FACTORS for i in seen], dtype=bool)
-    late = np.array([slots[i].parameter.name in UNDONE for i in seen], dtype=bool)
+    factor = np.array([slots[i].parameter.error == "factor" for i in seen], dtype=bool)
+    late = np.array([slots[i].parameter.error == "delay" for i in seen], dtype=bool)
     return Parity(rows, scaled, gram, factor, late, columns, tuple(RELATIONS[i] for i in keep), tuple(sigma.tolist()), inflation, tuple(notes), of)
 
 

@@ -58,7 +58,7 @@ def _cause(problem: Problem, decision: Decision, one: Named, before: list[Array]
         title=effects.load(h.name.partition("[")[0]).title,
         group=members(decision, h),
         probability=decision.probability[h.name],
-        onset_s=next((float(joint.beta[s]) for s in h.slots if problem.plant.slots[s].parameter.name == "onset"), since),
+        onset_s=next((float(joint.beta[s]) for s in h.slots if problem.plant.slots[s].parameter.role == "onset"), since),
         parameters=_parameters(problem, joint, h),
         p_value=one.p_value,
         evidence=one.evidence,

@@ -7,16 +7,13 @@ from rovval.diagnose.inference.hypothesis_fit import places, significance
 from rovval.diagnose.inference.problem import Problem
 from rovval.diagnose.search.confusion import PER_PARAMETER, Rival, alike, denied, form_share
 
-HALF_REVERSED = 0.55  # 0.5 is a dead thruster; the margin is chosen
 LEAST_SIGMA = 2.2  # standard errors, slop included, by which an effect departs from nothing (tuning set: healthy logs reach 2.0)
 TOLERANCES = 3.0  # times the tolerance of calibration slop within which a coefficient is not worth a name
 LOSSES = 1.5  # the same for a loss of thrust that comes and goes
-GONE, DEAD = -0.9, 1.0  # of a coefficient, as little of it as the search looks for; of thrust, all of it lost
 SERIOUS = 0.5  # share of the best evidence from which a rival's gain counts
 NEARLY = 0.9  # of the best's gain
 LEAST_OF_BEST = 0.5  # of the gain of the best serious rival
-REVERSED, DEGRADED = "thruster_reversed", "thruster_degraded"  # one imitates the other up to a dead thruster, and no further
-BEGUN, CLEARLY = "thruster_fault_onset", 20.0  # the same loss with an onset, and its evidence over that without (opened logs: false < 0, true 69 and more)
+CLEARLY = 20.0  # evidence of a loss with an onset over that of the same without (opened logs: false < 0, true 69 and more)
 
 
 def admissible(problem: Problem, weighed: list[Rival]) -> list[Rival]:
@@ -50,7 +47,8 @@ def simplest(problem: Problem, rivals: list[Rival]) -> Rival:
 
 def _began(best: Rival, other: Rival) -> bool:
     """Whether the best is the other but for an onset: no form of an equation lies between them, and evidence decides."""
-    return other.hypothesis.name == best.hypothesis.name.replace(BEGUN, DEGRADED) != best.hypothesis.name and best.evidence > other.evidence + CLEARLY
+    always = best.hypothesis.effect.onset_of
+    return bool(always) and other.hypothesis.name == f"{always}{best.hypothesis.of}" and best.evidence > other.evidence + CLEARLY
 
 
 def _parameters(problem: Problem, rival: Rival) -> int:
@@ -62,7 +60,7 @@ def _parameters(problem: Problem, rival: Rival) -> int:
 def _in_form(problem: Problem, weighed: list[Rival]) -> list[Rival]:
     """Finalists that are what their name says, where the best has evidence at all: a thruster counts as reversed only where it pushes the
     other way (up to half-reversed it is a degraded one), and what begins before the log does has no onset in it."""
-    rivals = [r for r in weighed if not _half_reversed(r) and not _from_the_start(problem, r)]
+    rivals = [r for r in weighed if _genuine(problem, r) and not _from_the_start(problem, r)]
     return rivals if rivals and rivals[0].evidence > 0 else []
 
 
@@ -73,8 +71,9 @@ def _beyond_tolerance(problem: Problem, rival: Rival) -> bool:
     """
     beta, origin, slots = rival.fitted.beta, problem.origin, problem.plant.slots
     tolerance = {s: TOLERANCES * problem.slop.sd[s] for s in rival.hypothesis.slots if s in problem.slop.sd}
-    thrust = max((sd for s, sd in problem.slop.sd.items() if slots[s].effect == "thruster_degraded"), default=0.0)
-    tolerance |= {s: LOSSES * thrust for s in rival.hypothesis.slots if slots[s].parameter.name == "loss" and s not in tolerance}
+    likened = {s: slots[s].parameter.compared_with for s in rival.hypothesis.slots if s not in tolerance and slots[s].parameter.compared_with}
+    widest = {name: max((sd for s, sd in problem.slop.sd.items() if slots[s].effect == name), default=0.0) for name in likened.values()}
+    tolerance |= {s: LOSSES * widest[name] for s, name in likened.items()}
     return not tolerance or any(abs(beta[s] - origin[s]) >= limit for s, limit in tolerance.items())
 
 
@@ -82,18 +81,17 @@ def _beyond_the_library(problem: Problem, rival: Rival) -> bool:
     """Whether a size rests at a bound of its search: the fit would go on, to where no vehicle is. A coefficient may well vanish, thrust too, and what a
     log does not show rests where nothing is at work."""
     slots = {s: problem.plant.slots[s].parameter for s in rival.hypothesis.slots if not places(problem, s)}
-    levers = effects.load(problem.plant.slots[rival.hypothesis.slots[0]].effect).levers
-    sized = [(slots[s], float(rival.fitted.beta[s])) for s in rival.fitted.at_bound if s in slots and slots[s].name not in levers]
-    ended = (x != p.null and not (p.name == "scale" and x <= p.low <= GONE) and not (p.name == "loss" and x >= p.high >= DEAD) for p, x in sized)
-    return any(ended)
+    sized = [(slots[s], float(rival.fitted.beta[s])) for s in rival.fitted.at_bound if s in slots and slots[s].role != "lever"]
+    return any(x != p.null and not (p.vanishes_at == "low" and x <= p.low) and not (p.vanishes_at == "high" and x >= p.high) for p, x in sized)
 
 
 def _from_the_start(problem: Problem, rival: Rival) -> bool:
     first = min(float(part.start[0] + part.steps) * part.run.dt for part in problem.parts)
     slots = problem.plant.slots
-    return any(slots[s].parameter.name == "onset" and rival.fitted.beta[s] < first for s in rival.hypothesis.slots)
+    return any(slots[s].parameter.role == "onset" and rival.fitted.beta[s] < first for s in rival.hypothesis.slots)
 
 
-def _half_reversed(rival: Rival) -> bool:
-    h = rival.hypothesis
-    return h.name.startswith(REVERSED) and any(rival.fitted.beta[s] < HALF_REVERSED for s in h.slots)
+def _genuine(problem: Problem, rival: Rival) -> bool:
+    """Whether it is large enough to be what its name says."""
+    least = {s: problem.plant.slots[s].parameter.genuine_from for s in rival.hypothesis.slots}
+    return not any(value is not None and rival.fitted.beta[s] < value for s, value in least.items())

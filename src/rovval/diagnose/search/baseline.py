@@ -57,7 +57,7 @@ def rival(problem: Problem, h: Hypothesis, fitted: Confirmed, ground: Ground) ->
 
 def _from_there_on(problem: Problem, h: Hypothesis, fitted: Confirmed, ground: Ground) -> float:
     """Share that what begins in mid-log closes of the windows in which it acts: those before say nothing of it. 0 for another hypothesis."""
-    onset = [float(fitted.beta[s]) for s in h.slots if problem.plant.slots[s].parameter.name == "onset"]
+    onset = [float(fitted.beta[s]) for s in h.slots if problem.plant.slots[s].parameter.role == "onset"]
     if not onset:
         return 0.0
     ends = np.concatenate([(part.start + part.steps) * part.run.dt for part in problem.parts])

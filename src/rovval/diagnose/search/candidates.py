@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from rovval import effects
 from rovval.core.data import Array
 from rovval.diagnose.criteria import PRIOR_WIDTH
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
@@ -18,7 +17,7 @@ from rovval.diagnose.inference.prior import Prior
 from rovval.diagnose.inference.problem import Problem
 from rovval.diagnose.residuals.coherence import coherence
 from rovval.diagnose.residuals.normal_equations import Products
-from rovval.diagnose.search.admissibility import DEGRADED, REVERSED, SERIOUS
+from rovval.diagnose.search.admissibility import SERIOUS
 from rovval.diagnose.search.baseline import Ground, rival
 from rovval.diagnose.search.confusion import Rival
 
@@ -55,8 +54,8 @@ def finalists(
     def refit(h: Hypothesis) -> None:
         slots = tuple(dict.fromkeys((*chosen, *h.slots)))
         start = begun(problem, data, h, moves(h), base.beta, slots)
-        if h.name.startswith(REVERSED):
-            start = _turned(problem, h, start)
+        if h.effect.continues:
+            start = _beyond(problem, h, start)
         if h.evident:
             start = early(problem, still(h, slots), slots)
         quick = roughly(problem, start, slots, base.scaled).light()
@@ -72,8 +71,8 @@ def finalists(
     if fitted:
         best = max(fitted.values(), key=lambda item: item[1].evidence)[0]
         twins = [h for h in ordered if h.name not in fitted and coherence(data, best.columns, h.columns) > TWIN]
-        turned = [h for h in ordered if h.name.replace(REVERSED, DEGRADED) in fitted and h.name.startswith(REVERSED)]
-        for h in (*twins[:MOST_TWINS], *turned):
+        further = [h for h in ordered if h.effect.continues and f"{h.effect.continues}{h.of}" in fitted]
+        for h in (*twins[:MOST_TWINS], *further):
             if h.name not in fitted:
                 refit(h)
     return _weighed(problem, list(_retried(problem, promised, fitted, still if chosen else None, stands.evidence).values()), stands)
@@ -81,7 +80,7 @@ def finalists(
 
 def _valleys(h: Hypothesis) -> bool:
     """Whether fits of it end in one of many valleys: it begins well away from nothing and is not settled through the beginnings of windows, or it swings."""
-    return (h.whole and not h.evident) or "period" in effects.load(h.name.partition("[")[0]).grid
+    return (h.whole and not h.evident) or h.effect.has("period")
 
 
 def _retried(
@@ -115,14 +114,15 @@ def _weighed(problem: Problem, fitted: list[tuple[Hypothesis, Confirmed]], stand
     return sorted((rival(problem, h, c, stands) for h, c in fitted), key=lambda r: -r.evidence)
 
 
-def _turned(problem: Problem, h: Hypothesis, start: Array) -> Array:
-    """Start of a reversed thruster: fully turned, its gain as the vehicle has it. Where slop has worn the gain down to nothing, nothing
-    shows which way the shaft turns."""
-    start, target = start.copy(), h.name.removeprefix(REVERSED)
+def _beyond(problem: Problem, h: Hypothesis, start: Array) -> Array:
+    """Start of an effect that continues another one (a thruster that is reversed and not only dead): as large as it is searched from, the other as the
+    vehicle has it. Where tolerance has worn a thruster's gain down to nothing, nothing shows which way its shaft turns."""
+    start = start.copy()
     for i, slot in enumerate(problem.plant.slots):
-        if slot.hypothesis == DEGRADED + target:
+        if slot.hypothesis == f"{h.effect.continues}{h.of}":
             start[i] = problem.origin[i]
-    start[list(h.slots)] = 1.0
+    for s in h.slots:
+        start[s] = problem.plant.slots[s].parameter.starts[0]
     return start
 
 
@@ -137,7 +137,7 @@ def begun(problem: Problem, data: Products, h: Hypothesis, moves: Array, beta: A
         slot = moved.get(column, column)
         if move and 0 <= slot < len(start) and slot not in still and (column in moved or slot not in begins):
             parameter = problem.plant.slots[slot].parameter
-            if parameter.name == "amplitude" and start[slot] + move < parameter.low:
+            if parameter.role == "amplitude" and start[slot] + move < parameter.low:
                 start, move = _half_a_turn_later(problem, h, start), -move
             start[slot] = float(np.clip(start[slot] + move, parameter.low, parameter.high))
     return start
@@ -147,7 +147,7 @@ def _half_a_turn_later(problem: Problem, h: Hypothesis, start: Array) -> Array:
     """The start with the phase of a swing turned over: the same as a negative amplitude, which has no meaning."""
     start = start.copy()
     for slot in h.slots:
-        if problem.plant.slots[slot].parameter.name == "phase":
+        if problem.plant.slots[slot].parameter.role == "phase":
             start[slot] = start[slot] - np.pi if start[slot] > 0 else start[slot] + np.pi
     return start
 

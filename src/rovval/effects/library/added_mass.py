@@ -8,23 +8,43 @@ from dataclasses import replace
 import numpy as np
 
 from rovval.core.channels import AXES
-from rovval.effects.effect import Effect, Parameter
+from rovval.effects.effect import Effect, Parameter, Tolerance
 from rovval.effects.lanes import Array, Lanes, reference_added_mass
+
+CALIBRATION = Tolerance(1.0, "the declared calibration tolerance itself", loop_gain=1.0)
 
 EFFECT = Effect(
     name="added_mass",
     title="Added mass differs",
     place="vehicle",
-    equation="M_A[i,i] <- (1 + scale) M_A[i,i], cross terms with the root of both scales; enters M_A dnu_r/dt and C_A(nu_r) nu_r "
-    "(thesis 3.12; Fossen 2021, 6.3). Where the file has none, scale refers to half of the rigid body's value.",
+    equation="M_A[i,i] <- (1 + scale) M_A[i,i], M_A[i,j] <- sqrt((1 + scale_i) (1 + scale_j)) M_A[i,j]; it enters M_A dnu_r/dt and C_A(nu_r) nu_r. "
+    "Where the file has none, scale refers to half of the rigid body's value.",
+    symbols={
+        "M_A": "added mass matrix, 6 x 6, body axes; kg, kg m, kg m2",
+        "C_A": "its Coriolis and centripetal matrix",
+        "nu_r": "velocity relative to the water, body axes; m/s, rad/s",
+        "i, j": "surge, sway, heave, roll, pitch, yaw",
+    },
     parameters=(
-        Parameter("scale", "1", -0.9, 3.0, 0.0, 0.3, "0.3 to 2.5 times strip-theory and DNV estimates (diagnosis.md H4; Eidsvik 2015)"),
+        Parameter(
+            "scale", "1", -0.9, 3.0, 0.0, 0.3, "0.3 to 2.5 times estimates by strip theory and DNV-RP-H103 (Eidsvik 2015)",
+            vanishes_at="low", tolerance=CALIBRATION,
+        ),
     ),
     per="axis",
     axes=AXES,
     signature="transients only: the answer to a step of thrust comes too fast or too slow; yaw moment in oblique motion (Munk)",
     confused_with=("thrust_lag", "time_offset", "velocity_filter_lag", "payload_change", "inertia_error"),
     separates="steps at two or more frequencies: amplitude and phase together; an accelerometer beside the velocity sensor",
+    literature=(
+        "thesis, equation 3.12",
+        "Fossen 2021, section 6.3: added mass and its Coriolis matrix",
+        "Newman 1977, chapter 4: added mass and the Munk moment",
+        "DNV 2011, appendix A: added mass of simple bodies",
+        "Eidsvik 2015: estimates for ROVs beside identified values",
+    ),
+    family="mass",
+    absent_in=("freefloating",),
 )
 
 

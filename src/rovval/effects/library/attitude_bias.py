@@ -7,26 +7,31 @@ from dataclasses import replace
 
 import numpy as np
 
-from rovval.effects.effect import Effect, Parameter
+from rovval.effects.effect import Effect, Parameter, Tolerance
 from rovval.effects.lanes import Array
 from rovval.effects.log import Log
 
-SOURCE = "1 to 5 degrees (diagnosis.md S9)"
+SOURCE = "1 to 5 degrees (chosen)"
+STATIC = Tolerance(0.01, "rad: AHRS of the class give 0.2 to 0.5 degrees static (Xsens MTi)", calibrated=False)
 
 EFFECT = Effect(
     name="attitude_bias",
     title="Attitude bias",
     place="sensor",
-    equation="(phi, theta)_logged = (phi, theta) + bias (diagnosis.md S9).",
+    equation="(phi, theta)_logged = (phi, theta) + bias.",
+    symbols={"phi, theta": "roll and pitch angle; rad", "bias": "what the sensor adds; rad"},
     parameters=(
-        Parameter("phi", "rad", -0.3, 0.3, 0.0, 0.03, SOURCE),
-        Parameter("theta", "rad", -0.3, 0.3, 0.0, 0.03, SOURCE),
+        Parameter("phi", "rad", -0.3, 0.3, 0.0, 0.03, SOURCE, tolerance=STATIC),
+        Parameter("theta", "rad", -0.3, 0.3, 0.0, 0.03, SOURCE, tolerance=STATIC),
     ),
     signature="a standing angle without the moment that would hold it; depth changes while running level",
     confused_with=("cg_offset", "dvl_misalignment", "buoyancy_error"),
     separates="depth rate against u sin(theta): no dynamics needed",
+    literature=("Titterton and Weston 2004: alignment errors", "Kinsey and Whitcomb 2007: alignment of attitude and velocity sensors in the field"),
     needs=("phi", "theta"),
-    apart=True,
+    separable=True,
+    wanders=True,  # in-run instability in an AHRS's data sheet
+    stage="bias",
 )
 
 

@@ -10,14 +10,21 @@ from rovval.effects.arithmetic import Number
 from rovval.effects.effect import Effect, Parameter
 from rovval.effects.lanes import Array, Lanes, reference_drag
 
-SOURCE = "0 to 30 % of the diagonal (diagnosis.md H3); either sign, since it depends on which end drags more"
+SOURCE = "0 to 30 % of the diagonal (chosen); either sign, since it depends on which end drags more"
 
 EFFECT = Effect(
     name="cross_drag",
     title="Cross drag is missing",
     place="wrench",
-    equation="Y = -yaw_to_sway q l |r| r, N = -sway_to_yaw q l |v_r| v_r; Z = -pitch_to_heave q l |q| q, M = -heave_to_pitch q l |w_r| w_r; "
-    "q the quadratic drag of sway or heave, l the hull's length, to the power that makes a force (Fossen 2021, 6.5: Y_|r|r, N_|v|v).",
+    equation="Y = -yaw_to_sway q l^2 |r| r, N = -sway_to_yaw q l |v_r| v_r; Z = -pitch_to_heave q l^2 |q| q, M = -heave_to_pitch q l |w_r| w_r "
+    "(Y_|r|r, N_|v|v, Z_|q|q, M_|w|w).",
+    symbols={
+        "Y, Z": "forces to starboard and down, body axes; N",
+        "M, N": "moments of pitch and yaw, body axes; N m",
+        "v_r, w_r": "velocities relative to the water, to starboard and down, body axes; m/s",
+        "q, r": "rates of pitch and yaw; rad/s (beside l: the quadratic drag of sway or heave; N s2/m2)",
+        "l": "length of the hull; m",
+    },
     parameters=(
         Parameter("yaw_to_sway", "1", -0.5, 0.5, 0.0, 0.05, SOURCE),
         Parameter("sway_to_yaw", "1", -0.5, 0.5, 0.0, 0.05, SOURCE),
@@ -27,6 +34,10 @@ EFFECT = Effect(
     signature="a force on an axis that was not driven, growing with the square of the one that was",
     confused_with=("cg_offset", "dvl_misalignment", "thruster_misaligned", "dvl_lever_arm"),
     separates="sway and yaw together, with both signs of each",
+    literature=(
+        "Fossen 2021, section 6.5: cross-flow drag, Y_|r|r and N_|v|v",
+        "Martin and Whitcomb 2014: coupled six-degree-of-freedom models identified for an underwater vehicle",
+    ),
 )
 ROWS = ("yr", "nv", "zq", "mw")
 

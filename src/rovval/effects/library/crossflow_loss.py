@@ -15,12 +15,24 @@ EFFECT = Effect(
     name="crossflow_loss",
     title="Cross-flow loss of thrust",
     place="input",
-    equation="T <- T (1 - loss min(v_across, 2 m/s) / (1 m/s)): loss is the share lost at 1 m/s across the thruster's axis, and no "
-    "more than twice that, nor than all (linear at low speed as Kim and Chung 2006 measured; diagnosis.md A7).",
-    parameters=(Parameter("loss", "1", -0.1, 1.0, 0.0, 0.1, "0 to 30 % (diagnosis.md A7); searched as far as all of it"),),
+    equation="T <- T (1 - loss min(v_across, 2 m/s) / (1 m/s)), and no less than none: loss is the share lost at 1 m/s across the thruster's axis, and no "
+    "more than twice that.",
+    symbols={
+        "T": "thrust of a thruster, along its axis; N",
+        "v_across": "speed of the vehicle through the water at the thruster, across its axis; m/s",
+    },
+    parameters=(
+        Parameter(
+            "loss", "1", -0.1, 1.0, 0.0, 0.1, "0 to 30 % (chosen); searched as far as all of it", vanishes_at="high", compared_with="thruster_degraded",
+        ),
+    ),
     signature="weak thrust while moving sideways",
     confused_with=("inflow_loss", "cross_drag", "quadratic_drag"),
     separates="surge steps with and without sway speed",
+    literature=(
+        "Kim and Chung 2006: thrust by speed and angle of the flow, linear at low speed",
+        "Saunders and Nahon 2002: tunnel thrusters under way",
+    ),
 )
 ROWS = ("loss",)
 SHARED = True

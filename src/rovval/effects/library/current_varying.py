@@ -10,27 +10,39 @@ from rovval.effects.arithmetic import Number, cos, sin
 from rovval.effects.effect import Effect, Parameter
 from rovval.effects.lanes import Array, Lanes
 
-TREND = "0.1 m/s within ten minutes (diagnosis.md E3: correlation times of 1e2 to 1e4 s)"
+TREND = "0.1 m/s within ten minutes (chosen; correlation times of 1e2 to 1e4 s)"
 SWING = "as current_constant; gusts and eddies are smaller than the mean"
 
 EFFECT = Effect(
     name="current_varying",
     title="Current changing in time",
     place="water",
-    equation="v_c = rate t + amplitude sin(2 pi t / period + phase), t from the run's start, and its time derivative, which also "
-    "presses on the displaced water rho V (Fossen 2021, 10.2: in place of a Gauss-Markov process one period of it).",
+    equation="v_c = rate t + amplitude sin(2 pi t / period + phase) and its time derivative, which also presses on the displaced water rho V: one period "
+    "in place of a Gauss-Markov process.",
+    symbols={
+        "v_c": "horizontal velocity of the water (north, east); m/s",
+        "rate": "its trend (north_rate, east_rate); m/s2",
+        "amplitude": "of its swing (north, east); m/s",
+        "t": "time since the run's start; s",
+        "rho V": "mass of the displaced water; kg",
+    },
     parameters=(
         Parameter("north_rate", "m/s2", -0.01, 0.01, 0.0, 2e-4, TREND),
         Parameter("east_rate", "m/s2", -0.01, 0.01, 0.0, 2e-4, TREND),
         Parameter("north", "m/s", -1.0, 1.0, 0.0, 0.1, SWING),
         Parameter("east", "m/s", -1.0, 1.0, 0.0, 0.1, SWING),
-        Parameter("period", "s", 20.0, 50000.0, 300.0, 300.0, "eddies to the tide of 12.42 h"),
-        Parameter("phase", "rad", -2.0 * np.pi, 2.0 * np.pi, 0.0, 1.5, "any; a turn to spare, so that no fit stops half-way"),
+        Parameter(
+            "period", "s", 20.0, 50000.0, 300.0, 300.0, "eddies to the tide of 12.42 h", role="period", starts=(60.0, 150.0, 400.0, 1000.0),
+        ),
+        Parameter(
+            "phase", "rad", -2.0 * np.pi, 2.0 * np.pi, 0.0, 1.5, "any; a turn to spare, so that no fit stops half-way",
+            role="phase", starts=(0.0, np.pi / 2),
+        ),
     ),
     signature="a force fixed to north and east that drifts in time",
     confused_with=("current_constant", "voltage_sag", "clock_drift", "tether_tension"),
     separates="a long log with the same heading early and late",
-    grid={"period": (60.0, 150.0, 400.0, 1000.0), "phase": (0.0, np.pi / 2)},
+    literature=("Fossen 2021, section 10.3: current velocity as a Gauss-Markov process", "DNV 2010, section 4.1: tidal and turbulent currents"),
 )
 ROWS = ("north_rate", "east_rate", "north", "east", "omega", "phase")
 

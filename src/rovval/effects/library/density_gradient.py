@@ -12,15 +12,23 @@ EFFECT = Effect(
     name="density_gradient",
     title="Density changes with depth",
     place="wrench",
-    equation="B(z) = B + gradient (z - depth) g V at the centre of buoyancy (diagnosis.md E6). Drag and thrust, which change by the same "
-    "fraction (per mille), are left as they are. Compressibility of the vehicle is the same line with the other sign (B5).",
+    equation="B(z) = B + gradient (z - depth) g V at the centre of buoyancy. Drag and thrust, which change by the same fraction (per mille), are left as "
+    "they are. Compressibility of the vehicle is the same line with the other sign.",
+    symbols={
+        "B": "buoyancy, upwards in the north-east-down frame; N",
+        "z": "the vehicle's depth, down; m",
+        "depth": "depth at which the change is zero; m",
+        "g": "gravity; m/s2",
+        "V": "volume of the vehicle; m3",
+    },
     parameters=(
-        Parameter("gradient", "kg/m4", -20.0, 20.0, 0.0, 1.0, "some kg/m3 over some metres (diagnosis.md E6); a halocline: 30 over two"),
-        Parameter("depth", "m", -10.0, 6000.0, 0.0, 10.0, "where the change is zero: set it to the log's mean depth"),
+        Parameter("gradient", "kg/m4", -20.0, 20.0, 0.0, 1.0, "some kg/m3 over some metres (chosen); a halocline: 30 over two"),
+        Parameter("depth", "m", -10.0, 6000.0, 0.0, 10.0, "where the change is zero: set it to the log's mean depth", role="datum"),
     ),
     signature="a vertical force that grows with depth, at every heading and speed",
     confused_with=("buoyancy_error", "current_shear", "tether_tension"),
     separates="a slow dive up and down at two headings",
+    literature=("Fofonoff and Millard 1983: density of sea water by salinity, temperature and pressure", "Gill 1982: stratification"),
     needs=("z",),
 )
 ROWS = ("slope", "depth", "bx", "by", "bz")

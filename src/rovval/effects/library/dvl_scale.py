@@ -7,26 +7,35 @@ from dataclasses import replace
 
 import numpy as np
 
-from rovval.effects.effect import Effect, Parameter
+from rovval.effects.effect import Effect, Parameter, Tolerance
 from rovval.effects.lanes import Array
 from rovval.effects.log import Log
 
 AXES = ("surge", "sway", "heave")
+SOUND = Tolerance(0.005, "speed of sound known to within half a per cent (chosen)", calibrated=False)
 
 EFFECT = Effect(
     name="dvl_scale",
     title="Scale of the velocity log",
     place="sensor",
-    equation="u v w logged = (1 + scale) u v w, scale = error of the speed of sound (diagnosis.md S4); of one axis, (1 + scale) (1 + surge) u and so on.",
+    equation="u v w logged = (1 + scale) u v w; of one axis, (1 + scale) (1 + surge) u and so on.",
+    symbols={"u v w": "velocity over ground, body axes; m/s", "scale": "error of the speed of sound over the speed of sound; 1"},
     parameters=(
-        Parameter("scale", "1", -0.7, 1.2, 0.0, 0.02, "+-1 to 5 % (diagnosis.md S4); the bounds hold a wrong unit, too: knots, 0.94"),
-        *(Parameter(axis, "1", -0.7, 1.2, 0.0, 0.02, "as scale: a factor of an export or of a driver on this axis") for axis in AXES),
+        Parameter(
+            "scale", "1", -0.7, 1.2, 0.0, 0.02, "+-1 to 5 % (chosen); the bounds hold a wrong unit, too: knots, 0.94", tolerance=SOUND, error="factor",
+        ),
+        *(
+            Parameter(axis, "1", -0.7, 1.2, 0.0, 0.02, "as scale: a factor of an export or of a driver on this axis", tolerance=SOUND, error="factor")
+            for axis in AXES
+        ),
     ),
     signature="depth rate against w, distance run against position",
     confused_with=("rpm_scale", "quadratic_drag"),
     separates="integral of w against depth: no dynamics needed",
+    literature=("Joyce 1989: scale and misalignment of an acoustic Doppler instrument", "Kinsey and Whitcomb 2007: calibration of a velocity log in the field"),
     refines=AXES,
-    apart=True,
+    separable=True,
+    stage="scale",
 )
 
 

@@ -12,17 +12,25 @@ EFFECT = Effect(
     name="ground_effect",
     title="Ground effect near the bottom",
     place="wrench",
-    equation="F = -gain exp(-altitude / height) down, at the origin (diagnosis.md E7).",
+    equation="F = -gain exp(-altitude / height) down, at the origin.",
+    symbols={
+        "F": "force, down in the north-east-down frame; N",
+        "gain": "force at the bottom, upwards; N",
+        "altitude": "measured height above the bottom; m",
+        "height": "height over which it falls off; m",
+    },
     parameters=(
         Parameter("gain", "N", -60.0, 60.0, 0.0, 6.0, "chosen: up to half of the weight of the water that the jets move", "weight"),
-        Parameter("height", "m", 0.05, 5.0, 0.5, 0.3, "two to three propeller diameters to 1 m (diagnosis.md E7)"),
+        Parameter(
+            "height", "m", 0.05, 5.0, 0.5, 0.3, "two to three propeller diameters (Bhattacharyya 2016) to 1 m (chosen)", role="extent", starts=(0.2, 0.5, 1.5),
+        ),
     ),
     signature="a vertical force that is there below a metre or two of altitude only",
     confused_with=("buoyancy_error", "current_shear", "density_gradient"),
     separates="steps of altitude over the same spot",
+    literature=("Bhattacharyya 2016: a small underwater vehicle in hydrodynamic ground effect",),
     needs=("altitude",),
-    within={"altitude": 3.0},  # m, chosen: three times the largest reach of diagnosis.md E7, where a twentieth is left
-    grid={"height": (0.2, 0.5, 1.5)},
+    within={"altitude": 3.0},  # m, chosen: three times the largest reach above, where a twentieth is left
 )
 ROWS = ("gain", "inverse")
 

@@ -7,22 +7,27 @@ from dataclasses import replace
 
 import numpy as np
 
-from rovval.effects.effect import Effect, Parameter
+from rovval.effects.effect import Effect, Parameter, Tolerance
 from rovval.effects.lanes import Array
 from rovval.effects.log import Log
 
-SOURCE = "0.1 to 1 degree/s (diagnosis.md S6)"
+SOURCE = "0.1 to 1 degree/s (chosen)"
+DRIFT = Tolerance(0.002, "rad/s: 0.1 degree a second, MEMS in-run bias with temperature (Groves 2013)", calibrated=False)
 
 EFFECT = Effect(
     name="gyro_bias",
     title="Gyro bias",
     place="sensor",
-    equation="(p, q, r)_logged = (p, q, r) + bias (diagnosis.md S6).",
-    parameters=tuple(Parameter(axis, "rad/s", -0.1, 0.1, 0.0, 0.005, SOURCE) for axis in ("p", "q", "r")),
+    equation="(p, q, r)_logged = (p, q, r) + bias.",
+    symbols={"p, q, r": "rates of roll, pitch and yaw, body axes; rad/s", "bias": "what each gyro adds; rad/s"},
+    parameters=tuple(Parameter(axis, "rad/s", -0.1, 0.1, 0.0, 0.005, SOURCE, tolerance=DRIFT) for axis in ("p", "q", "r")),
     signature="a rate that does not go away when lying still, and an attitude that does not follow it",
     confused_with=("propeller_torque", "cg_offset"),
     separates="attitude rate against p q r: no dynamics needed",
-    apart=True,
+    literature=("Groves 2013: gyro errors, in-run bias instability", "Titterton and Weston 2004: gyro errors"),
+    separable=True,
+    wanders=True,  # in-run instability in a gyro's data sheet
+    stage="bias",
 )
 
 

@@ -14,17 +14,25 @@ EFFECT = Effect(
     name="hull_interaction",
     title="Thruster and hull interaction",
     place="input",
-    equation="T <- (1 - loss c) T for the sense of rotation whose jet points at the hull's middle, c the cosine of the angle it meets it at over "
-    "that of the jet that meets it most squarely, which so loses loss (0 under a cosine of 0.1: it passes by); "
-    "side force side |T at rest| towards the hull, across the thruster (Coanda; diagnosis.md A9).",
+    equation="T <- (1 - loss c) T for the sense of rotation whose jet points at the hull's middle; a side force side |T at rest| towards the hull, across "
+    "the thruster (Coanda).",
+    symbols={
+        "T": "thrust of a thruster, along its axis; N",
+        "c": "cosine of the angle at which its jet meets the hull over that of the vehicle's jet that meets it most squarely; 0 under a cosine of 0.1: "
+        "the jet passes by",
+        "loss": "share lost by the jet that meets the hull most squarely",
+        "side": "side force over thrust",
+    },
     parameters=(
-        Parameter("loss", "1", -0.3, 1.0, 0.0, 0.15, "5 to 30 % (diagnosis.md A9)"),
+        Parameter("loss", "1", -0.3, 1.0, 0.0, 0.15, "5 to 30 % (chosen)", vanishes_at="high", compared_with="thruster_degraded"),
         Parameter("side", "1", -0.5, 0.5, 0.0, 0.05, "chosen: a tenth of the thrust"),
     ),
     signature="gain depends on the sign of a thruster's speed, installed thrust differs from a bench's",
     confused_with=("reverse_asymmetry", "thruster_degraded", "thruster_misaligned"),
     separates="steps of both signs of every thruster",
+    literature=("Lehn 1980: thruster and hull, the Coanda effect", "Nienhuis 1992: effectivity of installed thrusters"),
 )
+FULL_KERNEL = True
 
 
 def lower(lanes: Lanes, p: Mapping[str, Array]) -> Lanes:

@@ -16,13 +16,28 @@ EFFECT = Effect(
     name="inflow_loss",
     title="Axial inflow loss",
     place="input",
-    equation="T <- T - loss k n_ref |n| u_a / (1 m/s), u_a the inflow along the thrust, k the mean gain, n_ref the speed at which all thrusters "
-    "hold the vehicle at 1 m/s ahead: loss is the share of thrust lost there (bilinear thruster, Fossen 2021, 9.6; "
-    "Healey 1995; diagnosis.md A6).",
-    parameters=(Parameter("loss", "1", -0.2, 1.0, 0.0, 0.15, "10 to 40 % at top speed (diagnosis.md A6)"),),
+    equation="T <- T - loss k n_ref |n| u_a / (1 m/s).",
+    symbols={
+        "T": "thrust of a thruster, along its axis; N",
+        "n": "shaft speed; rev/s",
+        "u_a": "velocity of the vehicle through the water at the thruster, along its thrust; m/s",
+        "k": "mean of the thruster's gains ahead and astern; N s2",
+        "n_ref": "shaft speed at which all thrusters hold the vehicle at 1 m/s ahead; rev/s",
+        "loss": "share of thrust lost at n_ref and 1 m/s",
+    },
+    parameters=(
+        Parameter(
+            "loss", "1", -0.2, 1.0, 0.0, 0.15, "10 to 40 % at top speed (chosen)", vanishes_at="high", compared_with="thruster_degraded",
+        ),
+    ),
     signature="grows with thruster speed times vehicle speed: feels like drag while thrusting, and is gone when coasting",
     confused_with=("quadratic_drag", "linear_drag", "rpm_scale", "tether_drag"),
     separates="the same speed at different thrust: accelerating, steady, coasting",
+    literature=(
+        "Fossen 2021, section 9.6: bilinear thruster model",
+        "Healey 1995: thrust and the velocity of advance",
+        "Kim and Chung 2006: thrust by the advance ratio",
+    ),
 )
 ROWS = ("slope",)
 

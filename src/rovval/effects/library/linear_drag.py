@@ -8,21 +8,50 @@ from dataclasses import replace
 import numpy as np
 
 from rovval.core.channels import AXES
-from rovval.effects.effect import Effect, Parameter
+from rovval.effects.effect import Effect, Parameter, Tolerance
 from rovval.effects.lanes import Array, Lanes, reference_drag
+from rovval.vehicle.model import Vehicle, square
+
+SPLIT = 0.1  # m/s, rad/s: drag is known as a whole at this speed; how much of it is linear is off by as much as that (chosen)
+UNKNOWN = 0.5  # m/s, rad/s: the same for an axis without linear drag in the file, where nobody has measured it (chosen)
+
+
+def _tolerance(parameter: Parameter, vehicle: Vehicle, axis: str) -> float:
+    """Relative, of the linear drag that ``scale`` refers to."""
+    i, (linear, quadratic) = AXES.index(axis), reference_drag(vehicle)
+    known = np.diag(square(vehicle.body.linear_drag))[i] > 0
+    return float(1.0 + (SPLIT if known else UNKNOWN) * quadratic[i] / linear[i])
+
 
 EFFECT = Effect(
     name="linear_drag",
     title="Linear drag differs",
     place="vehicle",
-    equation="tau_i = -(1 + scale) d_i nu_r,i (thesis 3.13; Fossen 2021, 6.4); "
-    "where the file has none, scale refers to the quadratic force at 0.1 m/s (rad/s).",
-    parameters=(Parameter("scale", "1", -0.95, 9.0, 0.0, 0.3, "published BlueROV2 surge values run from 4 to 14 N s/m (diagnosis.md H1)"),),
+    equation="tau_i = -(1 + scale) d_i nu_r,i; where the file has none, scale refers to the quadratic force at 0.1 m/s (rad/s).",
+    symbols={
+        "tau_i": "drag on axis i, body axes; N, N m",
+        "d_i": "linear drag coefficient of the vehicle's file; N s/m, N m s/rad",
+        "nu_r,i": "velocity relative to the water on axis i, body axes; m/s, rad/s",
+    },
+    parameters=(
+        Parameter(
+            "scale", "1", -0.95, 9.0, 0.0, 0.3, "published BlueROV2 surge values run from 4 (Wu 2018) to 14 N s/m (von Benzon 2022)",
+            vanishes_at="low",
+            tolerance=Tolerance(_tolerance, "the calibration tolerance, and how much of a drag that is known as a whole is linear (chosen)", loop_gain=1.0),
+        ),
+    ),
     per="axis",
     axes=AXES,
     signature="acts at low speed; changes the exponential tail of a coast-down",
     confused_with=("quadratic_drag", "current_constant", "tether_drag", "rpm_scale"),
     separates="coast-down with thrust off, from several speeds",
+    literature=(
+        "thesis, equation 3.13",
+        "Fossen 2021, section 6.4: linear viscous damping",
+        "Caccia 2000: identification of linear and quadratic drag of open-frame vehicles",
+    ),
+    family="drag",
+    absent_in=("freefloating",),
 )
 
 

@@ -17,13 +17,19 @@ EFFECT = Effect(
     name="payload_change",
     title="Payload taken up or set down",
     place="wrench",
-    equation="from onset on: mass m at (x, y, z) joins M_RB and C_RB, negative where it is set down, and its weight in water acts there "
-    "(diagnosis.md B4). Weight comes on over 0.1 s, mass at the next step; what would leave no inertia of some motion stops the simulation. Added "
-    "mass of the payload is not modelled.",
+    equation="from onset on: mass m at r_P = (x, y, z) joins M_RB and C_RB, negative where it is set down, and its weight in water acts there. Weight comes on "
+    "over 0.1 s, mass at the next step; what would leave no inertia of some motion stops the simulation. Added mass of the payload is not modelled.",
+    symbols={
+        "m": "mass of the payload; kg",
+        "weight": "its weight less its buoyancy, down in the north-east-down frame; N",
+        "r_P": "where it hangs, from the body's origin, body axes; m",
+        "M_RB, C_RB": "rigid-body mass matrix and its Coriolis and centripetal matrix",
+        "onset": "time since the run's start; s",
+    },
     parameters=(
         Parameter("mass", "kg", -10.0, 10.0, 0.0, 0.5, "up to some per cent of the vehicle (Merlin: 250 to 475 kg of 3000, thesis 2.2)", "weight"),
         Parameter("weight", "N", -60.0, 60.0, 0.0, 3.0, "weight less buoyancy of the load", "weight"),
-        Parameter("onset", "s", 0.0, 1e6, 0.0, 60.0, "any time of the log"),
+        Parameter("onset", "s", 0.0, 1e6, 0.0, 60.0, "any time of the log", role="onset"),
         Parameter("x", "m", -3.0, 3.0, 0.0, 0.2, "where it hangs"),
         Parameter("y", "m", -3.0, 3.0, 0.0, 0.2, "where it hangs"),
         Parameter("z", "m", -3.0, 3.0, 0.0, 0.2, "where it hangs"),
@@ -31,8 +37,9 @@ EFFECT = Effect(
     signature="from one moment on: heave and pitch step together, and the answer to thrust slows",
     confused_with=("buoyancy_error", "tether_tension", "thruster_fault_onset", "cg_offset"),
     separates="the change point and the axes that step together",
-    grid={"onset": (0.1, 0.3, 0.5, 0.7, 0.9)},
+    literature=("Fossen 2021, section 3.3: rigid-body kinetics, Huygens-Steiner", "thesis, section 2.2: payloads of the Merlin"),
 )
+FULL_KERNEL = True
 ROWS = ("weight", "onset", "px", "py", "pz")
 
 

@@ -14,16 +14,23 @@ EFFECT = Effect(
     name="propeller_torque",
     title="Propeller torque",
     place="input",
-    equation="moment (handedness arm + common) T_i e_i, arm = K_Q D / K_T (Fossen 2021, 9.4; diagnosis.md A13); common: of propellers that are all of "
-    "one hand, where the file says that they are not.",
+    equation="moment (handedness arm + common) T_i e_i, arm = K_Q D / K_T; common: of propellers that are all of one hand, where the file says that they "
+    "are not.",
+    symbols={
+        "T_i, e_i": "thrust of thruster i and its unit vector, body axes; N",
+        "handedness": "+1 or -1, as the vehicle's file has it",
+        "K_Q, K_T": "torque and thrust coefficient of the propeller; 1",
+        "D": "propeller diameter; m",
+    },
     parameters=(
-        Parameter("arm", "m", -0.6, 0.6, 0.0, 0.01, "1 to 3 cm of torque per newton (diagnosis.md A13); searched well beyond"),
+        Parameter("arm", "m", -0.6, 0.6, 0.0, 0.01, "1 to 3 cm of torque per newton (K_Q D / K_T of small propellers); searched well beyond"),
         Parameter("common", "m", -0.6, 0.6, 0.0, 0.01, "as arm: which hand a spare propeller has, no file knows"),
     ),
     signature="roll, pitch or yaw that grows with thrust where handedness does not cancel",
     confused_with=("cg_offset", "thruster_misaligned"),
     separates="drive one thruster: torque is about its own axis",
-    apart=True,
+    literature=("Fossen 2021, section 9.4: thrust and torque coefficients", "Carlton 2018, chapter 6: propeller characteristics"),
+    separable=True,
 )
 
 

@@ -14,23 +14,35 @@ EFFECT = Effect(
     name="tether_snag",
     title="Tether snagged",
     place="wrench",
-    equation="F = stiffness max(d - radius, 0) at the attachment (x, 0, z) towards the point (north, east, down) from onset on, d the distance of "
-    "the attachment to it (diagnosis.md T3; EA (1 - l0/L) when taut).",
+    equation="F = stiffness max(d - radius, 0) at the attachment (x, 0, z) towards the point (north, east, down) from onset on; stiffness = E A / l_0 of the "
+    "taut length.",
+    symbols={
+        "F": "force; N",
+        "d": "distance of the attachment to the point; m",
+        "radius": "slack: distance up to which nothing pulls; m",
+        "north, east, down": "the point in the log's frame; m",
+        "x, z": "attachment ahead of and below the origin, body axes; m",
+        "E A, l_0": "axial stiffness (N) and unstretched length (m) of what is taut",
+        "onset": "time since the run's start; s",
+    },
     parameters=(
         Parameter("stiffness", "N/m", 0.0, 200.0, 0.0, 10.0, "chosen: a few metres of stretch stop the vehicle", "drag"),
-        Parameter("north", "m", -1000.0, 1000.0, 0.0, 3.0, "where it is caught, in the log's x: the search begins where the missing force leads"),
-        Parameter("east", "m", -1000.0, 1000.0, 0.0, 3.0, "where it is caught, in the log's y"),
-        Parameter("down", "m", -1000.0, 1000.0, 0.0, 3.0, "where it is caught, depth"),
-        Parameter("radius", "m", 0.0, 1000.0, 0.0, 2.0, "slack"),
-        Parameter("onset", "s", 0.0, 1e6, 0.0, 60.0, "any time of the log"),
-        Parameter("x", "m", -2.0, 2.0, 0.0, 0.3, "attachment, ahead of the origin"),
-        Parameter("z", "m", -2.0, 2.0, 0.0, 0.2, "attachment, below the origin"),
+        Parameter(
+            "north", "m", -1000.0, 1000.0, 0.0, 3.0, "where it is caught, in the log's x: the search begins where the missing force leads",
+            role="anchor", channel="x",
+        ),
+        Parameter("east", "m", -1000.0, 1000.0, 0.0, 3.0, "where it is caught, in the log's y", role="anchor", channel="y"),
+        Parameter("down", "m", -1000.0, 1000.0, 0.0, 3.0, "where it is caught, depth", role="anchor", channel="z"),
+        Parameter("radius", "m", 0.0, 1000.0, 0.0, 2.0, "slack", role="extent"),
+        Parameter("onset", "s", 0.0, 1e6, 0.0, 60.0, "any time of the log", role="onset"),
+        Parameter("x", "m", -2.0, 2.0, 0.0, 0.3, "attachment, ahead of the origin"),  # a size, no lever: at its bound the spring is none
+        Parameter("z", "m", -2.0, 2.0, 0.0, 0.2, "attachment, below the origin"),  # that the library knows
     ),
     signature="a sudden pull that comes back at the same place and always points the same way there",
     confused_with=("tether_tension", "current_varying"),
     separates="come back to the place from another side",
+    literature=("Driscoll 2000: axial stiffness of an ROV's tether, slack and taut", "McLain and Rock 1992: measured tension of an ROV's tether"),
     needs=("x", "y", "z", "psi"),
-    where={"north": "x", "east": "y", "down": "z"},
 )
 ROWS = ("stiffness", "north", "east", "down", "radius", "onset", "ax", "az")
 

@@ -8,26 +8,35 @@ from rovval.effects.arithmetic import Number, sqrt
 from rovval.effects.effect import Effect, Parameter
 from rovval.effects.lanes import Array, Lanes
 
-PULL = "0 to 30 N on an observation-class vehicle, up to 2.7 kN on a work-class one (diagnosis.md T2)"
+PULL = "0 to 30 N on an observation-class vehicle (chosen), up to 2.7 kN on a work-class one (McLain and Rock 1992)"
 
 EFFECT = Effect(
     name="tether_tension",
     title="Steady pull of the tether",
     place="wrench",
-    equation="F = |T| R^T e at the attachment (x, 0, z), e along T - nearness |T| (position), T = (north, east, down): the tension T at the log's "
-    "origin of a tether that leads to a point 1 / nearness away from there, or far away (diagnosis.md T2).",
+    equation="F = |T| R^T e at the attachment (x, 0, z), e the unit vector along T - nearness |T| (position).",
+    symbols={
+        "F": "force, body axes; N",
+        "T": "tension (north, east, down) at the log's origin; N",
+        "nearness": "one over the distance from the log's origin to the point that the tether leads to; 1/m, 0: far away",
+        "R": "rotation from body axes to the north-east-down frame",
+        "position": "north, east, down from the log's origin; m",
+        "x, z": "attachment ahead of and below the origin, body axes; m",
+    },
     parameters=(
         Parameter("north", "N", -100.0, 100.0, 0.0, 6.0, PULL, "weight"),
         Parameter("east", "N", -100.0, 100.0, 0.0, 6.0, PULL, "weight"),
         Parameter("down", "N", -100.0, 100.0, 0.0, 4.0, PULL, "weight"),
-        Parameter("nearness", "1/m", 0.0, 1.0, 0.0, 0.05, "one over the distance from the log's origin to where it is held; 0: far away"),
-        Parameter("x", "m", -2.0, 2.0, 0.0, 0.3, "attachment, ahead of the origin"),
-        Parameter("z", "m", -2.0, 2.0, 0.0, 0.2, "attachment, below the origin"),
+        Parameter(
+            "nearness", "1/m", 0.0, 1.0, 0.0, 0.05, "one over the distance from the log's origin to where it is held; 0: far away", role="extent",
+        ),
+        Parameter("x", "m", -2.0, 2.0, 0.0, 0.3, "attachment, ahead of the origin", role="lever"),
+        Parameter("z", "m", -2.0, 2.0, 0.0, 0.2, "attachment, below the origin", role="lever"),
     ),
     signature="a force fixed to north and east, or to a point, also when the vehicle lies still; a moment if it is attached aft",
     confused_with=("current_constant", "buoyancy_error", "cg_offset"),
     separates="a current's force depends on the vehicle's own speed, a pull's does not: two speeds on two headings",
-    levers=("x", "z"),
+    literature=("McLain and Rock 1992: measured tension of an ROV's tether, up to 600 lbf", "Driscoll 2000: dynamics of an ROV's tether"),
 )
 ROWS = ("north", "east", "down", "nearness", "ax", "az")
 

@@ -5,23 +5,41 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from rovval.effects.arithmetic import Number, positive
-from rovval.effects.effect import Effect, Parameter
+from rovval.effects.effect import Effect, Parameter, Tolerance
 from rovval.effects.lanes import Array, Lanes
+from rovval.vehicle.model import Vehicle
+
+CURVE = 4.0  # of the typical dead band per unit of calibration tolerance: 5 % goes with a curve that is off by as much at small commands (chosen)
+
+
+def _tolerance(parameter: Parameter, vehicle: Vehicle, target: str) -> float:
+    """In the parameter's unit."""
+    return CURVE * parameter.typical
+
+
+CURVED = Tolerance(_tolerance, "a thrust curve that is off by a fifth of a typical dead band at small commands where the calibration tolerance is 5 % (chosen)")
 
 EFFECT = Effect(
     name="thruster_deadband",
     title="Dead band of the thrusters",
     place="input",
-    equation="n <- sgn(n) min((1 + catch) max(|n| - width, 0), |n|) on the acting speed of every thruster (diagnosis.md A3; Bessa 2006); with catch, what "
-    "is missing at the edge of the band is made up beyond it.",
+    equation="n <- sgn(n) min((1 + catch) max(|n| - width, 0), |n|) on the acting speed of every thruster; with catch, what is missing at the edge of the "
+    "band is made up beyond it.",
+    symbols={"n": "shaft speed; rev/s", "width": "half width of the band; rev/s", "catch": "slope beyond the band, less one; 1"},
     parameters=(
-        Parameter("width", "rev/s", 0.0, 60.0, 0.0, 2.5, "0 to 12 % of full command; T200: 300 rpm (diagnosis.md A3); searched to full speed", "speed"),
-        Parameter("catch", "1", 0.0, 30.0, 0.0, 1.0, "0: a dead band of the drive, all along; else one of low flow, caught up with at 1 + 1 / catch widths"),
+        Parameter(
+            "width", "rev/s", 0.0, 60.0, 0.0, 2.5, "0 to 12 % of full command (chosen); T200: 300 rpm (Blue Robotics T200); searched to full speed", "speed",
+            starts=(1.0, 4.0), tolerance=CURVED,
+        ),
+        Parameter(
+            "catch", "1", 0.0, 30.0, 0.0, 1.0, "0: a dead band of the drive, all along; else one of low flow, caught up with at 1 + 1 / catch widths",
+            tolerance=CURVED,
+        ),
     ),
     signature="small commands do nothing: hunting about a hover, weak answers to small steps",
     confused_with=("rpm_scale", "linear_drag", "reverse_asymmetry"),
     separates="steps of small amplitude beside large ones",
-    grid={"width": (1.0, 4.0)},
+    literature=("Bessa 2006: dead zone of an underwater thruster", "Blue Robotics T200: dead band of the speed controller"),
     refines=("catch",),
 )
 ROWS = ("width", "catch")

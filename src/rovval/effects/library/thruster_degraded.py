@@ -5,19 +5,30 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from rovval.effects.effect import Effect, Parameter
+from rovval.effects.effect import Effect, Parameter, Tolerance
 from rovval.effects.lanes import Array, Lanes
 
 EFFECT = Effect(
     name="thruster_degraded",
     title="Thruster degraded",
     place="input",
-    equation="T_i <- (1 - loss) T_i (diagnosis.md A1). A negative loss is a thruster that is better than the file says.",
-    parameters=(Parameter("loss", "1", -0.5, 1.0, 0.0, 0.2, "0 to 1 (diagnosis.md A1)"),),
+    equation="T_i <- (1 - loss) T_i. A negative loss is a thruster that is better than the file says.",
+    symbols={"T_i": "thrust of thruster i, along its axis; N", "loss": "share of it that is lost; 1 is a dead thruster"},
+    parameters=(
+        Parameter(
+            "loss", "1", -0.5, 1.0, 0.0, 0.2, "0: sound, 1: dead", vanishes_at="high", compared_with="thruster_degraded",
+            tolerance=Tolerance(1.0, "the declared calibration tolerance itself"),
+        ),
+    ),
     per="thruster",
     signature="a wrench in that thruster's own direction, growing with its thrust",
     confused_with=("thruster_misaligned", "thruster_fault_onset", "reverse_asymmetry", "hull_interaction"),
     separates="drive that thruster apart from the others",
+    literature=(
+        "Alessandri 1999: actuator faults of underwater vehicles",
+        "Omerdic and Roberts 2004: faults of thrusters of open-frame vehicles, partial and total",
+    ),
+    family="thrust",
 )
 
 

@@ -14,16 +14,22 @@ EFFECT = Effect(
     name="thruster_fault_onset",
     title="Thruster fails during the log",
     place="input",
-    equation="T_i <- (1 - loss s(t)) T_i, s rising from 0 to 1 within 0.1 s of the onset (diagnosis.md A1 with a change point).",
+    equation="T_i <- (1 - loss s(t)) T_i, s rising from 0 to 1 within 0.1 s of the onset.",
+    symbols={
+        "T_i": "thrust of thruster i, along its axis; N",
+        "loss": "share of it that is lost; 1 is a dead thruster",
+        "t, onset": "time and time of the fault since the run's start; s",
+    },
     parameters=(
-        Parameter("loss", "1", -0.5, 1.0, 0.0, 0.3, "0 to 1 (diagnosis.md A1)"),
-        Parameter("onset", "s", 0.0, 1e6, 0.0, 60.0, "any time of the log"),
+        Parameter("loss", "1", -0.5, 1.0, 0.0, 0.3, "0: sound, 1: dead", vanishes_at="high", compared_with="thruster_degraded"),
+        Parameter("onset", "s", 0.0, 1e6, 0.0, 60.0, "any time of the log", role="onset"),
     ),
     per="thruster",
     signature="from one moment on, a wrench in that thruster's own direction, growing with its thrust",
     confused_with=("thruster_degraded", "voltage_sag", "payload_change"),
     separates="the change point; before it that thruster is sound",
-    grid={"onset": (0.1, 0.3, 0.5, 0.7, 0.9)},
+    literature=("Zhao 2014: thruster faults of an ROV detected during a dive", "Omerdic and Roberts 2004: partial and total faults"),
+    onset_of="thruster_degraded",
 )
 ROWS = ("loss", "onset")
 

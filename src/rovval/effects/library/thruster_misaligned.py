@@ -7,25 +7,29 @@ from dataclasses import replace
 
 import numpy as np
 
-from rovval.effects.effect import Effect, Parameter
+from rovval.effects.effect import Effect, Parameter, Tolerance
 from rovval.effects.lanes import Array, Lanes
 
-SOURCE = "1 to 10 degrees (diagnosis.md A10); the bounds hold one that was knocked round or mounted across"
+SOURCE = "1 to 10 degrees (chosen); the bounds hold one that was knocked round or mounted across"
+MOUNTED = Tolerance(0.3, "rad per unit of calibration tolerance: 5 % goes with thrusters mounted to within a degree (chosen)")
 
 EFFECT = Effect(
     name="thruster_misaligned",
     title="Thruster misaligned",
     place="input",
     equation="e_i <- e_i turned by yaw about the body's z axis, then by tilt about the horizontal axis across e_i (about x for a vertical "
-    "thruster, whose yaw turns about y); thrust and moment follow (thesis 3.15; diagnosis.md A10).",
+    "thruster, whose yaw turns about y); thrust and moment follow.",
+    symbols={"e_i": "unit vector of thruster i's thrust, body axes", "yaw, tilt": "angles of the two turns; rad"},
     parameters=(
-        Parameter("yaw", "rad", -1.4, 1.4, 0.0, 0.05, SOURCE),
-        Parameter("tilt", "rad", -1.4, 1.4, 0.0, 0.05, SOURCE),
+        Parameter("yaw", "rad", -1.4, 1.4, 0.0, 0.05, SOURCE, tolerance=MOUNTED),
+        Parameter("tilt", "rad", -1.4, 1.4, 0.0, 0.05, SOURCE, tolerance=MOUNTED),
     ),
     per="thruster",
     signature="a force across that thruster, growing with its thrust",
     confused_with=("thruster_degraded", "cross_drag", "cg_offset", "propeller_torque"),
     separates="drive that thruster apart from the others and watch the other axes",
+    literature=("thesis, equation 3.15", "Fossen and Johansen 2006: thruster configuration matrix"),
+    family="allocation",
 )
 
 

@@ -12,15 +12,22 @@ EFFECT = Effect(
     name="voltage_sag",
     title="Voltage sag",
     place="input",
-    equation="T <- T (1 + gain ((V/V_0)^2 - 1)) (1 - rate t): gain 1 is T ~ V^2 with the logged voltage (V_0 that of the vehicle's table, else the "
-    "log's first), rate a steady loss since the run's start (diagnosis.md A12).",
+    equation="T <- T (1 + gain ((V/V_0)^2 - 1)) (1 - rate t): gain 1 is T ~ V^2 at a fixed command.",
+    symbols={
+        "T": "thrust of every thruster, along its axis; N",
+        "V": "logged supply voltage; V",
+        "V_0": "voltage of the vehicle's thrust table, else the log's first; V",
+        "rate": "steady loss since the run's start; 1/s",
+        "t": "time since the run's start; s",
+    },
     parameters=(
-        Parameter("gain", "1", -1.0, 2.0, 0.0, 0.5, "T ~ V^2 at a fixed command (diagnosis.md A12); 0 where the logged speed already sags", needs="voltage"),
-        Parameter("rate", "1/s", 0.0, 5e-4, 0.0, 5e-5, "25 % within a dive of some hours (diagnosis.md A12); no supply recovers in a dive"),
+        Parameter("gain", "1", -1.0, 2.0, 0.0, 0.5, "T ~ V^2 at a fixed command; 0 where the logged speed already sags", needs="voltage"),
+        Parameter("rate", "1/s", 0.0, 5e-4, 0.0, 5e-5, "25 % within a dive of some hours (chosen); no supply recovers in a dive"),
     ),
     signature="every thruster weakens together, slowly, and at heavy load",
     confused_with=("rpm_scale", "current_varying", "thruster_degraded"),
     separates="a log of the voltage; steps of load",
+    literature=("Blue Robotics T200: thrust at 10 to 20 V", "Tremblay and Dessaint 2009: battery voltage under load and with charge"),
 )
 ROWS = ("gain", "rate")
 SHARED = True

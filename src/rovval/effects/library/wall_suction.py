@@ -12,17 +12,25 @@ EFFECT = Effect(
     name="wall_suction",
     title="Suction of a wall alongside",
     place="wrench",
-    equation="Y = gain u_r |u_r| / (1 + (d / reach)^2) with the sign of the side on which the wall lies in gain (diagnosis.md E8: c u^2 (r/d)^2, "
-    "kept finite at the wall); |u_r| u_r -> u_r^2.",
+    equation="Y = gain u_r^2 / (1 + (d / reach)^2), with the sign of the side on which the wall lies in gain.",
+    symbols={
+        "Y": "force to starboard, body axes; N",
+        "u_r": "velocity ahead relative to the water, body axes; m/s",
+        "d": "measured distance of the wall; m",
+        "reach": "distance at which half of it is left; m",
+    },
     parameters=(
         Parameter("gain", "N s2/m2", -300.0, 300.0, 0.0, 20.0, "chosen: some tenths of the drag ahead; + for a wall to starboard", "drag"),
-        Parameter("reach", "m", 0.05, 5.0, 0.5, 0.3, "chosen: of the order of the hull's half width"),
+        Parameter("reach", "m", 0.05, 5.0, 0.5, 0.3, "chosen: of the order of the hull's half width", role="extent", starts=(0.3, 1.0)),
     ),
     signature="a sideways force that grows with speed ahead, near a wall only",
     confused_with=("current_constant", "cross_drag", "dvl_misalignment"),
     separates="the same leg nearer to and farther from the wall, and in the other direction",
+    literature=(
+        "Newman 1977, chapter 4: a body moving along a wall is drawn to it (method of images)",
+        "JMSE 2025: an underwater vehicle near a wall, force by distance and speed",
+    ),
     needs=("wall_distance",),
-    grid={"reach": (0.3, 1.0)},
 )
 ROWS = ("gain", "inverse")
 

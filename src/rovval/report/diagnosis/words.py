@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from rovval import effects
 from rovval.core.units import in_degrees
-from rovval.diagnose.inference.prior import SENSORS
 from rovval.diagnose.result.diagnosis import AxisGap, Cause, Coefficient, Diagnosis, GapSlice, Parameter, SensorFault, Shrinkage
 from rovval.report.common.numbers import MISSING, estimate, number, per_cent, share
 
@@ -16,7 +16,7 @@ UNMOVED = 0.005  # of the squared gap: a change that rounds to nothing
 
 def sensor_tolerance(name: str) -> float | None:
     """What a healthy sensor may be off by, in the unit of the effect's parameters; None for an effect of no sensor."""
-    return SENSORS.get(name.partition(".")[0].partition("[")[0])
+    return effects.sensor_tolerance(name.partition(".")[0].partition("[")[0])
 
 
 def group(cause: Cause) -> list[str]:
