@@ -33,16 +33,17 @@ def command(
     """
     from rovval.fit import fit
     from rovval.pipeline.steps import vehicle_of
+    from rovval.report.fit import text
     from rovval.storage.atomic import refuse_unwritable, write_text
 
     refuse_unwritable(out)
     options.refuse_overwriting(vehicle, out)
     runs = logs.opened_as_one(sources, vehicle, profile, archive, quiet)
-    wanted = [name for text in parameters for name in text.split(",") if name]
+    wanted = [name for some in parameters for name in some.split(",") if name]
     tuned = fit(runs, vehicle_of(runs[0], vehicle), wanted, model=model.value, window_s=window)
     write_text(out, tuned.vehicle)
     if json_:
         output.result_json(tuned.document)
     else:
-        output.result(tuned.text)
+        output.result(text(tuned.document))
     output.say(f"written: {out}", quiet)

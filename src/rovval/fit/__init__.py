@@ -23,7 +23,6 @@ from rovval.diagnose.inference.shrinkage import NONE, harm
 from rovval.diagnose.windows.shooting import cut_all
 from rovval.fit.tunable import chosen
 from rovval.plant import Plant
-from rovval.report.fit import text
 from rovval.vehicle.write import to_toml, with_effects
 
 if TYPE_CHECKING:
@@ -33,11 +32,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class FitResult:
-    """``vehicle``: TOML with the tuned parameters in its [effects]; ``document``: rovval.fit/1; ``text``: the same to be read."""
+    """``vehicle``: TOML with the tuned parameters in its [effects]; ``document``: rovval.fit/1, which `rovval.report.fit` writes to be read."""
 
     vehicle: str
     document: dict[str, Any]
-    text: str
 
 
 def fit(
@@ -81,7 +79,7 @@ def fit(
     document = _document(problem, fitted, low, high, {s: out[s] for s in wanted if s in out}, calibration_slop, seed)
     document["left_out"] = list(left_out)
     settings = document["settings"]
-    return FitResult(with_effects(vehicle, settings) if settings else to_toml(vehicle), document, text(document))
+    return FitResult(with_effects(vehicle, settings) if settings else to_toml(vehicle), document)
 
 
 def _document(

@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
+from rovval.core.units import in_degrees
+from rovval.report.common.numbers import interval, number, per_cent, share
 
-def text(document: dict[str, Any]) -> str:
-    """The document to be read in a terminal."""
+
+def text(document: Mapping[str, Any]) -> str:
+    """The parameters of a fit (rovval.fit/1) with their intervals, what the logs cannot determine, and what becomes of the gap."""
     rows, shrunk = document["parameters"], document["shrinkage"]
     lines = [f"{document['run']}: {document['vehicle']}, model {document['model']}, {document['windows']} windows of {document['window_s']:g} s"]
     if rows:
-        lines.append(f"The squared gap {_changes(shrunk)} on held-out windows with {len(rows)} parameter{'s' if len(rows) > 1 else ''} tuned.")
-        width = max(map(len, rows))
-        lines += ["", f"{'tuned':{width}}       was      value   90 % interval"]
-    for name, row in rows.items():
-        unit = "" if row["unit"] == "1" else f" {row['unit']}"
-        note = "  rests at its bound" if row["at_bound"] else "" if row["differs"] else "  not distinguishable from what it was"
-        lines.append(f"{name:{width}}  {row['was']:8.3g}  {row['value']:9.3g}   [{row['low']:.3g}, {row['high']:.3g}]{unit}{note}")
+        lines.append(f"The squared gap {changes(shrunk)} on held-out windows with {len(rows)} parameter{'s' if len(rows) > 1 else ''} tuned.")
+        lines += ["", *_table(rows)]
     if document["undetermined"]:
         lines += ["", "These logs cannot determine (left as they were):", *(f"  {u['parameter']}: {u['why']}" for u in document["undetermined"])]
     if document["harm"]:
-        lines += ["", "Worse with it, in squared error: " + ", ".join(f"{h['axis']} by {100 * h['change']:.0f} %" for h in document["harm"]) + "."]
+        lines += ["", "Worse with it, in squared error: " + ", ".join(f"{h['axis']} by {per_cent(h['change'])}" for h in document["harm"]) + "."]
     if rows and shrunk["low"] <= 0:
         lines += ["", "Not shown to be better on held-out windows: use fewer parameters, shorter windows or more logs before using this vehicle."]
     lines += [f"Left out: {why}" for why in document["left_out"]]
@@ -29,7 +28,19 @@ def text(document: dict[str, Any]) -> str:
     return "\n".join([*lines, ""])
 
 
-def _changes(shrunk: dict[str, Any]) -> str:
-    verb, sign = ("shrinks", 1) if shrunk["total"] >= 0 else ("grows", -1)
-    ends = sorted(100 * sign * shrunk[end] for end in ("low", "high"))
-    return f"{verb} by {100 * sign * shrunk['total']:.0f} % [{ends[0]:.0f}, {ends[1]:.0f}]"
+def changes(shrunk: Mapping[str, float]) -> str:
+    """shrinks by 34 % [10, 50]; grows by as much where ``total`` is negative."""
+    if shrunk["total"] >= 0:
+        return f"shrinks by {share(shrunk['total'], shrunk['low'], shrunk['high'])}"
+    return f"grows by {share(-shrunk['total'], -shrunk['high'], -shrunk['low'])}"
+
+
+def _table(rows: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """A line a parameter."""
+    width = max(map(len, rows))
+    lines = [f"{'tuned':{width}}  {'was':>8}  {'value':>9}   90 % interval"]
+    for name, row in rows.items():
+        note = "  rests at its bound" if row["at_bound"] else "" if row["differs"] else "  not distinguishable from what it was"
+        was, value = (number(in_degrees(row[k], row["unit"])[0]) for k in ("was", "value"))
+        lines.append(f"{name:{width}}  {was:>8}  {value:>9}   {interval(row['low'], row['high'], row['unit'])}{note}")
+    return lines

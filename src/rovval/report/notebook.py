@@ -12,6 +12,7 @@ import numpy as np
 from rovval.core.channels import AXES, POSE, VELOCITIES, channel
 from rovval.core.data import Array, Comparison, Run, SimResult
 from rovval.core.units import in_degrees
+from rovval.report import fit
 from rovval.report.common import curves
 from rovval.report.common.curves import Place
 from rovval.report.common.files import write_all
@@ -52,7 +53,7 @@ def page_of(result: object) -> Page:
         case Diagnosis():
             return Page(diagnosis_html.text(worded(result)))
         case FitResult():
-            return Page(_fit(result.document, result.text))
+            return Page(_fit(result.document))
         case SimResult():
             return Page(_simulation(result))
         case Run():
@@ -115,7 +116,7 @@ def _drawn(values: Array, unit: str) -> Array:
     return np.asarray(values * in_degrees(1.0, unit)[0])
 
 
-def _fit(document: dict[str, Any], text: str) -> str:
+def _fit(document: dict[str, Any]) -> str:
     """Each tuned parameter with its interval, and the text of the terminal."""
     return render(
         "fit.html",
@@ -126,7 +127,7 @@ def _fit(document: dict[str, Any], text: str) -> str:
         said=[f"{len(document['parameters'])} parameters tuned."],
         facts={key: document[key] for key in ("vehicle", "model", "windows")},
         parameters=document["parameters"],
-        text=text,
+        text=fit.text(document),
         footer=_footer(),
     )
 

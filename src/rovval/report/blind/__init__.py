@@ -1,1 +1,1 @@
-"""blind"""
+"""Report of a blind check: how often the answers are right on each kind of logs."""

@@ -1,0 +1,25 @@
+"""The text of a test scenario: every expectation with its verdict, then what was compared or which channels the log holds."""
+
+from report_cases import make_run, make_sim
+
+from rovval.comparison import compare
+from rovval.fly.scenarios import Check, Outcome
+from rovval.report.scenario import text
+
+
+def outcome(**more: object) -> Outcome:
+    checks = (Check("level", "0.1 deg", True), Check("still", "2 m/s", False), Check("depth", "1 m", None))
+    return Outcome(1, "stability", "merlin", "fossen", checks, **more)  # type: ignore[arg-type]
+
+
+def test_every_expectation_is_told_with_its_verdict() -> None:
+    said = text(outcome()).splitlines()
+    assert said == ["Scenario 1: stability (merlin, fossen)", "  pass  level: 0.1 deg", "  FAIL  still: 2 m/s", "  -     depth: 1 m", "NOT passed"]
+
+
+def test_what_was_compared_and_the_channels_of_the_log_follow() -> None:
+    run = make_run(300)
+    assert "in windows" in text(outcome(comparison=compare(run, make_sim(run))))
+    row = {"channel": "u", "unit": "m/s", "low": -1.0, "high": 1.5, "coverage": 0.5, "n": 3}
+    said = text(outcome(document={"channels": [row, row | {"channel": "v", "n": 0}]}))
+    assert "50.0%" in said and "  v " not in said
