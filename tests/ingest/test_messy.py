@@ -356,7 +356,7 @@ def test_unreadable_datetimes_are_refused(tmp_path):
 def test_a_merlin_log_that_has_the_tanks_columns_as_well_is_merlins(tmp_path):
     """Both profiles find all their columns in it: what a log of the tank never has decides."""
     tank = load_profile("bluerov2_tank")
-    more = {c.column: ["0.5"] * 300 for c in tank.channels.values()} | {"timestamp_ns": [str(1_700_000_000_000_000_000 + i * 10**8) for i in range(300)]}
+    more = {str(c.column): ["0.5"] * 300 for c in tank.channels.values()} | {"timestamp_ns": [str(1_700_000_000_000_000_000 + i * 10**8) for i in range(300)]}
     path = tmp_path / "both.csv"
     path.write_text(text(more))
     assert read(path).profile == "bluerov2_tank"
