@@ -3,13 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from rovval.core.data import Run
-from rovval.diagnose.decision.finding import find
+from rovval.core.errors import BadInput
+from rovval.diagnose.decision.finding import Finding, clearer
+from rovval.diagnose.decision.verdict import decide
+from rovval.diagnose.hypotheses.hypothesis import columns_of
+from rovval.diagnose.hypotheses.library import hypotheses, initialised
+from rovval.diagnose.hypotheses.observability import observable
+from rovval.diagnose.inference.map_fit import healthy_point
+from rovval.diagnose.inference.problem import corrected_residuals, pose
 from rovval.diagnose.result.assembly import assemble
 from rovval.diagnose.result.diagnosis import Diagnosis
-from rovval.diagnose.windows.shooting import cut_all
+from rovval.diagnose.search.forward import search
+from rovval.diagnose.search.onset import windows_from
+from rovval.diagnose.windows.shooting import Stretches, cut_all
 from rovval.vehicle.model import Vehicle
+
+Progress = Callable[[str, float], None]
 
 
 def diagnose(
@@ -21,19 +33,53 @@ def diagnose(
     calibration_slop: float = 0.05,
     seed: int = 0,
     without: Sequence[str] = (),
-    progress: Callable[[str, float], None] | None = None,
+    progress: Progress | None = None,
 ) -> Diagnosis:
     """Diagnose the gap between ``vehicle``'s simulator and one or several of its logs.
 
     Args:
         runs: logs on the 10 Hz grid, all of this vehicle; three or more are held out one at a time, fewer in fifths.
-        calibration_slop: relative error that a healthy simulator's coefficients may have; an effect must explain more than that.
+        vehicle: the vehicle as its file has it.
+        model: the platform whose simulator is diagnosed.
+        window_s: length (s) of the windows that are simulated from their measured start; a half or a quarter of it where logs are short.
+        calibration_slop: tolerance: relative standard deviation of a healthy simulator's coefficients; an effect must explain more than that.
+        seed: of bootstraps and permutations.
         without: effects or hypotheses to leave out of the library (the withheld-effect check does).
+        progress: told what is done and the share of the whole.
 
     Raises:
         BadInput: too little of a log can be simulated, or thruster inputs are missing.
     """
+    say = progress or _silent
+    windows, left_out = cut_all(runs, vehicle, model, window_s)
+    found = analyse(windows, without, calibration_slop, seed, say)
+    if onset := found.onset:
+        say(f"searching the part from {onset.time:.0f} s on", 0.85)
+        late = _analysed_from(onset.time, windows[0], without, calibration_slop, seed)
+        found = late if late and clearer(late, found, onset) else found
+    return assemble(found, left_out, calibration_slop, seed, say)
 
-    say = progress or (lambda text, share: None)
-    parts, left_out = cut_all(runs, vehicle, model, window_s)
-    return assemble(find(parts, without, calibration_slop, seed, say), left_out, calibration_slop, seed, say)
+
+def analyse(windows: tuple[Stretches, ...], without: Sequence[str], tolerance: float, seed: int, say: Progress) -> Finding:
+    """One pass over the windows of the logs: pose the estimation problem, fit the healthy vehicle, search for causes, decide."""
+    library, untestable = hypotheses(windows, without)
+    say(f"simulating every effect of the library on {sum(part.count for part in windows)} windows", 0.05)
+    problem = pose(windows, columns_of(library), tolerance)
+    library, unseen = observable(problem, library)
+    healthy = healthy_point(problem)
+    selection = search(problem, library, initialised(problem, library, healthy), healthy, seed, say)
+    say("asking how much any systematic cause could explain", 0.85)
+    residuals = corrected_residuals(problem)
+    return Finding(problem, untestable | unseen, selection, residuals, decide(problem, selection, residuals))
+
+
+def _analysed_from(time: float, windows: Stretches, without: Sequence[str], tolerance: float, seed: int) -> Finding | None:
+    """The same over the windows from ``time`` (s) on; None where too few of them can be simulated: the log as a whole was."""
+    try:
+        return replace(analyse((windows_from(windows, time),), without, tolerance, seed, _silent), since=time)
+    except BadInput:
+        return None
+
+
+def _silent(text: str, share: float) -> None:
+    """Progress that nobody asked for."""

@@ -15,16 +15,16 @@ import numpy as np
 from rovval import effects
 from rovval.blind.plant.spec import Array
 from rovval.core.data import Run
-from rovval.diagnose.hypotheses.holding import placed
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of
-from rovval.diagnose.hypotheses.library import hypotheses, retuned
+from rovval.diagnose.hypotheses.library import hypotheses, initialised
+from rovval.diagnose.hypotheses.snag import placed
 from rovval.diagnose.inference.hypothesis_fit import confirm
 from rovval.diagnose.inference.laplace import Point
 from rovval.diagnose.inference.map_fit import healthy_point
 from rovval.diagnose.inference.problem import Problem, at, gap_at, pose
 from rovval.diagnose.residuals.normal_equations import Products
-from rovval.diagnose.search.candidates import begun
-from rovval.diagnose.search.onset import after
+from rovval.diagnose.search.candidates import start_of
+from rovval.diagnose.search.onset import windows_from
 from rovval.diagnose.windows.shooting import cut
 from rovval.vehicle.model import Vehicle
 
@@ -78,13 +78,13 @@ def _fit(
     """The problem, the healthy vehicle, the hypotheses that were free, and the fitted point."""
     part = cut(run, vehicle, model, window_s)
     begins = [onsets[name] for name in true if name in onsets and not effects.load(name.partition("[")[0]).begins]  # no onset of their own
-    part = after(part, max(begins)) if begins else part
+    part = windows_from(part, max(begins)) if begins else part
     library, _ = hypotheses((part,))
     if not true or not set(true) <= {h.name for h in library}:
         return None
     problem = pose((part,), columns_of(library), calibration_slop)
     healthy = healthy_point(problem)
-    wanted = [[h for h in retuned(problem, library, healthy) if h.name == name] for name in true]
+    wanted = [[h for h in initialised(problem, library, healthy) if h.name == name] for name in true]
     return problem, healthy, wanted, _fitted(problem, healthy, wanted, onsets)
 
 
@@ -122,7 +122,7 @@ def _from(problem: Problem, healthy: Point, data: Products, wanted: Wanted, rank
         best = ordered[min(rank, len(ordered) - 1)]
         moves = np.zeros(len(data.columns))
         moves[data.place(best.columns)] = _step(problem, data, best)[0]
-        beta = begun(problem, data, best, moves, beta, best.slots)
+        beta = start_of(problem, data, best, moves, beta, best.slots)
         if best.name in onsets:
             place = placed(problem.parts, problem.plant, best.slots, onsets[best.name])
             beta[list(place)] = list(place.values())

@@ -1,7 +1,7 @@
-"""Whether causes show what they do: that they surely close some of the gap, harm no axis by much, and do it where the simulator follows the vehicle.
+"""The benefit of causes: whether they surely reduce the gap, harm no axis by much, and do so where the simulator follows the vehicle.
 
-Asked in two ways, of which one has to do: with every other coefficient as the file has it, and with healthy coefficients where they settle beside
-the causes; a vehicle that rolls freely answers to each of them. Faults of sensors are asked of the kinematic checks instead, where these see them.
+Asked in two ways, of which one has to do: with every other coefficient as the file has it, and with coefficients fitted within their tolerance beside
+the causes; a vehicle that rolls freely answers to each of them. Of faults of sensors the parity residuals are asked instead, where these see them.
 """
 
 from __future__ import annotations
@@ -13,110 +13,123 @@ import numpy as np
 
 from rovval.core.channels import AXES
 from rovval.core.data import Array
+from rovval.diagnose.criteria import (
+    ACTING_SHARE,
+    COUNTED_REDUCTION,
+    FOLLOWED_ANYWAY,
+    FOLLOWED_AXES,
+    FOLLOWED_MOTION,
+    HARMFUL,
+    LEAST_EVIDENCE,
+    OWN_AXIS_WORSE,
+    PARITY_ISOLATES_EVIDENCE,
+    PARITY_ISOLATES_SHARE,
+    RELIEVED_DEPARTURE,
+    ROUNDING_SHARE,
+    SURE_REDUCTION,
+    UNEXPLAINED_NOTHING,
+)  # fmt: skip
 from rovval.diagnose.inference.gap import axis_weight
 from rovval.diagnose.inference.hypothesis_fit import Confirmed
 from rovval.diagnose.inference.laplace import Point
 from rovval.diagnose.inference.problem import Problem, corrected_residuals
 from rovval.diagnose.inference.shrinkage import shrinkage
-from rovval.diagnose.search.baseline import relief, without_own
-from rovval.diagnose.search.confusion import RELIEF
-from rovval.diagnose.search.joint import LEAST_EVIDENCE
-
-ACTING = 0.15  # of what a cause closes: the axes on which it acts
-MUCH = 0.3  # of what a cause closes: the axes on which the simulator must follow the vehicle (chosen; the one on which it closes most always)
-HARMS = 0.25  # of what causes close in all: a cause that opens more on one axis is the least bad (chosen)
-WORSE = 0.02  # of the gap, that the axis of an axis's own cause may get worse (opened sets: of 100 right ones none does at all, of a foreign one 0.06)
-UNMOVED = 0.001  # of the gap: less is rounding, as of a compass, which moves nothing (chosen)
-SKILL = 0.5  # of the squared motion: an axis on which more is left is not simulated at all (chosen)
-NOTHING = 0.05  # of the squared error: less is form, whatever its evidence (chosen)
-HARDLY = 0.15  # of what an axis erred before (chosen)
-SOME, SPARED = 0.05, 2.0  # surely, of what slop leaves; and standard deviations of tolerance (opened sets: true 0.08, 2.5, 3.1; false 0.02, 0.8)
-SEEN, SURELY = 0.5, 100.0  # share of what the kinematic checks show, and evidence, from which they name a fault by themselves (chosen)
+from rovval.diagnose.search.baseline import healthy_without, reduction_beside
 
 
 @dataclass(frozen=True, slots=True)
-class Way:
-    """Squared error of each axis without and with the causes, in one of the two ways; whether these surely close some of it, and whether the
-    simulator follows the vehicle where they do (`skilled`)."""
+class Benefit:
+    """What causes do to the gap, in one of the two ways.
 
-    was: Mapping[str, float]
-    left: Mapping[str, float]
+    Attributes:
+        before: weighted squared error of each axis without the causes.
+        after: the same with them.
+        sure: whether they surely reduce the gap.
+        followed: whether the simulator follows the vehicle on the axes where they do.
+    """
+
+    before: Mapping[str, float]
+    after: Mapping[str, float]
     sure: bool
-    skill: bool
+    followed: bool
 
     @property
-    def closed(self) -> dict[str, float]:
-        """What is closed on each axis, where it is."""
-        return _closed(self.was, self.left)
+    def reduced(self) -> dict[str, float]:
+        """By how much each axis's squared error falls; 0 where it does not."""
+        return _reduced(self.before, self.after)
 
     @property
-    def all_of_it(self) -> bool:
+    def complete(self) -> bool:
         """Whether the causes leave next to nothing."""
-        return sum(self.left.values()) <= NOTHING * sum(self.was.values())
+        return sum(self.after.values()) <= UNEXPLAINED_NOTHING * sum(self.before.values())
+
+    def harms(self, own: Sequence[str] = ()) -> bool:
+        """Whether an axis gets worse by a good part of the whole reduction, or one of the axes ``own`` that the causes are said to be of by more than a
+        little."""
+        before, after = sum(self.before.values()), sum(self.after.values())
+        worse = {axis: self.after[axis] - self.before[axis] for axis in self.before}
+        return max(worse.values()) > max(HARMFUL * (before - after), ROUNDING_SHARE * before) or any(worse[axis] > OWN_AXIS_WORSE * before for axis in own)
 
 
-def as_filed(problem: Problem, final: Confirmed, before: list[Array]) -> Way:
-    """With every other coefficient as the file has it."""
-    was, left = axis_weight(problem, before), axis_weight(problem, corrected_residuals(problem, final.beta))
-    shrunk = shrinkage(problem, final, before, 0)
-    return Way(was, left, shrunk["low"] > 0, skilled(problem, was, left))
+def benefit_as_filed(problem: Problem, fit: Confirmed, residuals: list[Array]) -> Benefit:
+    """With every other coefficient as the file has it; ``residuals`` are the nominal vehicle's."""
+    before, after = axis_weight(problem, residuals), axis_weight(problem, corrected_residuals(problem, fit.beta))
+    shrunk = shrinkage(problem, fit, residuals, 0)
+    return Benefit(before, after, shrunk["low"] > 0, followed(problem, before, after))
 
 
-def beside_slop(problem: Problem, final: Confirmed, healthy: Point, before: list[Array]) -> Way:
-    """Beside healthy coefficients: surely, where the causes close what is worth a name of what those that are not their own leave when they settle
-    alone, and some of it surely, or where they spare a healthy coefficient much of its strain."""
-    was, left = axis_weight(problem, before), axis_weight(problem, corrected_residuals(problem, final.point.beta))
-    value, low, _ = relief(problem, final, without_own(problem, healthy, final.slots), 0)
-    return Way(was, left, (value > RELIEF and low > SOME) or healthy.strain() - final.point.strain() > SPARED, skilled(problem, was, left))
+def benefit_beside(problem: Problem, fit: Confirmed, healthy: Point, residuals: list[Array]) -> Benefit:
+    """Beside coefficients within tolerance, which by themselves are fitted at ``healthy``.
+
+    It is sure where the causes reduce what those that are not their own leave of the gap by a share that counts, and by some of it surely, or where
+    they bring a coefficient back towards its tolerance by much.
+    """
+    before, after = axis_weight(problem, residuals), axis_weight(problem, corrected_residuals(problem, fit.point.beta))
+    value, low, _ = reduction_beside(problem, fit, healthy_without(problem, healthy, fit.slots), 0)
+    sure = (value > COUNTED_REDUCTION and low > SURE_REDUCTION) or healthy.strain() - fit.point.strain() > RELIEVED_DEPARTURE
+    return Benefit(before, after, sure, followed(problem, before, after))
 
 
-def acting(closed: Mapping[str, float], share: float = ACTING) -> tuple[str, ...]:
-    """Axes on which the causes close a good part of what they close."""
-    return tuple(axis for axis in AXES if closed.get(axis, 0.0) > share * max(sum(closed.values()), 1e-300))
+def acting_axes(reduced: Mapping[str, float], share: float = ACTING_SHARE) -> tuple[str, ...]:
+    """Axes on which the causes make more than a ``share`` of their reduction."""
+    return tuple(axis for axis in AXES if reduced.get(axis, 0.0) > share * max(sum(reduced.values()), 1e-300))
 
 
-def skilled(problem: Problem, was: Mapping[str, float], left: Mapping[str, float]) -> bool:
-    """Whether on the axes where they close much the simulator, causes added, errs well less than the vehicle moves, or hardly errs any more.
-    Where it does neither, it replays an autopilot's answers to disturbances that nobody logged, which shows nothing about the vehicle."""
+def followed(problem: Problem, before: Mapping[str, float], after: Mapping[str, float]) -> bool:
+    """Whether on the axes where the causes reduce much the simulator with them errs well less than the vehicle moves, or hardly errs any more.
+    Where it does neither, it replays an autopilot's answers to disturbances that nobody logged, which says nothing about the vehicle."""
     moved = [np.where(part.ok, part.y - (part.y * part.ok).sum((0, 1)) / np.maximum(part.ok.sum((0, 1)), 1), 0.0) for part in problem.parts]
     motion = axis_weight(problem, moved)
-    closed = _closed(was, left)
-    asked = {max(closed, key=lambda axis: closed[axis]), *acting(closed, MUCH)}
-    return all(left[axis] <= max(HARDLY * was[axis], SKILL * motion[axis]) for axis in asked)
+    reduced = _reduced(before, after)
+    asked = {max(reduced, key=lambda axis: reduced[axis]), *acting_axes(reduced, FOLLOWED_AXES)}
+    return all(after[axis] <= max(FOLLOWED_ANYWAY * before[axis], FOLLOWED_MOTION * motion[axis]) for axis in asked)
 
 
-def _closed(was: Mapping[str, float], left: Mapping[str, float]) -> dict[str, float]:
-    return {axis: max(was[axis] - left[axis], 0.0) for axis in was}
+def _reduced(before: Mapping[str, float], after: Mapping[str, float]) -> dict[str, float]:
+    return {axis: max(before[axis] - after[axis], 0.0) for axis in before}
 
 
-def harms(way: Way, own: Sequence[str] = ()) -> bool:
-    """Whether an axis gets worse by a good part of what is closed in all, or one that a cause is said to be of, its ``own``, by more than a little."""
-    before, after = sum(way.was.values()), sum(way.left.values())
-    worse = {axis: way.left[axis] - way.was[axis] for axis in way.was}
-    return max(worse.values()) > max(HARMS * (before - after), UNMOVED * before) or any(worse[axis] > WORSE * before for axis in own)
+def beneficial(ways: Sequence[Benefit], seen: bool, own: Sequence[str] = ()) -> bool:
+    """Whether one of the ways shows a benefit; ``seen``: parity residuals do, and motion need not; ``own``: axes that the causes are said to be of."""
+    return any(not way.harms(own) and (seen or (way.sure and way.followed)) for way in ways)
 
 
-def stand(ways: Sequence[Way], seen: bool, own: Sequence[str] = ()) -> bool:
-    """Whether one of the ways shows the causes; ``seen``: the kinematic checks do, and motion need not; ``own``: axes that they are said to be of."""
-    return any(not harms(way, own) and (seen or (way.sure and way.skill)) for way in ways)
+def parity_supports(problem: Problem, fit: Confirmed) -> bool:
+    """Whether the parity residuals see faults of sensors: there are none to ask, or they fall with evidence."""
+    return not _parity_losses(problem).any() or float(_parity_evidence(problem, fit)) > LEAST_EVIDENCE
 
 
-def checked(problem: Problem, final: Confirmed) -> bool:
-    """Whether the kinematic checks see faults of sensors at all: there are none to ask, or what they show is closed with evidence."""
-    return not _checks(problem).any() or float(_closed_there(problem, final)) > LEAST_EVIDENCE
+def parity_isolates(problem: Problem, fit: Confirmed) -> bool:
+    """Whether the parity residuals by themselves isolate faults of sensors: no error of the dynamics leaves a trace in them."""
+    evidence = _parity_evidence(problem, fit)
+    return evidence * problem.inflation > PARITY_ISOLATES_SHARE * float(_parity_losses(problem).sum()) and evidence > PARITY_ISOLATES_EVIDENCE
 
 
-def seen_by_checks(problem: Problem, final: Confirmed) -> bool:
-    """Whether the kinematic checks by themselves name the faults of sensors: no error of the dynamics leaves a trace there."""
-    closed = _closed_there(problem, final)
-    return closed * problem.inflation > SEEN * float(_checks(problem).sum()) and closed > SURELY
+def _parity_evidence(problem: Problem, fit: Confirmed) -> float:
+    """By how much the weighted squared parity residuals fall on held-out windows: twice a log-likelihood ratio, divided by the design effect."""
+    return float((_parity_losses(problem) - (fit.loss - fit.dynamic_loss)).sum()) / problem.inflation
 
 
-def _closed_there(problem: Problem, final: Confirmed) -> float:
-    """What is closed, on held-out windows, of what the kinematic checks show, in evidence."""
-    return float((_checks(problem) - (final.loss - final.dynamic_loss)).sum()) / problem.inflation
-
-
-def _checks(problem: Problem) -> Array:
-    """What the kinematic checks of each window (m,) show."""
+def _parity_losses(problem: Problem) -> Array:
+    """Weighted squared parity residuals (m,) of each window at the nominal vehicle."""
     return np.asarray(problem.gap_data.c - problem.gap.c)

@@ -1,7 +1,7 @@
-"""Whether a cause holds still: a true one has one value all through the log, the nearest relative of another effect has not.
+"""Constancy of a cause's parameters: a true cause has one value all through the log, the nearest relative of another effect has not.
 
-The value that a cause's parameter would take in each window by itself is held against the one that the whole log gives; for a cause that
-sits in one thruster, its thrust is let vary in each `PIECES` part of a window as well (a coupling that slips, a supply that gives way).
+The value that a parameter would take in each window by itself is held against the one that the whole log gives; of a cause that
+sits in one thruster, its thrust may vary within a window as well (a coupling that slips, a supply that gives way).
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import FEW_WINDOWS
+from rovval.diagnose.criteria import DRIFTING_SHARE, DRIFTING_SIGMA, FEW_WINDOWS
 from rovval.diagnose.inference.disturbance import pieces
 from rovval.diagnose.inference.hypothesis_fit import Confirmed, places
 from rovval.diagnose.inference.laplace import Point
@@ -20,68 +20,67 @@ from rovval.diagnose.inference.problem import Problem
 from rovval.diagnose.residuals.external_forces import answered
 from rovval.diagnose.residuals.normal_equations import Products, joined, products
 from rovval.diagnose.residuals.sensitivities import spread
-from rovval.diagnose.search.joint import Named
+from rovval.diagnose.search.baseline import SelectedCause
 from rovval.vehicle.model import allocation
 
-DRIFT, SURE = 0.4, 5.0  # of the value, and standard errors (opened sets: 30 true causes drift by 0.24 at most, or by 3.3 standard errors)
-SHARES = (0.1, 0.2, 0.4, 0.8)  # of the value, or of the thruster's thrust: rms by which it may vary
+VARIATIONS = (0.1, 0.2, 0.4, 0.8)  # rms tried by which a value may vary, as a share of the value, or of the thruster's thrust
 
 
-def wavering(problem: Problem, final: Confirmed, named: Sequence[Named]) -> dict[str, float]:
-    """Twice the log Bayes factor, for each named cause, of a value that varies normally about its mean over one that does not."""
-    step = final.point.solved(final.point.curvature, final.point.slope)
-    return {n.hypothesis.name: max(_windows(problem, final.point, step, n), _moments(problem, final.point, step, n)) for n in named}
+def variation(problem: Problem, fit: Confirmed, causes: Sequence[SelectedCause]) -> dict[str, float]:
+    """Twice the log Bayes factor, for each cause, of a value that varies normally about its mean over one that is constant."""
+    step = fit.point.solved(fit.point.curvature, fit.point.slope)
+    return {n.hypothesis.name: max(_between_windows(problem, fit.point, step, n), _within_windows(problem, fit.point, step, n)) for n in causes}
 
 
-def drifting(problem: Problem, final: Confirmed, named: Sequence[Named]) -> tuple[str, ...]:
-    """Causes whose main parameter, the one that most windows show, surely moves by more than `DRIFT` of its value along the log, as the weight
+def drifting(problem: Problem, fit: Confirmed, causes: Sequence[SelectedCause]) -> tuple[str, ...]:
+    """Names of causes whose main parameter, the one that most windows show, surely moves by a good part of its value along the log, as the weight
     of a housing that fills does."""
-    step = final.point.solved(final.point.curvature, final.point.slope)
+    step = fit.point.solved(fit.point.curvature, fit.point.slope)
     found = []
-    for n in named:
-        own = [_windowed(problem, final.point, step, slot) for slot in _sized(problem, final.point, n)]
+    for n in causes:
+        own = [_by_window(problem, fit.point, step, slot) for slot in _sized(problem, fit.point, n)]
         if own and _drifts(*max(own, key=lambda one: float(one[1].sum()) * one[0] ** 2), problem.inflation):
             found.append(n.hypothesis.name)
     return tuple(found)
 
 
 def _drifts(value: float, A: Array, b: Array, inflation: float) -> bool:
-    """Whether a line through what each window adds to the value leaves it, over the windows that show it, by more than it is."""
+    """Whether a line through what each window adds to a value moves it, over the windows that show it, by a good part of the value."""
     at, shown = np.arange(len(A), dtype=np.float64), np.flatnonzero(A * value**2 > inflation)
     if len(shown) < FEW_WINDOWS:
         return False
     away = at - (A @ at) / A.sum()
-    slope, worth = float(b @ away) / float(A @ away**2), float(A @ away**2) / inflation
-    return abs(slope) * float(np.ptp(shown)) > DRIFT * abs(value) and abs(slope) * np.sqrt(worth) > SURE
+    slope, information = float(b @ away) / float(A @ away**2), float(A @ away**2) / inflation
+    return abs(slope) * float(np.ptp(shown)) > DRIFTING_SHARE * abs(value) and abs(slope) * np.sqrt(information) > DRIFTING_SIGMA
 
 
-def _windowed(problem: Problem, point: Point, step: Array, slot: int) -> tuple[float, Array, Array]:
-    """A parameter's departure from where it stood, and of every window its curvature (m,) and its slope (m,) at the joint fit."""
+def _by_window(problem: Problem, point: Point, step: Array, slot: int) -> tuple[float, Array, Array]:
+    """A parameter's departure from the vehicle's file, and of every window its curvature (m,) and its slope (m,) at the joint fit."""
     j = point.columns.index(slot)
     value = float(point.beta[slot] + step[j] - problem.origin[slot])
     return value, point.data.A[:, j, j], point.data.b[:, j] - point.data.A[:, j] @ step
 
 
-def _sized(problem: Problem, point: Point, named: Named) -> list[int]:
+def _sized(problem: Problem, point: Point, cause: SelectedCause) -> list[int]:
     """Slots of a cause that have a size: not those that only place it (an onset), nor one that rests at nothing, nor what wanders by nature."""
-    wanders = named.hypothesis.effect.wanders
-    return [s for s in named.hypothesis.slots if not wanders and point.beta[s] != problem.origin[s] and not places(problem, s)]
+    wanders = cause.hypothesis.effect.wanders
+    return [s for s in cause.hypothesis.slots if not wanders and point.beta[s] != problem.origin[s] and not places(problem, s)]
 
 
-def _windows(problem: Problem, point: Point, step: Array, named: Named) -> float:
-    """From window to window, the worst of the cause's sized parameters."""
+def _between_windows(problem: Problem, point: Point, step: Array, cause: SelectedCause) -> float:
+    """Evidence of variation from window to window, of the cause's sized parameter that varies most."""
     found = [0.0]
-    for slot in _sized(problem, point, named):
-        value, A, b = _windowed(problem, point, step, slot)
+    for slot in _sized(problem, point, cause):
+        value, A, b = _by_window(problem, point, step, slot)
         about = b - A * b.sum() / max(float(A.sum()), 1e-300)  # its mean, which on a bound is not zero
         own = Products(A[:, None, None], about[:, None], point.data.c, (slot,))
-        found += [_varies(own, share * value, problem.inflation) for share in SHARES]
+        found.append(variation_evidence(own, value, problem.inflation))
     return max(found)
 
 
-def _moments(problem: Problem, point: Point, step: Array, named: Named) -> float:
-    """From moment to moment, the thrust of the thruster that the cause sits in; 0 for other causes."""
-    vehicle, target = problem.plant.vehicle, named.hypothesis.name.partition("[")[2].rstrip("]")
+def _within_windows(problem: Problem, point: Point, step: Array, cause: SelectedCause) -> float:
+    """Evidence of variation within windows of the thrust of the thruster that a cause sits in; 0 for other causes."""
+    vehicle, target = problem.plant.vehicle, cause.hypothesis.target
     if target not in vehicle.thrusters:
         return 0.0
     unit, parts = list(vehicle.thrusters).index(target), []
@@ -91,11 +90,17 @@ def _moments(problem: Problem, point: Point, step: Array, named: Named) -> float
         left = np.where(part.ok, one.r - one.S @ step, 0.0)
         varied = replace(one, r=left, S=answered(part, point.beta, bank), columns=tuple(range(len(bank))))
         parts.append(products(varied, part.ok, problem.white, spread(part)))
-    return max(_varies(joined(parts), share, problem.inflation) for share in SHARES)
+    return variation_evidence(joined(parts), 1.0, problem.inflation)
+
+
+def variation_evidence(data: Products, value: float, inflation: float) -> float:
+    """Twice the log Bayes factor of a normal departure of each window's own in every column over none, at the best of the standard deviations
+    `VARIATIONS`, which are shares of ``value``."""
+    return max(_varies(data, share * value, inflation) for share in VARIATIONS)
 
 
 def _varies(data: Products, size: float, inflation: float) -> float:
-    """Twice the log Bayes factor of each window's own normal departure of standard deviation ``size`` in every column, over none."""
+    """The same at a standard deviation of ``size``."""
     ridge = inflation / size**2 * np.eye(data.A.shape[-1])
     H = data.A + ridge
     explained = np.einsum("wi,wi->", data.b, np.linalg.solve(H, data.b[..., None])[..., 0]) / inflation

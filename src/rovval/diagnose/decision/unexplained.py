@@ -7,14 +7,13 @@ from dataclasses import dataclass
 
 from rovval.core.channels import AXES
 from rovval.core.data import Array
+from rovval.diagnose.criteria import ACTING_FORCE, MOST_ACTING, MOST_VARYING, OPEN_GAP, VARYING_FORCE
 from rovval.diagnose.inference.gap import axis_weight, noise_loss
 from rovval.diagnose.inference.laplace import Point
 from rovval.diagnose.inference.prior import STRAINED
 from rovval.diagnose.inference.problem import Problem
-from rovval.diagnose.search.discrepancy import Forces
+from rovval.diagnose.search.discrepancy import GenericForces
 from rovval.diagnose.windows.shooting import axis_channels
-
-OPEN = 2.0 / 3.0  # share of a gap that neither noise nor slop accounts for, from which "no gap" would say too much (healthy logs: 0.51 at most)
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,21 +64,21 @@ def accounted(problem: Problem, healthy: Point) -> Accounted:
     return Accounted(noise, 1.0 - float(healthy.left().sum()) / float(problem.dynamic.c.sum()), healthy.strain())
 
 
-def unexplained(problem: Problem, forces: Forces, point: Point, inconstant: Sequence[str] = ()) -> Unexplained:
+def unexplained(problem: Problem, forces: GenericForces, point: Point, inconstant: Sequence[str] = ()) -> Unexplained:
     """On which axes generic forces would close most of what is left at ``point``, and what that resembles."""
     by_axis = sorted(((axis, forces.evidence([axis])) for axis in AXES), key=lambda item: -item[1])
-    axes = [axis for axis, gain in by_axis if gain > 0.3 * by_axis[0][1]][:3] or [by_axis[0][0]]
+    axes = [axis for axis, gain in by_axis if gain > ACTING_FORCE * by_axis[0][1]][:MOST_ACTING] or [by_axis[0][0]]
     by_feature = sorted(((f, forces.evidence([axes[0]], f)) for f in forces.features), key=lambda item: -item[1])
-    depends = [f for f, gain in by_feature if gain > 0.5 * by_feature[0][1] and gain > 0][:4]
+    depends = [f for f, gain in by_feature if gain > VARYING_FORCE * by_feature[0][1] and gain > 0][:MOST_VARYING]
     beyond = [(problem.plant.slots[c].key, float(z)) for c, z in zip(point.columns[point.own :], point.sigmas(), strict=True) if abs(z) > STRAINED]
     strained = max(beyond, key=lambda one: abs(one[1]), default=None)
-    return Unexplained(tuple(axes), tuple(depends), forces.share(problem.folds), strained, tuple(inconstant))
+    return Unexplained(tuple(axes), tuple(depends), forces.held_out_gain(problem.folds), strained, tuple(inconstant))
 
 
-def open_gap(problem: Problem, known: Accounted, before: list[Array]) -> Unexplained | None:
+def open_gap(problem: Problem, known: Accounted, residuals: list[Array]) -> Unexplained | None:
     """A gap of which noise and tolerance account for too little to call it none, though no force is shown to be at work and no cause is named; None
-    where they account for enough. ``before`` are the nominal vehicle's residuals."""
-    if 1.0 - known.share <= OPEN:
+    where they account for enough. ``residuals`` are the nominal vehicle's residuals."""
+    if 1.0 - known.share <= OPEN_GAP:
         return None
-    weight = axis_weight(problem, before)
+    weight = axis_weight(problem, residuals)
     return Unexplained((max(axis_channels(problem.parts[0]), key=lambda axis: weight[axis]),), accounted=known.share)

@@ -1,6 +1,7 @@
 """The verdict: explained, partly explained, unknown, or no gap. It is decided here and nowhere else.
 
-What was found is asked what `weigh` asks, and is named if it passes.
+What was found is named if no reason speaks against it (`rejection`). Causes whose value does not hold still along the log are left out and told as what is
+left; faults of sensors that the parity residuals isolate by themselves stay, whatever speaks against the others.
 """
 
 from __future__ import annotations
@@ -10,20 +11,24 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from rovval.core.data import Array
-from rovval.diagnose.decision.questions import BROKEN, of_sensor
+from rovval.diagnose.criteria import (
+    BROKEN_DEPARTURE,
+    BY_CHANCE,
+    FALSE_ALARM,
+    FURTHER_CAUSE_BELIEF,
+    GENERIC_EVIDENCE,
+    NEAR_GAIN,
+    NEAR_LITTLE,
+)
+from rovval.diagnose.decision.rejection import Assessment, assess, of_sensor
 from rovval.diagnose.decision.unexplained import Accounted, Unexplained, accounted, open_gap, unexplained
-from rovval.diagnose.decision.weigh import HOLDS, REAL, Weighed, weigh
 from rovval.diagnose.inference.hypothesis_fit import Confirmed
 from rovval.diagnose.inference.prior import STRAINED
 from rovval.diagnose.inference.problem import Problem
-from rovval.diagnose.search.discrepancy import Forces, bare_forces, forces
+from rovval.diagnose.search.baseline import SelectedCause
+from rovval.diagnose.search.discrepancy import GenericForces, generic_forces, nominal_forces
 from rovval.diagnose.search.forward import Selection
-from rovval.diagnose.search.joint import Named, jointly
-from rovval.diagnose.search.round import FALSE_ALARM
-
-COMPANY = 0.4  # of the probability of a further cause: what one cause leaves unexplained has other names, too (opened sets: 16 of 45 such names were right)
-NEAR = 0.05  # of the gap, held out: an effect that closes less is not near the truth, whatever its evidence (chosen)
-
+from rovval.diagnose.search.joint import joint_fit
 
 Verdict = Literal["no_gap", "explained", "partly_explained", "unknown"]
 
@@ -47,7 +52,7 @@ class Decision:
     """
 
     verdict: Verdict
-    causes: tuple[Named, ...]
+    causes: tuple[SelectedCause, ...]
     fit: Confirmed | None
     groups: Mapping[str, tuple[tuple[str, float], ...]]
     probability: Mapping[str, float]
@@ -59,63 +64,79 @@ class Decision:
     unexplained: Unexplained | None
 
 
-def decide(problem: Problem, selection: Selection, before: list[Array]) -> Decision:
-    """The verdict on what a search found; ``before`` are the nominal vehicle's residuals."""
-    general = forces(problem, selection.healthy)
-    weighed = weigh(problem, selection, selection.final, general, before) if selection.final else None
-    if weighed and weighed.unsteady and not weighed.least_bad:
-        selection, weighed = _steady(problem, selection, weighed, general, before)
-    if selection.final and weighed and weighed.parity_led and weighed.least_bad:
-        selection = _only(problem, selection, tuple(n for n in selection.named if of_sensor(n)))
-        weighed = replace(weighed, remains=True)
-    if selection.final and weighed and (weighed.parity_led or not weighed.least_bad):
-        return _isolated(problem, selection, selection.final, weighed)
-    return _not_isolated(problem, selection, weighed, general, before)
+def decide(problem: Problem, selection: Selection, residuals: list[Array]) -> Decision:
+    """The verdict on what a search found; ``residuals`` are the nominal vehicle's."""
+    general = generic_forces(problem, selection.healthy)
+    assessed = _assessed(problem, selection, general, residuals)
+    if assessed and assessed.inconstant and not assessed.rejected:
+        selection, assessed = _constant(problem, selection, assessed, general, residuals)
+    if assessed and assessed.by_parity and assessed.rejected:
+        selection = _reduced_to(problem, selection, tuple(n for n in selection.causes if of_sensor(n)))
+        assessed = replace(assessed, remainder=True)
+    if selection.fit and assessed and (assessed.by_parity or not assessed.rejected):
+        return _isolated(problem, selection, selection.fit, assessed)
+    return _not_isolated(problem, selection, assessed, general, residuals)
 
 
-def _isolated(problem: Problem, selection: Selection, final: Confirmed, weighed: Weighed) -> Decision:
-    groups = {n.hypothesis.name: n.group for n in selection.named}
-    gone = [name for name in weighed.unsteady if name not in groups]
-    rest = unexplained(problem, weighed.rest, final.point, gone) if weighed.remains else None
-    surest = max(selection.named, key=lambda n: n.evidence)
-    probability = {n.hypothesis.name: _probability(n) * (1.0 if n is surest or of_sensor(n) else COMPANY) for n in selection.named}
-    verdict: Verdict = "partly_explained" if weighed.remains else "explained"
-    figures = weighed.total, weighed.instead, weighed.beside, weighed.strain
-    return Decision(verdict, selection.named, final, groups, probability, *figures, accounted(problem, selection.healthy), rest)
+def _assessed(problem: Problem, selection: Selection, general: GenericForces, residuals: list[Array]) -> Assessment | None:
+    """What speaks for and against the causes found; None where there are none."""
+    return assess(problem, selection.causes, selection.fit, selection.healthy, general, residuals) if selection.fit else None
 
 
-def _not_isolated(problem: Problem, selection: Selection, weighed: Weighed | None, general: Forces, before: list[Array]) -> Decision:
-    """An unknown cause where something is surely at work (a force, a strain, an effect that nearly fits) or where the gap stays open; else no gap."""
-    total, skill, unsteady = (weighed.total, weighed.skill, weighed.unsteady) if weighed else (0.0, True, ())
-    anything, strained = general.evidence(), selection.healthy.strain()
-    tried = max((worth if gain > NEAR else worth / 3 for _, worth, gain in selection.rounds[0]), default=0.0) if selection.rounds else 0.0
-    nearly = skill and (max(total, tried) > REAL or bool(unsteady))
-    real = nearly or (anything > REAL and general.share(problem.folds) > HOLDS) or strained > BROKEN
+def _isolated(problem: Problem, selection: Selection, fit: Confirmed, assessed: Assessment) -> Decision:
+    """The causes are named."""
+    groups = {n.hypothesis.name: n.group for n in selection.causes}
+    gone = [name for name in assessed.inconstant if name not in groups]
+    rest = unexplained(problem, assessed.forces, fit.point, gone) if assessed.remainder else None
+    surest = max(selection.causes, key=lambda n: n.evidence)
+    probability = {n.hypothesis.name: _probability(n) * (1.0 if n is surest or of_sensor(n) else FURTHER_CAUSE_BELIEF) for n in selection.causes}
+    verdict: Verdict = "partly_explained" if assessed.remainder else "explained"
+    figures = assessed.evidence, assessed.generic_instead, assessed.generic_beside, assessed.departure
+    return Decision(verdict, selection.causes, fit, groups, probability, *figures, accounted(problem, selection.healthy), rest)
+
+
+def _not_isolated(problem: Problem, selection: Selection, assessed: Assessment | None, general: GenericForces, residuals: list[Array]) -> Decision:
+    """An unknown cause where something is surely at work (a force, a coefficient far beyond tolerance, an effect that nearly fits) or where the gap stays
+    open; else no gap."""
+    evidence, followed, inconstant = (assessed.evidence, assessed.followed, assessed.inconstant) if assessed else (0.0, True, ())
+    anything, departure = general.evidence(), selection.healthy.strain()
+    first = selection.steps[0] if selection.steps else ()
+    tried = max((worth if gain > NEAR_GAIN else worth / NEAR_LITTLE for _, worth, gain in first), default=0.0)
+    nearly = followed and (max(evidence, tried) > GENERIC_EVIDENCE or bool(inconstant))
+    sure = nearly or (anything > GENERIC_EVIDENCE and general.held_out_gain(problem.folds) > BY_CHANCE) or departure > BROKEN_DEPARTURE
     known = accounted(problem, selection.healthy)
-    rest = unexplained(problem, bare_forces(problem), selection.healthy, unsteady) if real else open_gap(problem, known, before)
-    return Decision("unknown" if rest else "no_gap", (), None, {}, {}, total, anything, anything, strained, known, rest)
+    rest = unexplained(problem, nominal_forces(problem), selection.healthy, inconstant) if sure else open_gap(problem, known, residuals)
+    return Decision("unknown" if rest else "no_gap", (), None, {}, {}, evidence, anything, anything, departure, known, rest)
 
 
-def _steady(problem: Problem, selection: Selection, weighed: Weighed, general: Forces, before: list[Array]) -> tuple[Selection, Weighed]:
-    """What stands without the causes that do not hold still; they are told as what is left."""
-    kept = tuple(n for n in selection.named if n.hypothesis.name not in weighed.unsteady)
+def _constant(
+    problem: Problem, selection: Selection, assessed: Assessment, general: GenericForces, residuals: list[Array]
+) -> tuple[Selection, Assessment]:
+    """The causes without those that are not constant, which are told as what is left."""
+    kept = tuple(n for n in selection.causes if n.hypothesis.name not in assessed.inconstant)
     if not kept:
-        return selection, replace(weighed, least_bad=True)
-    selection = _only(problem, selection, kept)
-    assert selection.final is not None
-    again = weigh(problem, selection, selection.final, general, before)
-    least_bad = again.least_bad or bool(again.unsteady) or again.strain > STRAINED  # what went took up the strain: another cause is there
-    return selection, replace(again, remains=True, least_bad=least_bad, unsteady=weighed.unsteady)
+        return selection, replace(assessed, rejected=True)
+    selection = _reduced_to(problem, selection, kept)
+    again = _assessed(problem, selection, general, residuals)
+    assert again is not None
+    return selection, without_inconstant(again, assessed.inconstant)
 
 
-def _only(problem: Problem, selection: Selection, kept: tuple[Named, ...]) -> Selection:
+def without_inconstant(again: Assessment, inconstant: tuple[str, ...]) -> Assessment:
+    """The assessment ``again`` of causes after those named ``inconstant`` went. They are rejected as well where another is inconstant now, or where what went
+    had kept a coefficient within its tolerance: another cause is there."""
+    rejected = again.rejected or bool(again.inconstant) or again.departure > STRAINED
+    return replace(again, remainder=True, rejected=rejected, inconstant=inconstant)
+
+
+def _reduced_to(problem: Problem, selection: Selection, kept: tuple[SelectedCause, ...]) -> Selection:
     """The selection with the causes ``kept`` alone, fitted again."""
-    final = selection.final
-    if final is None or not kept or len(kept) == len(selection.named):
+    fit = selection.fit
+    if fit is None or not kept or len(kept) == len(selection.causes):
         return selection
-    return replace(selection, named=kept, final=jointly(problem, final, [n.hypothesis for n in kept]))
+    return replace(selection, causes=kept, fit=joint_fit(problem, fit, [n.hypothesis for n in kept]))
 
 
-def _probability(named: Named) -> float:
-    """Share of belief that the named effect has in its group, less the chance that detection itself was false."""
-    return float(named.group[0][1] * (1.0 - min(named.p_value, FALSE_ALARM)))
+def _probability(cause: SelectedCause) -> float:
+    """Probability of the cause's name in its group, less the chance that detection itself was false."""
+    return float(cause.group[0][1] * (1.0 - min(cause.p_value, FALSE_ALARM)))

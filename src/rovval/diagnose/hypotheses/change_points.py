@@ -1,8 +1,8 @@
-"""Times at which a log changes: where its residual force changes level, and where it begins to err, from which the search for what
-begins during a log starts.
+"""Times at which a log changes: where its residual force changes level, and where it begins to err.
 
-Both split a series of windows in two where the means of its parts differ most (CUSUM), and the parts again (binary segmentation; Scott
-and Knott 1974): the one as long as permuted windows seldom differ as much, the other a few times, for it only has to begin somewhere.
+Both split a series of windows in two where the means of its parts differ most (CUSUM; Page 1954), and the parts again (binary segmentation;
+Scott and Knott 1974). The first series is split as long as permuted windows seldom differ as much; the second a fixed number of times, since it
+only says where the fit of an onset begins.
 """
 
 from __future__ import annotations
@@ -12,50 +12,61 @@ from collections.abc import Iterator
 import numpy as np
 
 from rovval.core.data import Array
+from rovval.diagnose.criteria import CHANGE_FALSE_ALARM, CHANGE_LEAST_TESTED, CHANGE_LEAST_WINDOWS, GAP_CHANGE_SPLITS
 from rovval.diagnose.inference.problem import Problem
 from rovval.diagnose.windows.shooting import Stretches
 
-FEWEST = 3  # windows on each side of a change
-FEWEST_TESTED = 10  # windows that are tested for a change of level
-PERMUTED = 200
-SPLITS = 2  # times that the gap is split: at most three breaks
+PERMUTATIONS = 200  # resolve a false-alarm rate of 0.01
+OUTLIER = 6.0  # robust standard deviations at which a window's score is clipped: one event is no change of level
 
 
-def change_points(stretches: Stretches, score: Array, seed: int, level: float = 0.01) -> list[float]:
-    """Times (s) at which the residual force changes level. ``score`` (m, d): per-window signed signals; binary segmentation with a
-    CUSUM whose threshold comes from permuted windows."""
+def change_points(windows: Stretches, score: Array, seed: int, level: float = CHANGE_FALSE_ALARM) -> list[float]:
+    """Times (s since the run's start), in order, at which the residual force changes level.
+
+    Args:
+        windows: m windows of one run.
+        score: (m, d) signed signals, one row a window; each is scaled by its own spread.
+        seed: of the permutations.
+        level: false-alarm rate of the first split, halved at each further one.
+    """
     scale = 1.4826 * np.median(np.abs(np.diff(score, axis=0)), axis=0) / np.sqrt(2.0)  # from differences: a step does not inflate it
     usable = scale > 0
-    signal = np.clip((score[:, usable] - np.median(score[:, usable], axis=0)) / scale[usable], -6, 6)
+    signal = np.clip((score[:, usable] - np.median(score[:, usable], axis=0)) / scale[usable], -OUTLIER, OUTLIER)
     rng = np.random.default_rng(seed)
-    return [float(stretches.start[k] * stretches.run.dt) for k in sorted(_segment(signal, 0, rng, level))]
+    return [float(windows.start[k] * windows.run.dt) for k in sorted(_segments(signal, 0, rng, level))]
 
 
-def _segment(signal: Array, offset: int, rng: np.random.Generator, level: float) -> Iterator[int]:
-    if len(signal) < FEWEST_TESTED or signal.shape[1] == 0:
+def _segments(signal: Array, offset: int, rng: np.random.Generator, level: float) -> Iterator[int]:
+    """Windows at which a new level begins, counted from ``offset``."""
+    if len(signal) < CHANGE_LEAST_TESTED or signal.shape[1] == 0:
         return
     value, k = _cusum(signal)
-    null = np.array([_cusum(signal[rng.permutation(len(signal))])[0] for _ in range(PERMUTED)])
-    if (null >= value).mean() < level and FEWEST <= k <= len(signal) - FEWEST:
+    null = np.array([_cusum(signal[rng.permutation(len(signal))])[0] for _ in range(PERMUTATIONS)])
+    if (null >= value).mean() < level and CHANGE_LEAST_WINDOWS <= k <= len(signal) - CHANGE_LEAST_WINDOWS:
         yield offset + k
-        yield from _segment(signal[:k], offset, rng, level / 2)
-        yield from _segment(signal[k:], offset + k, rng, level / 2)
+        yield from _segments(signal[:k], offset, rng, level / 2)
+        yield from _segments(signal[k:], offset + k, rng, level / 2)
 
 
-def breaks(problem: Problem) -> tuple[float, ...]:
-    """Seconds since the first run's start at which its windows begin to err more, or less, the most marked first. It is the nominal vehicle's
-    gap, by its logarithm: slop that is free to fit the part after a break spreads it over the whole log."""
-    part = problem.parts[0]
-    found = _split(np.log(np.maximum(problem.gap.c[: part.count], 1e-12)), 0, SPLITS)
-    return tuple(float(part.start[i] * part.run.dt) for _, i in sorted(found, reverse=True))
+def gap_change_points(problem: Problem) -> tuple[float, ...]:
+    """Times (s since the first run's start) at which its windows begin to err more, or less; the most marked first.
+
+    It is the logarithm of the nominal vehicle's gap that is split: coefficients that are free to fit the part after a change would spread it
+    over the whole log.
+    """
+    windows = problem.parts[0]
+    found = largest_changes(np.log(np.maximum(problem.gap.c[: windows.count], 1e-12)), GAP_CHANGE_SPLITS)
+    return tuple(float(windows.start[i] * windows.run.dt) for _, i in sorted(found, reverse=True))
 
 
-def _split(x: Array, first: int, times: int) -> list[tuple[float, int]]:
-    """(How far the means differ, window at which they do, counted from ``first``) of a series and, again, of its two parts."""
-    if times == 0 or len(x) < 2 * FEWEST:
+def largest_changes(series: Array, splits: int, first: int = 0) -> list[tuple[float, int]]:
+    """(Standardised difference of the means, index at which the second part begins) of a series (n,) that is split ``splits`` times over; indices
+    count from ``first``."""
+    if splits == 0 or len(series) < 2 * CHANGE_LEAST_WINDOWS:
         return []
-    jump, k = _cusum(x[:, None])
-    return [(jump, first + k), *_split(x[:k], first, times - 1), *_split(x[k:], first + k, times - 1)]
+    jump, k = _cusum(series[:, None])
+    before, after = largest_changes(series[:k], splits - 1, first), largest_changes(series[k:], splits - 1, first + k)
+    return [(jump, first + k), *before, *after]
 
 
 def _cusum(signal: Array) -> tuple[float, int]:
@@ -65,5 +76,5 @@ def _cusum(signal: Array) -> tuple[float, int]:
     head = np.cumsum(signal, axis=0)[:-1]
     tail = signal.sum(axis=0) - head
     jump = np.abs(head / k - tail / (n - k)) * np.sqrt(k * (n - k) / n)
-    jump[: FEWEST - 1], jump[1 - FEWEST :] = 0.0, 0.0
+    jump[: CHANGE_LEAST_WINDOWS - 1], jump[1 - CHANGE_LEAST_WINDOWS :] = 0.0, 0.0
     return float(jump.max()), int(jump.max(axis=1).argmax()) + 1

@@ -1,4 +1,4 @@
-"""What competes for a gap: the parameters of an effect that are set free, and where they begin."""
+"""A hypothesis: the parameters of one effect, set free, and the point from which their fit begins."""
 
 from __future__ import annotations
 
@@ -6,16 +6,30 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rovval.diagnose.criteria import PRIOR_WIDTH
+from rovval.diagnose.inference.prior import Prior
+from rovval.diagnose.inference.problem import Problem
 from rovval.diagnose.residuals.perturbations import Columns, Direction
 from rovval.effects import Effect, load
 from rovval.plant import Plant
 
+WHOLE = -1  # in place of a slot: all that the initial point sets, as one column from no effect to all of it
+WHOLE_SIZE = 0.5  # typical size of that column: half of what the initial point sets
+
 
 @dataclass(frozen=True, slots=True)
 class Hypothesis:
-    """``name`` as in the contract (``thruster_degraded[HFP]``); ``slots`` all of its parameters; ``columns`` of the linearisation that it
-    sets free, with their prior ``sd``; ``at`` where a starting point moves slots to; ``label`` tells starting points apart. ``evident``: the forces that
-    are missing show it, whatever the linearisation promises."""
+    """One effect, on one axis or thruster, as the cause of the gap, with one initial point.
+
+    Attributes:
+        name: effect and target as in ``--effect``: ``inflow_loss``, ``thruster_degraded[HFP]``.
+        label: the name with its initial point, ``waves@3``; unique in a library.
+        slots: places of all its parameters in the plant's parameters beta.
+        columns: columns of the linearisation that it sets free: slots, or the ids of ``directions``.
+        sd: (len(columns),) standard deviations of their wide prior, in the parameters' units.
+        at: (slot, value) that the initial point sets before anything is fitted.
+        directions: the displaced columns: sensitivities about the initial point, not about no effect.
+        evident: the forces that are missing show it, so that it is fitted whatever its linearisation promises.
+    """
 
     name: str
     label: str
@@ -28,7 +42,7 @@ class Hypothesis:
 
     @property
     def effect(self) -> Effect:
-        """The effect of the library that it sets free, whatever its axis or thruster."""
+        """The effect of the library, whatever its axis or thruster."""
         return load(self.name.partition("[")[0])
 
     @property
@@ -37,9 +51,14 @@ class Hypothesis:
         return self.name.removeprefix(self.effect.name)
 
     @property
+    def target(self) -> str:
+        """The same without brackets: ``HFP``."""
+        return self.of.strip("[]")
+
+    @property
     def whole(self) -> bool:
-        """Whether it begins with its full size, well away from nothing, and not with a slope."""
-        return any(d.slot < 0 for d in self.directions)
+        """Whether it begins with its full size, well away from no effect, and not with a slope."""
+        return any(d.slot == WHOLE for d in self.directions)
 
 
 def columns_of(library: Sequence[Hypothesis]) -> Columns:
@@ -48,8 +67,25 @@ def columns_of(library: Sequence[Hypothesis]) -> Columns:
     return Columns(tuple(sorted(plain)), tuple(d for h in library for d in h.directions))
 
 
-def beginning(plant: Plant, label: str, slots: tuple[int, ...], own: tuple[int, ...], at: tuple[tuple[int, float], ...], next_id: int) -> Hypothesis:
-    """A hypothesis whose slots ``own`` are free (-1: the whole change) where the others are moved to ``at``."""
-    directions = tuple(Direction(next_id + i, at, slot) for i, slot in enumerate(own))
-    sd = tuple(PRIOR_WIDTH * (plant.slots[s].parameter.typical if s >= 0 else 0.5) for s in own)
+def from_nothing(plant: Plant, name: str, label: str, slots: tuple[int, ...]) -> Hypothesis:
+    """A hypothesis that begins at no effect, with all of its ``slots`` free."""
+    return Hypothesis(name, label, slots, slots, tuple(PRIOR_WIDTH * plant.slots[s].parameter.typical for s in slots))
+
+
+def displaced(plant: Plant, label: str, slots: tuple[int, ...], free: tuple[int, ...], at: tuple[tuple[int, float], ...], next_id: int) -> Hypothesis:
+    """A hypothesis that begins where ``at`` sets some of its ``slots``, with the others that are ``free``, or with `WHOLE`; its columns are numbered
+    from ``next_id`` on."""
+    directions = tuple(Direction(next_id + i, at, slot) for i, slot in enumerate(free))
+    sd = tuple(PRIOR_WIDTH * (plant.slots[s].parameter.typical if s != WHOLE else WHOLE_SIZE) for s in free)
     return Hypothesis(label.partition("@")[0], label, slots, tuple(d.id for d in directions), sd, at, directions)
+
+
+def wide_prior(problem: Problem, slots: Sequence[int]) -> Prior:
+    """The wide prior of parameters that a hypothesis sets free."""
+    return Prior({s: PRIOR_WIDTH * problem.plant.slots[s].parameter.typical for s in slots})
+
+
+def prior_of(problem: Problem, h: Hypothesis) -> Prior:
+    """The wide prior of a hypothesis: of its columns, and of those of its parameters that have a tolerance, wherever it begins."""
+    within = wide_prior(problem, [s for s in h.slots if s in problem.slop.sd])
+    return Prior(dict(within.sd) | dict(zip(h.columns, h.sd, strict=True)))

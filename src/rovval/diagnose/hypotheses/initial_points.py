@@ -1,124 +1,155 @@
-"""Where the search for an effect begins.
+"""Where the fit of an effect begins.
 
-Linearisation at the null value does not see a period, an onset or a place, and no slope leads from nothing to what is large or caught. An
-effect with such parameters enters once for each of a few starting points; which one is best is part of the contest.
+A linearisation at no effect does not see a period, an onset or a place, and no slope leads from there to what is large. An effect with such
+parameters enters once for each of a few initial points (multi-start); which one is best is part of the comparison of hypotheses.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import product
 
 import numpy as np
 
 from rovval import effects
-from rovval.diagnose.criteria import PRIOR_WIDTH
-from rovval.diagnose.hypotheses.holding import holding, somewhere
-from rovval.diagnose.hypotheses.hypothesis import Hypothesis, beginning
+from rovval.diagnose.criteria import (
+    CHANGE_STARTS,
+    DATUM_QUANTILES,
+    LEVER_SHARE,
+    MOST_STARTS,
+    ONSET_STARTS,
+    PERIOD_STARTS,
+    WHOLE_STARTS,
+)
+from rovval.diagnose.hypotheses.hypothesis import WHOLE, Hypothesis, displaced, from_nothing
+from rovval.diagnose.hypotheses.snag import held_from, mid_log_spring
 from rovval.diagnose.windows.shooting import Stretches
 from rovval.plant import Plant
 
-ONSETS = 9  # starting points for an onset, evenly inside the log
-LEVER = 0.7  # of the furthest thruster's distance: where a force may act (chosen)
-DEPTHS = (0.25, 0.5, 0.75)  # quantiles of a log's depth where what changes with depth may have its datum (chosen)
-LINES = 3  # periods that an effect begins from
-MOST_STARTS = 12  # of a hypothesis with several such parameters; thrice as many of one whose starts cost a single simulation each
-BREAKS = 2  # that an onset begins from
+
+@dataclass(frozen=True, slots=True)
+class Hints:
+    """Where a log itself suggests that fits begin, the most promising first.
+
+    Attributes:
+        periods: periods (s) at which the residual oscillates; those of waves by the direction (rad from north) towards which they run, None for
+            what does not travel.
+        changes_s: times (s since the first run's start) at which its windows begin to err more, or less.
+        springs: what may hold the vehicle, as parameters of `tether_snag`, with the ``share`` of the gap that it takes.
+    """
+
+    periods: Mapping[float | None, Sequence[float]] = field(default_factory=dict)
+    changes_s: Sequence[float] = ()
+    springs: Sequence[Mapping[str, float]] = ()
 
 
-def starts(
-    plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], parts: Sequence[Stretches], next_id: int,
-    periods: Mapping[float | None, Sequence[float]], breaks_s: Sequence[float], held: Sequence[Mapping[str, float]],
-) -> list[Hypothesis]:  # fmt: skip
-    """One hypothesis, or one for each starting point of the parameters that linearisation at the null value cannot see."""
+@dataclass(frozen=True, slots=True)
+class Target:
+    """One effect on one axis or thruster of a plant: its ``name`` as in ``--effect``, and the ``slots`` of its parameters that the log can tell."""
+
+    plant: Plant
+    name: str
+    effect: effects.Effect
+    slots: tuple[int, ...]
+
+    def parameter(self, slot: int) -> effects.Parameter:
+        """The parameter of a slot."""
+        return self.plant.slots[slot].parameter
+
+
+def initial_points(target: Target, windows: Sequence[Stretches], hints: Hints, next_id: int) -> list[Hypothesis]:
+    """One hypothesis, or one for each initial point of the parameters that a linearisation at no effect cannot see; their columns are numbered from
+    ``next_id`` on."""
+    plant, name, effect, slots = target.plant, target.name, target.effect, target.slots
     if effect.has("anchor"):
-        return holding(plant, name, slots, held or [somewhere(parts, plant, slots)], next_id)
-    grids = _grids(plant, effect, slots, parts, periods.get(None, ()), breaks_s)
+        return held_from(plant, name, slots, hints.springs or [mid_log_spring(windows, plant, slots)], next_id)
+    grids = _grids(target, windows, hints)
     if not grids:
-        far = _far(plant, name, effect, slots, next_id)
-        return [*_near(plant, name, effect, slots), *_alone(plant, name, effect, slots), *far, *_levers(plant, name, effect, slots, next_id + len(far))]
-    by_role: dict[str, int] = {plant.slots[s].parameter.role: s for s in slots}
-    own = tuple(s for s in slots if s not in grids and plant.slots[s].parameter.name not in effect.refines) or (-1,)
-    points, most = [dict(zip(grids, point, strict=True)) for point in product(*grids.values())], MOST_STARTS * (3 if own == (-1,) else 1)
+        far = _far(target, next_id)
+        return [*_near(target), *_apart(target), *far, *_levers(target, next_id + len(far))]
+    by_role: dict[str, int] = {target.parameter(s).role: s for s in slots}
+    free = tuple(s for s in slots if s not in grids and target.parameter(s).name not in effect.refines) or (WHOLE,)
+    points = [dict(zip(grids, point, strict=True)) for point in product(*grids.values())]
+    most = WHOLE_STARTS if free == (WHOLE,) else MOST_STARTS
     chosen = points if len(points) <= most else [points[i] for i in np.linspace(0, len(points) - 1, most).astype(int)]
-    chosen = [point | _met(by_role, point, periods) for point in chosen]
-    return [beginning(plant, f"{name}@{i}", slots, own, tuple(at.items()), next_id + i * len(own)) for i, at in enumerate(chosen)]
+    chosen = [point | _met(by_role, point, hints.periods) for point in chosen]
+    return [displaced(plant, f"{name}@{i}", slots, free, tuple(at.items()), next_id + i * len(free)) for i, at in enumerate(chosen)]
 
 
 def _met(by_role: Mapping[str, int], point: Mapping[int, float], periods: Mapping[float | None, Sequence[float]]) -> dict[int, float]:
-    """The period that waves have which run where those of a starting point do: a vehicle under way meets them at another one."""
+    """The period of the waves that run where those of an initial point do: a vehicle under way meets them at another one."""
     of_waves = periods.get(point.get(by_role.get("direction", -1)), ()) if "period" in by_role and "direction" in by_role else ()
     return {by_role["period"]: of_waves[0]} if of_waves else {}
 
 
-def _near(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...]) -> list[Hypothesis]:
-    """All parameters from the null value; where some only refine the others, these without them first, and not with them where each of them is tried
+def _near(target: Target) -> list[Hypothesis]:
+    """All parameters from no effect; where some only refine the others, these without them first, and not with them where each of them is tried
     alone: an axis on which nothing moves would take up whatever is left."""
-    plain = tuple(s for s in slots if plant.slots[s].parameter.name not in effect.refines)
-    sets = {name: plain} | ({f"{name}@fine": slots} if len(plain) < len(slots) and not effect.separable else {})
-    return [Hypothesis(name, label, free, free, tuple(PRIOR_WIDTH * plant.slots[s].parameter.typical for s in free)) for label, free in sets.items()]
+    plain = tuple(s for s in target.slots if target.parameter(s).name not in target.effect.refines)
+    sets = {target.name: plain} | ({f"{target.name}@fine": target.slots} if len(plain) < len(target.slots) and not target.effect.separable else {})
+    return [from_nothing(target.plant, target.name, label, slots) for label, slots in sets.items()]
 
 
-def _alone(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...]) -> list[Hypothesis]:
+def _apart(target: Target) -> list[Hypothesis]:
     """Each parameter without the others, where they may be apart: three that are free for one that is off are evidence lost."""
-    chosen = [(s, plant.slots[s].parameter) for s in slots if effect.separable]
-    return [Hypothesis(name, f"{name}@{p.name}", (s,), (s,), (PRIOR_WIDTH * p.typical,)) for s, p in chosen]
+    each = [(s, f"{target.name}@{target.parameter(s).name}") for s in target.slots if target.effect.separable]
+    return [from_nothing(target.plant, target.name, label, (s,)) for s, label in each]
 
 
-def _far(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], next_id: int) -> list[Hypothesis]:
-    """Starting points well away from the null value: a vehicle that tumbles in simulation shows no useful slope of its trim there, nor do
+def _far(target: Target, next_id: int) -> list[Hypothesis]:
+    """Initial points well away from no effect: a vehicle that tumbles in simulation shows no useful slope of its trim there, nor do
     commands that came a second late and step from one level to the next; a lag of half a second is no multiple of a short one."""
     found = list[Hypothesis]()
-    for slot in slots:
-        p = plant.slots[slot].parameter
-        for value in (p.null + size * p.typical for size in effect.far):
+    for slot in target.slots:
+        p = target.parameter(slot)
+        for value in (p.null + size * p.typical for size in target.effect.far):
             if p.low <= value <= p.high:
-                found.append(beginning(plant, f"{name}@far{len(found)}", slots, (-1,), ((slot, value),), next_id + len(found)))
+                label = f"{target.name}@far{len(found)}"
+                found.append(displaced(target.plant, label, target.slots, (WHOLE,), ((slot, value),), next_id + len(found)))
     return found
 
 
-def _levers(plant: Plant, name: str, effect: effects.Effect, slots: tuple[int, ...], next_id: int) -> list[Hypothesis]:
-    """Starting points with the force well away from the origin, `LEVER` of the thrusters' reach ahead or astern: a force that is not there
+def _levers(target: Target, next_id: int) -> list[Hypothesis]:
+    """Initial points with the force well away from the origin, ahead and astern by `LEVER_SHARE` of the thrusters' reach: a force that is not there
     yet turns nothing, wherever it would act, and once it is there the other levers show."""
-    levers = [s for s in slots if plant.slots[s].parameter.role == "lever"]
+    levers = [s for s in target.slots if target.parameter(s).role == "lever"]
     if not levers:
         return []
-    own, p = tuple(s for s in slots if s not in levers), plant.slots[levers[0]].parameter
-    reach = LEVER * max(float(np.linalg.norm(t.position)) for t in plant.vehicle.thruster)
+    free, p = tuple(s for s in target.slots if s not in levers), target.parameter(levers[0])
+    reach = LEVER_SHARE * max(float(np.linalg.norm(t.position)) for t in target.plant.vehicle.thruster)
     ends = [((levers[0], float(np.clip(x, p.low, p.high))),) for x in (-reach, reach)]
-    return [beginning(plant, f"{name}@lever{i}", slots, own, at, next_id + i * len(own)) for i, at in enumerate(ends)]
+    return [displaced(target.plant, f"{target.name}@lever{i}", target.slots, free, at, next_id + i * len(free)) for i, at in enumerate(ends)]
 
 
-def _depths(parts: Sequence[Stretches]) -> tuple[float, ...]:
+def _depths(windows: Sequence[Stretches]) -> tuple[float, ...]:
     """Depths (m, down) high, in the middle and low in what the logs went through: a datum far outside makes a change with depth look like a constant."""
-    z = np.concatenate([part.eta0[:, 2] for part in parts])
-    return tuple(dict.fromkeys(float(d) for d in np.quantile(z, DEPTHS)))
+    z = np.concatenate([part.eta0[:, 2] for part in windows])
+    return tuple(dict.fromkeys(float(d) for d in np.quantile(z, DATUM_QUANTILES)))
 
 
-def _onsets(parts: Sequence[Stretches], breaks_s: Sequence[float]) -> tuple[float, ...]:
-    """Onsets (s) at the first breaks of the first log, and others spread over it, `MOST_STARTS` in all."""
-    first, last = float(parts[0].start[0]), float(parts[0].start[-1])
-    near = [t for t in breaks_s[:BREAKS] if t > first * parts[0].run.dt]
-    spread = min(ONSETS, MOST_STARTS - len(near))
+def _onsets(windows: Sequence[Stretches], changes_s: Sequence[float]) -> tuple[float, ...]:
+    """Onsets (s since the first run's start) at its first changes, and others spread over it, `MOST_STARTS` in all."""
+    first, last = float(windows[0].start[0]), float(windows[0].start[-1])
+    near = [t for t in changes_s[:CHANGE_STARTS] if t > first * windows[0].run.dt]
+    spread = min(ONSET_STARTS, MOST_STARTS - len(near))
     share = np.arange(1, spread + 1) / (spread + 1)
-    return (*near, *(float((first + (last - first) * s) * parts[0].run.dt) for s in share))
+    return (*near, *(float((first + (last - first) * s) * windows[0].run.dt) for s in share))
 
 
-def _grids(
-    plant: Plant, effect: effects.Effect, slots: tuple[int, ...], parts: Sequence[Stretches], periods: Sequence[float], breaks_s: Sequence[float]
-) -> dict[int, tuple[float, ...]]:
-    """Starting values by slot: onsets spread over the log and at its breaks, the best of ``periods`` as far as `MOST_STARTS` lets them, other grids as the
-    effect states them, held within the bounds."""
-    found = {}
-    for slot in slots:
-        parameter = plant.slots[slot].parameter
+def _grids(target: Target, windows: Sequence[Stretches], hints: Hints) -> dict[int, tuple[float, ...]]:
+    """Initial values by slot: onsets over the log and at its changes, depths within those of the log, the best periods as far as `MOST_STARTS` lets them,
+    and other grids as the effect states them, held within the bounds."""
+    found, periods = {}, hints.periods.get(None, ())
+    for slot in target.slots:
+        parameter = target.parameter(slot)
         if parameter.role == "onset":
-            found[slot] = _onsets(parts, breaks_s)
+            found[slot] = _onsets(windows, hints.changes_s)
         elif parameter.role == "datum":
-            found[slot] = _depths(parts)
+            found[slot] = _depths(windows)
         elif parameter.starts:
             found[slot] = tuple(v for v in parameter.starts if parameter.low <= v <= parameter.high)
             if parameter.role == "period" and (here := [p for p in periods if parameter.low <= p <= parameter.high]):
-                others = int(np.prod([len(p.starts) for p in effect.parameters if p.starts and p.role != "period"]))
-                found[slot] = tuple(here[: min(LINES, max(MOST_STARTS // others, 1))])
+                others = int(np.prod([len(p.starts) for p in target.effect.parameters if p.starts and p.role != "period"]))
+                found[slot] = tuple(here[: min(PERIOD_STARTS, max(MOST_STARTS // others, 1))])
     return {slot: values for slot, values in found.items() if values}

@@ -10,7 +10,7 @@ import numpy as np
 from rovval.core.channels import AXES
 from rovval.core.data import Array
 from rovval.core.version import __version__
-from rovval.diagnose.decision.consistency import contradicted
+from rovval.diagnose.decision.consistency import inconsistencies
 from rovval.diagnose.decision.finding import Finding
 from rovval.diagnose.decision.unexplained import Unexplained as Rest
 from rovval.diagnose.decision.verdict import Decision
@@ -42,7 +42,7 @@ from rovval.diagnose.result.diagnosis import (
 from rovval.diagnose.result.experiment import next_experiment
 from rovval.diagnose.result.figures import coherence_matrix, heat_map, traces
 from rovval.diagnose.result.recalibration import recalibration
-from rovval.diagnose.search.baseline import relief, without_own
+from rovval.diagnose.search.baseline import healthy_without, reduction_beside
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.windows.saturation import NO_MEASUREMENT
 from rovval.vehicle.write import with_effects
@@ -63,7 +63,7 @@ def assemble(
         seed: of the bootstrap of intervals.
         progress: told what is done, and which share of the whole is behind it.
     """
-    problem, selection, before, decision = finding.problem, finding.selection, finding.before, finding.decision
+    problem, selection, before, decision = finding.problem, finding.selection, finding.residuals, finding.decision
     shrunk = shrinkage(problem, decision.fit, before, seed)
     experiment = next_experiment(problem, decision)
     found = settings(problem, decision.fit)
@@ -82,7 +82,7 @@ def assemble(
         next_experiment=experiment.summary() if experiment else None,
         manoeuvre=experiment.schedule(problem.plant.vehicle.thrusters) if experiment else None,
         detection=_detection(selection, decision),
-        finalists=tuple(tuple(Candidate(effect=n, evidence=e, gain=g) for n, e, g in step) for step in selection.rounds),
+        finalists=tuple(tuple(Candidate(effect=n, evidence=e, gain=g) for n, e, g in step) for step in selection.steps),
         disturbance=_disturbance(problem),
         left=_unexplained(decision.unexplained),
         calibration=recalibration(problem, selection, decision, before, tolerance, seed, progress),
@@ -143,8 +143,8 @@ def _within_tolerance(problem: Problem, selection: Selection, decision: Decision
     """What the causes take away of the error that coefficients fitted within their tolerances leave; None without causes."""
     if decision.fit is None:
         return None
-    others = without_own(problem, selection.healthy, decision.fit.slots)
-    total, low, high = relief(problem, decision.fit, others, seed)
+    others = healthy_without(problem, selection.healthy, decision.fit.slots)
+    total, low, high = reduction_beside(problem, decision.fit, others, seed)
     return Reduction(total=total, low=low, high=high)
 
 
@@ -152,8 +152,8 @@ def _detection(selection: Selection, decision: Decision) -> Detection:
     return Detection(
         noise=decision.accounted.noise,
         tolerance_share=decision.accounted.tolerance,
-        p_value=selection.named[0].p_value if selection.named else selection.last_p,
-        last_p=selection.last_p,
+        p_value=selection.causes[0].p_value if selection.causes else selection.p_value,
+        last_p=selection.p_value,
         last_evidence=selection.last_evidence,
         null_evidence=selection.null_evidence,
         causes=decision.evidence,
@@ -189,4 +189,7 @@ def _remarks(problem: Problem, before: list[Array]) -> tuple[LogRemark, ...]:
     """What of the logs is no plain measurement: saturated, held or repeated channels, and angles that contradict their rates."""
     found = [(part.run.id, f) for part in problem.parts for f in part.run.findings if f.code in NO_MEASUREMENT]
     rows = [LogRemark(run=run, channel=f.where, finding=f.code, detail=f.detail) for run, f in found]
-    return (*rows, *(LogRemark(**row) for row in contradicted(problem, axis_weight(problem, before))))
+    text = "and {} contradict each other by {:.2g} degrees within a window, whatever fault of a sensor is assumed"
+    opposed = inconsistencies(problem, axis_weight(problem, before))
+    own = [LogRemark(run=i.run, channel=i.angle, finding="contradicted", detail=text.format(i.rate, np.degrees(i.drift))) for i in opposed]
+    return (*rows, *own)

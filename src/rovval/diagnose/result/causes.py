@@ -12,7 +12,7 @@ from rovval.diagnose.inference.hypothesis_fit import Confirmed, errors, interval
 from rovval.diagnose.inference.problem import Problem
 from rovval.diagnose.inference.shrinkage import shrinkage
 from rovval.diagnose.result.diagnosis import Cause, Parameter, Shrinkage
-from rovval.diagnose.search.joint import Named
+from rovval.diagnose.search.baseline import SelectedCause
 
 FORM = 0.10  # of a parameter's departure, one standard error: equations that are only nearly right (logs of two independent plants ask for it)
 MOST_GROUP = 3  # names printed of a confusion group
@@ -49,7 +49,7 @@ def settings(problem: Problem, fitted: Confirmed | None) -> tuple[str, ...]:
     return tuple(f"{name}:{','.join(values)}" for name, values in by_name.items())
 
 
-def _cause(problem: Problem, decision: Decision, one: Named, before: list[Array], since: float | None, seed: int) -> Cause:
+def _cause(problem: Problem, decision: Decision, one: SelectedCause, before: list[Array], since: float | None, seed: int) -> Cause:
     assert decision.fit is not None
     h, joint = one.hypothesis, decision.fit
     single = joint if len(decision.causes) == 1 else roughly(problem, alone(problem, joint, h), h.slots, joint.point.scaled)

@@ -13,7 +13,7 @@ import numpy as np
 
 from rovval import effects
 from rovval.core.data import Array
-from rovval.diagnose.criteria import FEW_WINDOWS
+from rovval.diagnose.criteria import FEW_WINDOWS, FURTHER_GAIN
 from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.inference.hypothesis_fit import Confirmed, confirm, errors, interval, roughly
 from rovval.diagnose.inference.identifiability import determinable, tuned
@@ -25,7 +25,6 @@ from rovval.diagnose.inference.shrinkage import harm, shrinkage
 from rovval.diagnose.result.causes import FORM
 from rovval.diagnose.result.diagnosis import AxisHarm, Coefficient, Recalibration, Shrinkage
 from rovval.diagnose.search.forward import Selection
-from rovval.diagnose.search.joint import LATER_GAIN
 from rovval.effects import Effect
 
 ROUNDS = 6  # of setting coefficients free that depart, which may make others depart
@@ -61,7 +60,7 @@ def recalibration(
     progress("fitting them anew without the windows that they are scored on", 0.95)
     shrunk = shrinkage_refitted(problem, fitted, before, tolerance, seed)
     by_causes = max(shrinkage(problem, decision.fit, before, seed)["total"], 0.0)
-    if shrunk["low"] <= by_causes + LATER_GAIN * (1.0 - by_causes):
+    if shrunk["low"] <= by_causes + FURTHER_GAIN * (1.0 - by_causes):
         return None
     searched = {problem.plant.slots[s].hypothesis for s in fitted.slots if _effect(problem, s).searched}
     slots = [problem.plant.slots[s] for s in fitted.slots]

@@ -1,7 +1,11 @@
-"""What stands before a cause is added, and what the cause closes of it: with every other coefficient as the file has it, and beside slop.
+"""The model that a cause is added to, and what a candidate for the cause gains over it.
 
-A vehicle that rolls freely answers to each of its coefficients. With those as filed, a true cause may even open the gap; once healthy
-coefficients have settled, it closes what they leave, which the nearest relative of something else does not.
+The gain is asked in two ways: with every other coefficient as the file has it, and with coefficients fitted within their tolerance beside the
+candidate. A vehicle that rolls freely answers to each of its coefficients: with those of the file a true cause may even open the gap; beside fitted
+ones it closes what they leave, which the nearest relative of something else does not.
+
+Evidence in this room is twice the logarithm of a Bayes factor (Kass and Raftery 1995): of a fit over the nominal vehicle, or of a candidate over its
+baseline, as is said.
 """
 
 from __future__ import annotations
@@ -11,6 +15,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rovval.core.data import Array
+from rovval.diagnose.criteria import COUNTED_REDUCTION, ONSET_LEAST_WINDOWS, PARITY_CONTRADICTED, STRONG_EVIDENCE
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.bootstrap import interval
 from rovval.diagnose.inference.hypothesis_fit import Confirmed
@@ -18,73 +24,145 @@ from rovval.diagnose.inference.laplace import Point, whole_evidence
 from rovval.diagnose.inference.map_fit import FEW, settle
 from rovval.diagnose.inference.prior import STRAINED, WITHIN, Prior
 from rovval.diagnose.inference.problem import Problem, gap_at
-from rovval.diagnose.search.confusion import RELIEF, STRONG, Losses, Rival, closed
 
-FEWEST = 6  # windows in which something acts, from which it is asked what it closes there (chosen: fewer may be any event)
+Losses = tuple[Array, Array]  # (m,) held-out weighted squared error of every window, with and without the parity residuals
 
 
 @dataclass(frozen=True, slots=True)
-class Ground:
-    """Where slop settles beside what stands, the evidence of that, and its held-out losses with and without the kinematic checks."""
+class Baseline:
+    """The model that a cause is added to.
+
+    Attributes:
+        point: where effects and coefficients within tolerance were fitted.
+        evidence: twice the log Bayes factor of that over the nominal vehicle.
+        losses: its held-out losses.
+    """
 
     point: Point
     evidence: float
-    loss: Losses
+    losses: Losses
 
 
-def bare(problem: Problem, healthy: Point) -> Ground:
-    """Nothing but healthy coefficients, which settle at ``healthy``."""
-    return Ground(healthy, whole_evidence(problem, healthy), (problem.gap_data.c, problem.gap.c))
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """A hypothesis fitted by re-simulation, and what it adds to a baseline. Reductions are shares of a squared error, held out.
+
+    Attributes:
+        hypothesis: what was set free.
+        fit: its fit together with the causes of the baseline.
+        evidence: twice the log Bayes factor over the baseline.
+        gain: reduction of the gap, every coefficient that is no cause's as the file has it.
+        parity_gain: reduction of the parity residuals alone.
+        gain_beside: reduction of what coefficients within tolerance leave of the gap, these fitted beside it; 0 where `gain` is enough.
+        restores: whether without it a coefficient has to leave its tolerance, and with it none. A drag may be surely wrong and yet be little of a gap that
+            is mostly heave's.
+        gain_since: of what begins during the log, the reduction from its onset on; else 0.
+    """
+
+    hypothesis: Hypothesis
+    fit: Confirmed
+    evidence: float
+    gain: float
+    parity_gain: float
+    gain_beside: float = 0.0
+    restores: bool = False
+    gain_since: float = 0.0
+
+    @property
+    def best_gain(self) -> float:
+        """The larger reduction of the gap of the two ways, as far as the second counts."""
+        return max(self.gain, self.gain_beside) if self.gain_beside >= COUNTED_REDUCTION else self.gain
+
+    @property
+    def contradicted(self) -> bool:
+        """Whether it is a fault of a sensor that makes the parity residuals worse, which no error of the dynamics touches."""
+        return self.hypothesis.effect.place == "sensor" and self.parity_gain < -PARITY_CONTRADICTED
 
 
-def with_causes(fitted: Confirmed) -> Ground:
-    """What stands with the causes that were fitted."""
-    return Ground(fitted.point, fitted.evidence, (fitted.loss, fitted.dynamic_loss))
+@dataclass(frozen=True, slots=True)
+class SelectedCause:
+    """A cause that the search has found.
+
+    Attributes:
+        hypothesis: what it is.
+        group: names that this log does not tell from it, itself first, with their probabilities.
+        fit: the joint fit after it was added.
+        p_value: of the detection that let it in (`detection`).
+        evidence: twice the log Bayes factor over the baseline that it was added to.
+        candidates: those that it was chosen from, best evidence first.
+    """
+
+    hypothesis: Hypothesis
+    group: tuple[tuple[str, float], ...]
+    fit: Confirmed
+    p_value: float
+    evidence: float
+    candidates: tuple[Candidate, ...]
 
 
-def rival(problem: Problem, h: Hypothesis, fitted: Confirmed, ground: Ground) -> Rival:
-    """What a hypothesis adds to what stands; beside slop where its evidence is strong."""
-    evidence = fitted.evidence - ground.evidence
-    gain, kinematic = closed(ground.loss, (fitted.loss, fitted.dynamic_loss))
-    begun = _from_there_on(problem, h, fitted, ground) if evidence >= STRONG else 0.0
+def healthy_baseline(problem: Problem, healthy: Point) -> Baseline:
+    """No cause: coefficients within tolerance alone, fitted at ``healthy``."""
+    return Baseline(healthy, whole_evidence(problem, healthy), (problem.gap_data.c, problem.gap.c))
+
+
+def baseline_of(fit: Confirmed) -> Baseline:
+    """The causes that were fitted, beside coefficients within tolerance."""
+    return Baseline(fit.point, fit.evidence, (fit.loss, fit.dynamic_loss))
+
+
+def compared(problem: Problem, h: Hypothesis, fit: Confirmed, baseline: Baseline) -> Candidate:
+    """A fitted hypothesis as a candidate: what it adds to a baseline; beside coefficients within tolerance only where its evidence is strong."""
+    evidence = fit.evidence - baseline.evidence
+    gain, parity_gain = reduction(baseline.losses, (fit.loss, fit.dynamic_loss))
+    since = _gain_since(problem, h, fit, baseline) if evidence >= STRONG_EVIDENCE else 0.0
     beside = 0.0
-    if evidence >= STRONG and gain < RELIEF:
-        others = without_own(problem, ground.point, h.slots)
-        beside = closed(_settled(problem, others), _settled(problem, fitted.point))[0]
-    mends = evidence >= STRONG and gain > 0.0 and ground.point.strain() > STRAINED and fitted.point.strain() <= WITHIN
-    return Rival(h, fitted, evidence, gain, kinematic, beside, mends, begun)
+    if evidence >= STRONG_EVIDENCE and gain < COUNTED_REDUCTION:
+        others = healthy_without(problem, baseline.point, h.slots)
+        beside = reduction(_losses(problem, others), _losses(problem, fit.point))[0]
+    restores = evidence >= STRONG_EVIDENCE and gain > 0.0 and baseline.point.strain() > STRAINED and fit.point.strain() <= WITHIN
+    return Candidate(h, fit, evidence, gain, parity_gain, beside, restores, since)
 
 
-def _from_there_on(problem: Problem, h: Hypothesis, fitted: Confirmed, ground: Ground) -> float:
-    """Share that what begins in mid-log closes of the windows in which it acts: those before say nothing of it. 0 for another hypothesis."""
-    onset = [float(fitted.beta[s]) for s in h.slots if problem.plant.slots[s].parameter.role == "onset"]
+def reduction(before: Losses, after: Losses) -> tuple[float, float]:
+    """Shares by which held-out losses fall: the larger of those with and without the parity residuals, and that of the parity residuals alone."""
+    checks = float((before[0] - before[1]).sum())
+    parity = 1.0 - float((after[0] - after[1]).sum()) / checks if checks > 0 else 0.0
+    return max(float((a - b).sum() / a.sum()) for a, b in zip(before, after, strict=True)), parity
+
+
+def _gain_since(problem: Problem, h: Hypothesis, fit: Confirmed, baseline: Baseline) -> float:
+    """Reduction by what begins in mid-log in the windows in which it acts: those before say nothing of it. 0 for another hypothesis."""
+    onset = [float(fit.beta[s]) for s in h.slots if problem.plant.slots[s].parameter.role == "onset"]
     if not onset:
         return 0.0
     ends = np.concatenate([(part.start + part.steps) * part.run.dt for part in problem.parts])
     acts = np.flatnonzero(ends > onset[0])
-    (was, moved), (left, still) = ground.loss, (fitted.loss, fitted.dynamic_loss)
-    return closed((was[acts], moved[acts]), (left[acts], still[acts]))[0] if len(acts) >= FEWEST else 0.0
+    (before, moved), (after, still) = baseline.losses, (fit.loss, fit.dynamic_loss)
+    return reduction((before[acts], moved[acts]), (after[acts], still[acts]))[0] if len(acts) >= ONSET_LEAST_WINDOWS else 0.0
 
 
-def without_own(problem: Problem, stands: Point, slots: Sequence[int]) -> Point:
-    """What ``stands`` settled where the coefficients ``slots`` have no slop: the departure that a cause is, slop is not to imitate."""
+def healthy_without(problem: Problem, healthy: Point, slots: Sequence[int]) -> Point:
+    """The fit ``healthy`` again with the coefficients ``slots`` as the file has them: no tolerance is to imitate the departure that a cause is."""
     own = [s for s in slots if s in problem.slop.sd]
     if not own:
-        return stands
-    start = stands.beta.copy()
+        return healthy
+    start = healthy.beta.copy()
     start[own] = problem.origin[own]
     others = replace(problem, slop=Prior({s: sd for s, sd in problem.slop.sd.items() if s not in own}))
-    return settle(others, start, stands.columns[: stands.own], stands.scaled, FEW)
+    return settle(others, start, healthy.columns[: healthy.own], healthy.scaled, FEW)
 
 
-def relief(problem: Problem, fitted: Confirmed, others: Point, seed: int) -> tuple[float, float, float]:
-    """Share of the gap of the simulated motion, left where ``others``, the healthy coefficients that are not the causes', settle alone, that the
-    causes close beside healthy coefficients: (value, low, high) of the 90 % block bootstrap over windows. All windows were fitted: a step of the
-    causes that a fold would take goes with one of the coefficients, and evidence has paid for the causes' freedom."""
-    return interval(_settled(problem, others)[1], _settled(problem, fitted.point)[1], seed)
+def reduction_beside(problem: Problem, fit: Confirmed, others: Point, seed: int) -> tuple[float, float, float]:
+    """Share by which causes, beside coefficients within tolerance, reduce what these leave of the gap by themselves: (value, low, high) of the 90 % block
+    bootstrap over windows.
+
+    ``others`` is the fit of the coefficients that are not the causes' own. All windows were fitted: a step of the causes that a fold would take
+    goes with one of the coefficients, and evidence has paid for the causes' freedom.
+    """
+    return interval(_losses(problem, others)[1], _losses(problem, fit.point)[1], seed)
 
 
-def _settled(problem: Problem, point: Point) -> Losses:
-    """Losses of every window where healthy coefficients stand as at ``point``."""
+def _losses(problem: Problem, point: Point) -> Losses:
+    """Losses of every window at a point, its coefficients within tolerance where they were fitted."""
     dynamic, data = gap_at(problem, point.beta, ())
     return data.c, dynamic.c

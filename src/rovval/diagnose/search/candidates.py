@@ -1,4 +1,4 @@
-"""The finalists of a round: the hypotheses that a screen puts first, settled by re-simulation."""
+"""The candidates of a step: the hypotheses that the linearised screen puts first, fitted by re-simulation."""
 
 from __future__ import annotations
 
@@ -8,110 +8,125 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import PRIOR_WIDTH
-from rovval.diagnose.hypotheses.hypothesis import Hypothesis
+from rovval.diagnose.criteria import (
+    COHERENT,
+    LEAST_SCREENED,
+    MOST_CANDIDATES,
+    MOST_COHERENT,
+    MOST_REFITTED,
+    MOST_RELINEARISED,
+    REFITTED_EVIDENCE,
+    SCREENED_ANYWAY,
+    SCREENED_EVIDENCE,
+    SERIOUS_EVIDENCE,
+    STARTS_TRIED,
+    TANGENT_KEPT,
+)  # fmt: skip
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of, wide_prior
 from rovval.diagnose.inference.cross_validation import step
 from rovval.diagnose.inference.hypothesis_fit import Confirmed, confirm, roughly
 from rovval.diagnose.inference.map_fit import early, stays
-from rovval.diagnose.inference.prior import Prior
 from rovval.diagnose.inference.problem import Problem
 from rovval.diagnose.residuals.coherence import coherence
 from rovval.diagnose.residuals.normal_equations import Products
-from rovval.diagnose.search.admissibility import SERIOUS
-from rovval.diagnose.search.baseline import Ground, rival
-from rovval.diagnose.search.confusion import Rival
+from rovval.diagnose.search.baseline import Baseline, Candidate, compared
 
-FINALISTS = 10  # hypotheses that are re-simulated in a round
-SCREENED = 0.15  # of the best linear evidence: less is not re-simulated,
-FEWEST, ANYWAY = 4, 20.0  # unless it is one of the first few and is strong evidence by itself
-TRIES = 3  # starting points that a hypothesis whose fits end in many valleys is settled from
-TWIN, MOST_TWINS = 0.85, 4  # coherence from which a hypothesis is re-simulated beside the best finalist whatever the screen said
-PROMISED, RETRIED = 0.5, 2  # share of the tangent's evidence that a quick fit must keep, else it is settled with care; how many may be,
-HOPEFUL = 0.25  # and how much of the best's evidence the tangent must promise (chosen: what closes little is found again once the best stands)
-SHARPENED = 4  # finalists that are settled with slopes made at their own point
+Fits = dict[str, tuple[Hypothesis, Confirmed]]  # by name: the best initial point of each hypothesis and its fit
+Start = Callable[[Hypothesis, tuple[int, ...]], Array]
 
 
-def finalists(
-    problem: Problem, data: Products, library: list[Hypothesis], promised: Mapping[str, float], stands: Ground, chosen: tuple[int, ...]
-) -> list[Rival]:
-    """The best starting point of each of the best hypotheses, settled jointly with what was chosen before; best evidence first.
+def candidates(
+    problem: Problem, data: Products, library: list[Hypothesis], promised: Mapping[str, float], baseline: Baseline, chosen: tuple[int, ...]
+) -> list[Candidate]:
+    """The best initial point of each of the best hypotheses, fitted jointly with what was chosen before; best evidence first.
 
-    ``data`` is the library linearised where what ``stands`` settled, ``promised`` the evidence there of each starting point.
+    Args:
+        problem: what they are fitted to.
+        data: normal equations of the library, linearised at the baseline.
+        library: hypotheses to choose from.
+        promised: evidence of each initial point in that linearisation, by label.
+        baseline: the model that they are added to.
+        chosen: slots of the causes of the baseline.
     """
-    base = stands.point
+    base = baseline.point
     ordered = sorted(library, key=lambda h: (not h.evident, -promised[h.label]))
-    least = SCREENED * max(0.0, *(promised[h.label] for h in library))
-    ground = problem.slop.widened(freed(problem, chosen))
-    fitted: dict[str, tuple[Hypothesis, Confirmed]] = {}
+    least = SCREENED_EVIDENCE * max(0.0, *(promised[h.label] for h in library))
+    prior = problem.slop.widened(wide_prior(problem, chosen))
+    fits: Fits = {}
 
-    def moves(h: Hypothesis) -> Array:
-        return step(data, ground.widened(prior_of(problem, h)), problem.inflation)
+    def steps(h: Hypothesis) -> Array:
+        return step(data, prior.widened(prior_of(problem, h)), problem.inflation)
 
-    def still(h: Hypothesis, slots: tuple[int, ...]) -> Array:
-        """The start where all else stays as it stands: a step of everything may lead away what was found before."""
-        return begun(problem, data, h, np.where(np.isin(data.columns, h.columns), moves(h), 0.0), base.beta, slots)
+    def alone(h: Hypothesis, slots: tuple[int, ...]) -> Array:
+        """The start where all else stays as in the baseline: a step of everything may lead away what was found before."""
+        return start_of(problem, data, h, np.where(np.isin(data.columns, h.columns), steps(h), 0.0), base.beta, slots)
 
     def refit(h: Hypothesis) -> None:
         slots = tuple(dict.fromkeys((*chosen, *h.slots)))
-        start = begun(problem, data, h, moves(h), base.beta, slots)
+        start = start_of(problem, data, h, steps(h), base.beta, slots)
         if h.effect.continues:
             start = _beyond(problem, h, start)
         if h.evident:
-            start = early(problem, still(h, slots), slots)
+            start = early(problem, alone(h, slots), slots)
         quick = roughly(problem, start, slots, base.scaled).light()
-        if h.name not in fitted or quick.evidence > fitted[h.name][1].evidence:
-            fitted[h.name] = h, quick
+        if h.name not in fits or quick.evidence > fits[h.name][1].evidence:
+            fits[h.name] = h, quick
 
     tries = Counter[str]()
     for h in ordered:
-        promising = h.evident or promised[h.label] > (least if len(fitted) >= FEWEST else min(least, ANYWAY))
-        if promising and (tries[h.name] < TRIES if h.name in fitted and _valleys(h) else h.name not in fitted and len(fitted) < FINALISTS):
+        promising = h.evident or promised[h.label] > (least if len(fits) >= LEAST_SCREENED else min(least, SCREENED_ANYWAY))
+        if promising and (tries[h.name] < STARTS_TRIED if h.name in fits and _has_local_minima(h) else h.name not in fits and len(fits) < MOST_CANDIDATES):
             refit(h)
             tries[h.name] += 1
-    if fitted:
-        best = max(fitted.values(), key=lambda item: item[1].evidence)[0]
-        twins = [h for h in ordered if h.name not in fitted and coherence(data, best.columns, h.columns) > TWIN]
-        further = [h for h in ordered if h.effect.continues and f"{h.effect.continues}{h.of}" in fitted]
-        for h in (*twins[:MOST_TWINS], *further):
-            if h.name not in fitted:
-                refit(h)
-    return _weighed(problem, list(_retried(problem, promised, fitted, still if chosen else None, stands.evidence).values()), stands)
+    for h in _like_the_best(data, ordered, fits):
+        if h.name not in fits:
+            refit(h)
+    carefully = _refitted(problem, promised, fits, alone if chosen else None, baseline.evidence)
+    return _compared(problem, list(carefully.values()), baseline)
 
 
-def _valleys(h: Hypothesis) -> bool:
-    """Whether fits of it end in one of many valleys: it begins well away from nothing and is not settled through the beginnings of windows, or it swings."""
+def _like_the_best(data: Products, ordered: list[Hypothesis], fits: Fits) -> list[Hypothesis]:
+    """Hypotheses whose sensitivities are coherent with the best fit's, and those that one of the fits may imitate: fitted whatever the screen said."""
+    if not fits:
+        return []
+    best = max(fits.values(), key=lambda item: item[1].evidence)[0]
+    twins = [h for h in ordered if h.name not in fits and coherence(data, best.columns, h.columns) > COHERENT]
+    further = [h for h in ordered if h.effect.continues and f"{h.effect.continues}{h.of}" in fits]
+    return [*twins[:MOST_COHERENT], *further]
+
+
+def _has_local_minima(h: Hypothesis) -> bool:
+    """Whether fits of it end in one of many local minima: it begins well away from no effect and is not fitted through the beginnings of windows, or it
+    oscillates."""
     return (h.whole and not h.evident) or h.effect.has("period")
 
 
-def _retried(
-    problem: Problem, promised: Mapping[str, float], fitted: dict[str, tuple[Hypothesis, Confirmed]],
-    still: Callable[[Hypothesis, tuple[int, ...]], Array] | None, ground: float,
-) -> dict[str, tuple[Hypothesis, Confirmed]]:
-    """The fits, those settled with care that promise most and of which a quick fit, whose slopes stand still, kept little; from where it ended, and
-    from ``still``, where there is one."""
-    promise = {name: promised[h.label] for name, (h, _) in fitted.items()}
-    kept = {name: quick.evidence - ground for name, (_, quick) in fitted.items()}
-    least = HOPEFUL * max(kept.values(), default=0.0)
-    short = sorted((name for name in fitted if kept[name] < PROMISED * promise[name] and promise[name] >= least), key=lambda name: -promise[name])
-    found = dict(fitted)
-    for name in short[:RETRIED]:
-        h, quick = fitted[name]
-        starts = [quick.point.beta, *([still(h, quick.slots)] if still else [])]
+def _refitted(problem: Problem, promised: Mapping[str, float], fits: Fits, alone: Start | None, ground: float) -> Fits:
+    """The fits; those that promise most, and of which a quick fit with fixed sensitivities kept little, made with care: from where it ended, and from
+    ``alone``, where there is one. ``ground`` is the evidence of the baseline."""
+    promise = {name: promised[h.label] for name, (h, _) in fits.items()}
+    kept = {name: quick.evidence - ground for name, (_, quick) in fits.items()}
+    least = REFITTED_EVIDENCE * max(kept.values(), default=0.0)
+    short = sorted((name for name in fits if kept[name] < TANGENT_KEPT * promise[name] and promise[name] >= least), key=lambda name: -promise[name])
+    found = dict(fits)
+    for name in short[:MOST_REFITTED]:
+        h, quick = fits[name]
+        starts = [quick.point.beta, *([alone(h, quick.slots)] if alone else [])]
         careful = [confirm(problem, start, quick.slots).light() for start in starts]
         found[name] = h, max((quick, *careful), key=lambda one: one.evidence)
     return found
 
 
-def sharpened(problem: Problem, rivals: list[Rival], stands: Ground) -> list[Rival]:
-    """The best of the admissible settled with slopes made at their own point, the others as they are."""
-    serious = [r for r in rivals if r.evidence > SERIOUS * rivals[0].evidence][:SHARPENED]
-    sharp = [(r.hypothesis, confirm(problem, r.fitted.point.beta, r.fitted.slots)) for r in serious]
-    return _weighed(problem, sharp + [(r.hypothesis, r.fitted) for r in rivals if r not in serious], stands)
+def relinearised(problem: Problem, some: list[Candidate], baseline: Baseline) -> list[Candidate]:
+    """The best of the candidates fitted with sensitivities made at their own point, the others as they are; best evidence first."""
+    serious = [c for c in some if c.evidence > SERIOUS_EVIDENCE * some[0].evidence][:MOST_RELINEARISED]
+    again = [(c.hypothesis, confirm(problem, c.fit.point.beta, c.fit.slots)) for c in serious]
+    return _compared(problem, again + [(c.hypothesis, c.fit) for c in some if c not in serious], baseline)
 
 
-def _weighed(problem: Problem, fitted: list[tuple[Hypothesis, Confirmed]], stands: Ground) -> list[Rival]:
-    """Finalists with what they add to what stands, best evidence first."""
-    return sorted((rival(problem, h, c, stands) for h, c in fitted), key=lambda r: -r.evidence)
+def _compared(problem: Problem, fits: list[tuple[Hypothesis, Confirmed]], baseline: Baseline) -> list[Candidate]:
+    """Fits with what they add to the baseline, best evidence first."""
+    return sorted((compared(problem, h, fit, baseline) for h, fit in fits), key=lambda c: -c.evidence)
 
 
 def _beyond(problem: Problem, h: Hypothesis, start: Array) -> Array:
@@ -126,14 +141,23 @@ def _beyond(problem: Problem, h: Hypothesis, start: Array) -> Array:
     return start
 
 
-def begun(problem: Problem, data: Products, h: Hypothesis, moves: Array, beta: Array, own: tuple[int, ...]) -> Array:
-    """The linear answer as the starting point of the re-simulation, inside the parameters' bounds; tolerances of sensors stay in the tangent."""
+def start_of(problem: Problem, data: Products, h: Hypothesis, steps: Array, beta: Array, free: tuple[int, ...]) -> Array:
+    """Parameters from which a hypothesis is fitted by re-simulation: the linear answer, inside the bounds.
+
+    Args:
+        problem: what is fitted.
+        data: the linearisation whose columns ``steps`` are of.
+        h: the hypothesis, whose initial point comes before its step.
+        steps: step of each column.
+        beta: parameters that the linearisation was made at.
+        free: slots that the fit moves; tolerances of sensors that are not among them stay in the tangent.
+    """
     start = beta.copy()
-    still = {s for s in stays(problem.plant) if s not in own}
+    still = {s for s in stays(problem.plant) if s not in free}
     for slot, value in h.at:
         start[slot] = value
     moved, begins = {d.id: d.slot for d in h.directions}, {d.slot for d in h.directions} | {slot for slot, _ in h.at}
-    for column, move in zip(data.columns, moves, strict=True):
+    for column, move in zip(data.columns, steps, strict=True):
         slot = moved.get(column, column)
         if move and 0 <= slot < len(start) and slot not in still and (column in moved or slot not in begins):
             parameter = problem.plant.slots[slot].parameter
@@ -144,20 +168,9 @@ def begun(problem: Problem, data: Products, h: Hypothesis, moves: Array, beta: A
 
 
 def _half_a_turn_later(problem: Problem, h: Hypothesis, start: Array) -> Array:
-    """The start with the phase of a swing turned over: the same as a negative amplitude, which has no meaning."""
+    """The start with the phase of an oscillation turned over: the same as a negative amplitude, which has no meaning."""
     start = start.copy()
     for slot in h.slots:
         if problem.plant.slots[slot].parameter.role == "phase":
             start[slot] = start[slot] - np.pi if start[slot] > 0 else start[slot] + np.pi
     return start
-
-
-def freed(problem: Problem, slots: tuple[int, ...]) -> Prior:
-    """The wide prior of effects that were chosen."""
-    return Prior({s: PRIOR_WIDTH * problem.plant.slots[s].parameter.typical for s in slots})
-
-
-def prior_of(problem: Problem, h: Hypothesis) -> Prior:
-    """The wide prior of a hypothesis: of its columns, and of what slop may move of it wherever it begins."""
-    own = {s: PRIOR_WIDTH * problem.plant.slots[s].parameter.typical for s in h.slots if s in problem.slop.sd}
-    return Prior(own | dict(zip(h.columns, h.sd, strict=True)))

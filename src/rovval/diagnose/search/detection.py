@@ -1,9 +1,10 @@
-"""Is there anything to explain, on top of calibration slop? A max-statistic over the whole library, calibrated on this log.
+"""Detection: is there anything to explain, beyond coefficients within tolerance? A maximum statistic over the whole library.
 
-The statistic of a hypothesis is twice the log Bayes factor of slop with it against slop alone, in the linearised model with Gaussian
-priors: what it explains, less what its freedom costs (Laplace). A coefficient that would have to be eight sigma off its tolerance is
-so not "explained by slop". Null logs are drawn in the same model: coefficients off by slop, plus what the whole library leaves of this
-log with random signs per block of windows (wild cluster bootstrap). The best hypothesis of a real log must beat the best of those.
+The statistic of a hypothesis is its evidence: twice the log Bayes factor of the baseline with it over the baseline alone, in the linearised model with
+Gaussian priors, which is what it explains less what its freedom costs. A coefficient that would have to be eight standard deviations off its tolerance
+is so not explained by tolerance. Null logs are drawn in the same model: coefficients off by their tolerances, plus what the whole library leaves of
+this log with random signs of blocks of windows (wild cluster bootstrap; Cameron, Gelbach and Miller 2008). The best hypothesis of a real log has to beat
+the best of those, which holds the family-wise error rate (Westfall and Young 1993).
 """
 
 from __future__ import annotations
@@ -18,43 +19,63 @@ from rovval.diagnose.inference.cross_validation import free_of
 from rovval.diagnose.inference.prior import Prior
 from rovval.diagnose.residuals.normal_equations import Products
 
-DRAWS = 200
+DRAWS = 200  # null logs: resolve a family-wise error rate of 0.05
 BLOCK = 2  # windows that keep one sign: 20 s, beyond the memory of hull and thrusters
 
 
 @dataclass(frozen=True, slots=True)
 class Detection:
-    """Twice the log Bayes factor of each hypothesis over slop, and the largest over the library in each null draw (d,)."""
+    """What a screen of the library shows.
+
+    Attributes:
+        evidence: twice the log Bayes factor of each hypothesis over the baseline, linearised, by label.
+        null: (d,) the largest over the library in each of d null logs.
+    """
 
     evidence: Mapping[str, float]
     null: Array
 
-    def p_value(self, name: str) -> float:
-        """Family-wise probability that the best hypothesis of a healthy log reaches what ``name`` has."""
-        return float((1 + (self.null >= self.evidence[name]).sum()) / (1 + len(self.null)))
+    def p_value(self, label: str) -> float:
+        """Family-wise probability that the best hypothesis of a healthy log reaches what ``label`` has."""
+        return float((1 + (self.null >= self.evidence[label]).sum()) / (1 + len(self.null)))
 
     @property
     def best(self) -> str:
         """Label of the hypothesis with the largest evidence."""
-        return max(self.evidence, key=lambda name: self.evidence[name])
+        return max(self.evidence, key=lambda label: self.evidence[label])
+
+    @property
+    def largest(self) -> float:
+        """The largest evidence."""
+        return self.evidence[self.best]
 
 
 def detect(data: Products, base: Prior, slop: Prior, hypotheses: Mapping[str, Prior], inflation: float, everything: Array, seed: int) -> Detection:
-    """Evidence of every hypothesis, real and in null draws; ``everything`` (k,) fits the whole library: its leftover is the disturbance."""
+    """Evidence of every hypothesis, in the log and in null logs.
+
+    Args:
+        data: normal equations of the library, linearised at the baseline.
+        base: prior of what is free in the baseline.
+        slop: tolerances, by which the coefficients of null logs are off.
+        hypotheses: prior of what each hypothesis sets free, by label.
+        inflation: design effect of autocorrelated residuals.
+        everything: (k,) step that fits the whole library: what it leaves is the disturbance of the null logs.
+        seed: of their draws.
+    """
     b = np.concatenate([data.b.sum(axis=0)[None], _draws(data, slop, everything, np.random.default_rng(seed))])
     A, real = data.A.sum(axis=0), np.array([1.0, *np.zeros(DRAWS)])[:, None]
     ground = _evidence(data, A, b, real, base, inflation)
     evidence, best = dict[str, float](), np.full(DRAWS, -np.inf)
-    for name, prior in hypotheses.items():
+    for label, prior in hypotheses.items():
         gain = _evidence(data, A, b, real, base.widened(prior), inflation) - ground
-        evidence[name] = float(gain[0])
+        evidence[label] = float(gain[0])
         best = np.maximum(best, gain[1:])
     return Detection(evidence, best)
 
 
 def _evidence(data: Products, A: Array, b: Array, real: Array, prior: Prior, inflation: float) -> Array:
-    """Twice the log evidence (d,) of each right-hand side ``b`` (d, k), up to a constant: explained sum of squares less the log volume
-    that the data takes from the prior (MacKay 1992, 2.7). ``real`` (d, 1) is 1 where the columns are as far from their priors as the
+    """Twice the log marginal likelihood (d,) of each right-hand side ``b`` (d, k), up to a constant: explained sum of squares less the log volume
+    that the data takes from the prior (MacKay 1992, section 2.7). ``real`` (d, 1) is 1 where the columns are as far from their priors as the
     log's fit has taken them, 0 for null draws, which begin at them."""
     if not prior.sd:
         return np.zeros(len(b))

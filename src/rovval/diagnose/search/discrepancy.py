@@ -1,8 +1,9 @@
-"""What any systematic cause could explain: generic forces that depend on speed, attitude, heading, depth and thrusters.
+"""Model discrepancy (Kennedy and O'Hagan 2001): what any systematic cause could explain, as generic forces that depend on speed, attitude, heading,
+depth and thrusters.
 
-They are never the explanation. Set free beside what was found and beside calibration slop, their evidence says how much of the gap is
-systematic and still unexplained, so that a library effect that is only the least bad is not named; and on which axis and with
-what the unexplained force varies.
+They are never the explanation. Set free beside what was found and beside coefficients within tolerance, their evidence says how much of the gap is
+systematic and still unexplained, so that an effect of the library that is only the least bad is not named; and on which axis and with what the
+unexplained force varies.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 
 from rovval.core.channels import AXES
 from rovval.core.data import Array
+from rovval.diagnose.criteria import GENERIC_SIZES, OWN_FORCE
 from rovval.diagnose.inference.cross_validation import Fold, heldout, settled
 from rovval.diagnose.inference.laplace import Point
 from rovval.diagnose.inference.prior import Prior
@@ -22,15 +24,20 @@ from rovval.diagnose.residuals.external_forces import generic
 from rovval.diagnose.residuals.normal_equations import Products, joined, products
 from rovval.diagnose.residuals.sensitivities import Linear, spread
 
-OWN = 0.05  # of what a force does: with less that nothing else here does, it is not one of its own (opened logs: a force on speed beside drag 0.02)
 FREED = 1e-3  # of a prior's precision: it holds nothing any more
-SHARES = (0.01, 0.1, 1.0)  # prior sizes tried for a generic force, as a share of the thrusters' own rms on that axis
 
 
 @dataclass(frozen=True, slots=True)
-class Forces:
-    """Generic forces ``names`` (axis, feature) beside the columns of a point: products of all (the forces last), the precision of the
-    point's columns and the gradient that their priors add."""
+class GenericForces:
+    """Generic forces beside the columns of a fit. Evidence here is twice the log Bayes factor of forces over none, at the best of the prior sizes.
+
+    Attributes:
+        names: (axis, feature) of each force: what it acts on, and what it varies with.
+        data: normal equations of the fit's k columns and of the forces behind them.
+        precision: (k,) of the priors of the fit's columns.
+        pull: (k,) gradient that those priors add.
+        inflation: design effect of autocorrelated residuals.
+    """
 
     names: tuple[tuple[str, str], ...]
     data: Products
@@ -39,22 +46,25 @@ class Forces:
     inflation: float
 
     def evidence(self, axes: Sequence[str] = AXES, feature: str = "") -> float:
-        """Twice the log Bayes factor of forces on ``axes`` (and of one feature only) over none, at the best of the prior sizes."""
+        """Evidence of all forces on ``axes``, or of those with one feature only."""
         chosen = [i for i, (axis, name) in enumerate(self.names) if axis in axes and feature in ("", name)]
-        return max(self._evidence(chosen, share) for share in SHARES) - self._evidence([], 1.0) if chosen else 0.0
+        return max(self._evidence(chosen, size) for size in GENERIC_SIZES) - self._evidence([], 1.0) if chosen else 0.0
 
-    def alone(self, axes: Sequence[str] = AXES, most: int = 1, causes: Sequence[int] = ()) -> float:
-        """The same of the one force, one feature on one of ``axes``, that has most, or of up to ``most`` of them, each beside those before: where few are
-        at work, all together cost more than they gain. One that the point's columns can undo all but a little of (`OWN`), as drag undoes a force
-        that varies with speed, is none: the two against each other hold the simulation to the measured speed, whatever it is that is missing.
-        Nor is one that is what the columns ``causes`` are, which may undo as much as they can."""
+    def single(self, axes: Sequence[str] = AXES, most: int = 1, causes: Sequence[int] = ()) -> float:
+        """Evidence of the one force, of one feature on one of ``axes``, that has most, or of up to ``most`` of them, each beside those before: where few are
+        at work, all together cost more than they gain.
+
+        One that the fit's columns can undo all but a little of (`OWN_FORCE`), as drag undoes a force that varies with speed, is none: the two
+        against each other hold the simulation to the measured speed, whatever it is that is missing. Nor is one that is what the columns ``causes``
+        are, which may undo as much as they can.
+        """
         k = len(self.precision)
         freed = np.where(np.isin(self.data.columns[:k], causes), FREED, 1.0) * self.precision
-        undone, at_first = np.diag(self._settled(freed)[0]), np.einsum("wii->i", self.data.A)
-        own = [k + i for i, (axis, _) in enumerate(self.names) if axis in axes and undone[k + i] > OWN * at_first[k + i]]
-        A, b = self._settled(self.precision)
+        undone, at_first = np.diag(self._eliminated(freed)[0]), np.einsum("wii->i", self.data.A)
+        own = [k + i for i, (axis, _) in enumerate(self.names) if axis in axes and undone[k + i] > OWN_FORCE * at_first[k + i]]
+        A, b = self._eliminated(self.precision)
         A, b = A[np.ix_(own, own)], b[own]
-        ridge, total = self.inflation / np.array(SHARES)[:, None] ** 2, 0.0
+        ridge, total = self.inflation / np.array(GENERIC_SIZES)[:, None] ** 2, 0.0
         for _ in range(min(most, len(own))):
             worth = b**2 / (np.diag(A) + ridge) / self.inflation - np.log1p(np.diag(A) / ridge)
             size, best = np.unravel_index(int(np.argmax(worth)), worth.shape)
@@ -70,42 +80,42 @@ class Forces:
         """What the forces depend on."""
         return tuple(dict.fromkeys(name for _, name in self.names))
 
-    def share(self, folds: Sequence[Fold]) -> float:
-        """Part of the loss that all forces take away on held-out windows, everything else standing still."""
+    def held_out_gain(self, folds: Sequence[Fold]) -> float:
+        """Share by which all forces reduce the squared error on held-out windows, everything else fixed; 0 where they do not."""
         k = len(self.precision)
         columns, whole = self.data.columns[k:], float(self.data.c.sum())
-        kept = [float(heldout(self.data, folds, Prior(dict.fromkeys(columns, share)), self.inflation).sum()) for share in SHARES]
+        kept = [float(heldout(self.data, folds, Prior(dict.fromkeys(columns, size)), self.inflation).sum()) for size in GENERIC_SIZES]
         return max(1.0 - min(kept) / whole, 0.0)
 
-    def _settled(self, precision: Array) -> tuple[Array, Array]:
-        """Curvature and slope of everything once the point's columns have settled beside it, with priors of ``precision``."""
+    def _eliminated(self, precision: Array) -> tuple[Array, Array]:
+        """Curvature and slope of everything, the fit's columns with priors of ``precision`` eliminated."""
         free = np.arange(len(precision))
         return settled(self.data.A.sum(axis=0), self.data.b.sum(axis=0), free, np.diag(precision), self.pull)
 
-    def _evidence(self, chosen: Sequence[int], share: float) -> float:
+    def _evidence(self, chosen: Sequence[int], prior_size: float) -> float:
         k = len(self.precision)
         free = np.array([*range(k), *(k + i for i in chosen)], dtype=int)
-        ridge = np.concatenate([self.precision, np.full(len(chosen), self.inflation / share**2)])
+        ridge = np.concatenate([self.precision, np.full(len(chosen), self.inflation / prior_size**2)])
         H = self.data.A.sum(axis=0)[np.ix_(free, free)] + np.diag(ridge)
         slope = self.data.b.sum(axis=0)[free] - np.concatenate([self.pull, np.zeros(len(chosen))])
         return float(slope @ np.linalg.solve(H, slope)) / self.inflation - float(np.linalg.slogdet(H)[1] - np.log(ridge).sum())
 
 
-def forces(problem: Problem, point: Point) -> Forces:
-    """Every feature on every axis, simulated about ``point``, with slop beside them."""
+def generic_forces(problem: Problem, point: Point) -> GenericForces:
+    """Every feature on every axis, simulated about a fit, beside its columns."""
     return _beside(problem, point.beta, point.linear, point.precision, point.precision * point.offset)
 
 
-def bare_forces(problem: Problem) -> Forces:
-    """The same about the vehicle as it is, with nothing beside them: what the gap itself looks like."""
+def nominal_forces(problem: Problem) -> GenericForces:
+    """The same about the nominal vehicle, with nothing beside them: what the gap itself looks like."""
     return _beside(problem, problem.origin, problem.at_null, np.zeros(0), np.zeros(0))
 
 
-def _beside(problem: Problem, beta: Array, linear: Sequence[Linear], precision: Array, pull: Array) -> Forces:
+def _beside(problem: Problem, beta: Array, linear: Sequence[Linear], precision: Array, pull: Array) -> GenericForces:
     names, answers = generic(problem.parts, beta)
     ids = tuple(range(len(beta), len(beta) + len(names)))
     parts = []
     for part, one, answer in zip(problem.parts, linear, answers, strict=True):
         both = Linear(one.r, np.concatenate([one.S, answer], axis=-1), one.J, (*one.columns, *ids), one.valid)
         parts.append(products(both, part.ok, problem.white, spread(part)))
-    return Forces(names, joined(parts), precision, pull, problem.inflation)
+    return GenericForces(names, joined(parts), precision, pull, problem.inflation)

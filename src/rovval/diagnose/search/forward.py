@@ -1,9 +1,9 @@
-"""Which effects: forward selection with joint refit, each step detected on top of slop, named by held-out re-simulation.
+"""Forward selection: causes are added one at a time, each fitted jointly with those before it, as long as a step finds one.
 
-A round (`round`) asks three questions. Is there anything beyond calibration slop (`detect`)? Which hypotheses, refitted by re-simulation, do best on
-windows that they were not fitted on (`confirm`)? Which others does this log not tell from the best (`separate`)? It stops when a gain
-is not real or too small to matter; an effect that later ones make needless is dropped again. In the end the causes are weighed beside each
-other (`together`), and where one falls the search goes on without it.
+A step asks three questions. Is there anything beyond coefficients within tolerance and the causes so far (`detection`)? Which hypotheses, fitted by
+re-simulation, explain most of it on windows that they were not fitted on (`candidates`, `admissibility`)? Which does this log not tell from the best of
+them (`confusion`)? A cause that later ones make needless is dropped. When no step adds a cause, the causes are weighed beside each
+other (`joint`), and where one is not sufficient there, the search goes on without it.
 """
 
 from __future__ import annotations
@@ -13,114 +13,211 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rovval.diagnose.hypotheses.hypothesis import Hypothesis
-from rovval.diagnose.hypotheses.library import retuned
-from rovval.diagnose.inference.cross_validation import Ring, contest
+from rovval.diagnose.criteria import (
+    EVIDENT_WITHOUT_TEST,
+    FALSE_ALARM,
+    LEAST_EVIDENCE,
+    MOST_CAUSES,
+    MOST_STEPS,
+    NEEDLESS_EVIDENCE,
+    OFFSET_EVIDENCE,
+    OFFSET_TRIED,
+    PROMISING_EVIDENCE,
+    STRONG_EVIDENCE,
+)  # fmt: skip
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of, prior_of, wide_prior
+from rovval.diagnose.inference.cross_validation import Ring, contest, fit
 from rovval.diagnose.inference.hypothesis_fit import Confirmed, confirm, roughly
 from rovval.diagnose.inference.laplace import Point
-from rovval.diagnose.inference.map_fit import healthy_point, resettled
+from rovval.diagnose.inference.map_fit import resettled
 from rovval.diagnose.inference.prior import Prior
-from rovval.diagnose.inference.problem import Problem
-from rovval.diagnose.search.admissibility import simplest
-from rovval.diagnose.search.candidates import prior_of
-from rovval.diagnose.search.confusion import group
-from rovval.diagnose.search.joint import Named, together
-from rovval.diagnose.search.onset import Beginning
-from rovval.diagnose.search.round import Round, search
+from rovval.diagnose.inference.problem import Problem, at
+from rovval.diagnose.residuals.normal_equations import Products
+from rovval.diagnose.search.admissibility import admissible, possible, simplest
+from rovval.diagnose.search.baseline import Baseline, Candidate, SelectedCause, baseline_of, healthy_baseline
+from rovval.diagnose.search.candidates import candidates, relinearised
+from rovval.diagnose.search.confusion import confusion_group
+from rovval.diagnose.search.detection import Detection, detect
+from rovval.diagnose.search.joint import reselected, sufficient
+from rovval.diagnose.search.onset import Onset, suspected_onset
 
-MOST = 3  # effects at once
-ROUNDS = 5  # of the search: an effect that later ones make needless leaves its place
-NEEDLESS = 6.0  # twice the log Bayes factor below which an effect is dropped again (Kass & Raftery 1995: positive evidence)
+Row = tuple[str, float, float]  # a candidate's name, evidence over its baseline, and reduction of the gap
 
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """Effects in the order found; the final joint fit (None: nothing found); where slop settles without any; every hypothesis's held-out share of the gap;
-    of each round the finalists with their evidence and held-out gain; the p-value of the round that ended the search; from when on something
-    seems to be at work that was not there before (`since`)."""
+    """What a search found.
 
-    named: tuple[Named, ...]
-    final: Confirmed | None
+    Attributes:
+        causes: in the order found.
+        fit: their joint fit; None where nothing was found.
+        healthy: the fit of coefficients within tolerance, without causes.
+        ranking: every hypothesis with the reduction of the gap that it makes by itself, held out: the causes first, then by that.
+        steps: of each step that had any, its candidates.
+        p_value: of the detection of the last step, and its evidence ``last_evidence`` beside the 95 % quantile of null logs, ``null_evidence``.
+        onset: from when on something seems to be at work that was not there before; None where nothing does.
+    """
+
+    causes: tuple[SelectedCause, ...]
+    fit: Confirmed | None
     healthy: Point
     ranking: tuple[tuple[str, float], ...]
-    rounds: tuple[tuple[tuple[str, float, float], ...], ...]
-    last_p: float
-    began: Beginning | None
+    steps: tuple[tuple[Row, ...], ...]
+    p_value: float
+    onset: Onset | None
     last_evidence: float
     null_evidence: float
 
 
-def select(problem: Problem, library: list[Hypothesis], seed: int, progress: Callable[[str, float], None]) -> Selection:
-    """Search for the effects that explain the gap; see the module."""
-    healthy = healthy_point(problem)
-    tuned = retuned(problem, library, healthy)
-    named, spent = list[Named](), set[str]()
-    rounds = list[Round]()
-    for number in range(ROUNDS):
-        progress(f"screening {len(tuned)} hypotheses, round {number + 1}", 0.3 + 0.1 * number)
-        open_now = [h for h in tuned if h.name not in {n.hypothesis.name for n in named} | spent]
-        rounds.append(search(problem, tuned, open_now, named, healthy, seed + number))
-        if rounds[-1].able:
-            named = _pruned(problem, [*named, _found(problem, rounds[-1], seed)])
-            if len(named) < MOST:
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One step of the search: its detection; the candidates that may be ``added``, and all that are ``admitted`` as the cause, best evidence first; rows of
+    all that were weighed; and, in the first, the suspected onset."""
+
+    detection: Detection
+    added: list[Candidate]
+    admitted: list[Candidate]
+    rows: tuple[Row, ...]
+    onset: Onset | None
+
+
+def search(
+    problem: Problem, library: list[Hypothesis], initialised: list[Hypothesis], healthy: Point, seed: int, progress: Callable[[str, float], None]
+) -> Selection:
+    """The causes that explain the gap.
+
+    Args:
+        problem: the estimation problem.
+        library: hypotheses that compete, as the problem was linearised in.
+        initialised: the same with the initial points that the log suggests.
+        healthy: fit of coefficients within tolerance, without causes.
+        seed: of the null logs and bootstraps.
+        progress: told what is done and the share of the whole.
+    """
+    causes, refused, steps = list[SelectedCause](), set[str](), list[Step]()
+    for number in range(MOST_STEPS):
+        progress(f"screening {len(initialised)} hypotheses, round {number + 1}", 0.3 + 0.1 * number)
+        open_now = [h for h in initialised if h.name not in {n.hypothesis.name for n in causes} | refused]
+        steps.append(_step(problem, initialised, open_now, causes, healthy, seed + number))
+        if steps[-1].added:
+            causes = _pruned(problem, [*causes, _cause(problem, steps[-1], seed)])
+            if len(causes) < MOST_CAUSES:
                 continue
         progress("weighing the causes beside each other", 0.35 + 0.1 * number)
-        healthy = _fairer(problem, healthy, named)
-        kept = together(problem, named, healthy, seed)
-        spent |= {n.hypothesis.name for n in named} - {n.hypothesis.name for n in kept}
-        settled, named = len(kept) in (0, MOST, len(named)), kept
-        if settled:
+        healthy = _restarted(problem, healthy, causes)
+        kept = reselected(problem, causes, healthy, seed)
+        refused |= {n.hypothesis.name for n in causes} - {n.hypothesis.name for n in kept}
+        done, causes = len(kept) in (0, MOST_CAUSES, len(causes)), kept
+        if done:
             break
     else:
-        healthy = _fairer(problem, healthy, named)
-        named = together(problem, named, healthy, seed)
-    final, tried = named[-1].fitted if named else None, tuple(r.told for r in rounds if r.told)
-    last = rounds[-1].detection
-    p, most, null = last.p_value(last.best), last.evidence[last.best], float(np.quantile(last.null, 0.95))
-    return Selection(tuple(named), final, healthy, _ranking(problem, library, named, tried), tried, p, rounds[0].began, most, null)
+        healthy = _restarted(problem, healthy, causes)
+        causes = reselected(problem, causes, healthy, seed)
+    rows, last = tuple(s.rows for s in steps if s.rows), steps[-1].detection
+    ranking, null = _ranking(problem, library, causes, rows), float(np.quantile(last.null, 0.95))
+    joint = causes[-1].fit if causes else None
+    return Selection(tuple(causes), joint, healthy, ranking, rows, last.p_value(last.best), steps[0].onset, last.largest, null)
 
 
-def _fairer(problem: Problem, healthy: Point, named: list[Named]) -> Point:
-    """The healthy vehicle, after another start beside the causes."""
-    return resettled(problem, healthy, named[-1].fitted.point, named[-1].fitted.slots) if named else healthy
+def _step(problem: Problem, library: list[Hypothesis], open_now: list[Hypothesis], causes: list[SelectedCause], healthy: Point, seed: int) -> Step:
+    """Is there anything beyond the causes, and which of the open hypotheses may be added to them?"""
+    chosen = causes[-1].fit.slots if causes else ()
+    baseline = baseline_of(causes[-1].fit) if causes else healthy_baseline(problem, healthy)
+    data = _linearised(problem, library, baseline.point)
+    detection = _detection(problem, data, open_now, chosen, seed)
+    onset = None if causes else suspected_onset(problem, data, open_now)
+    most = detection.largest
+    if most < PROMISING_EVIDENCE * LEAST_EVIDENCE or (detection.p_value(detection.best) > FALSE_ALARM and most < EVIDENT_WITHOUT_TEST):
+        return Step(detection, [], [], (), onset)
+    one, tried = _weighed(problem, data, open_now, detection, causes, baseline, onset)
+    rest = [h for h in open_now if h.name not in tried]
+    if one.added or causes or max((detection.evidence[h.label] for h in rest), default=0.0) < LEAST_EVIDENCE:
+        return one
+    other, _ = _weighed(problem, data, rest, detection, causes, baseline, onset)  # kept out by what promised much and keeps nothing
+    return replace(other, rows=tuple(sorted((*one.rows, *other.rows), key=lambda row: -row[1])))
 
 
-def _found(problem: Problem, one: Round, seed: int) -> Named:
+def _weighed(
+    problem: Problem, data: Products, library: list[Hypothesis], detection: Detection, causes: list[SelectedCause], baseline: Baseline, onset: Onset | None
+) -> tuple[Step, set[str]]:
+    """The step with the best of a library fitted by re-simulation, and the names of those that were."""
+    weighed = candidates(problem, data, library, detection.evidence, baseline, causes[-1].fit.slots if causes else ())
+    tried = {c.hypothesis.name for c in weighed}
+    admitted = admissible(problem, relinearised(problem, admissible(problem, weighed), baseline))
+    rows = tuple((c.hypothesis.name, c.evidence, c.gain) for c in admitted or weighed)
+    enough = [c for c in admitted if sufficient(c, alone=not causes)]
+    if enough:
+        return Step(detection, enough, admitted, rows, onset), tried
+    offset = _offset(problem, weighed, baseline, sum(n.evidence for n in causes))
+    return Step(detection, offset, offset, rows, onset), tried
+
+
+def _offset(problem: Problem, weighed: list[Candidate], baseline: Baseline, evidence: float) -> list[Candidate]:
+    """The candidate with the most evidence, though it gains little by itself, as long as others are still to be found: of two causes that
+    offset each other, each alone opens the gap. Whether it is sufficient is asked again in the end (`joint`). Beside causes of so
+    much ``evidence``, model-form error alone leaves a share."""
+    least = max(STRONG_EVIDENCE, OFFSET_EVIDENCE * evidence)
+    strong = [c for c in possible(problem, weighed) if c.evidence >= least][:OFFSET_TRIED]
+    return [c for c in possible(problem, relinearised(problem, strong, baseline)) if c.evidence >= least][:1] if strong else []
+
+
+def _linearised(problem: Problem, library: list[Hypothesis], base: Point) -> Products:
+    """Normal equations of a library about the point reached, with how far each column is from its prior there."""
+    asked = columns_of(library)
+    data = at(problem, base.beta, tuple(sorted({*asked.slots, *problem.slop.sd, *base.columns})), asked.directions)
+    offset = np.array([base.beta[c] - problem.origin[c] if c < len(base.beta) else 0.0 for c in data.columns])
+    return replace(data, offset=offset)
+
+
+def _detection(problem: Problem, data: Products, library: list[Hypothesis], chosen: tuple[int, ...], seed: int) -> Detection:
+    """Evidence of each hypothesis on top of tolerances and of what was chosen before."""
+    slots = [c for c in data.columns if c < len(problem.plant.slots)]
+    typical = Prior({c: problem.plant.slots[c].parameter.typical for c in slots})
+    everything = fit(Ring.of(data, problem.folds), typical, problem.inflation).step
+    base = problem.slop.widened(wide_prior(problem, chosen))
+    return detect(data, base, problem.slop, {h.label: prior_of(problem, h) for h in library}, problem.inflation, everything, seed)
+
+
+def _restarted(problem: Problem, healthy: Point, causes: list[SelectedCause]) -> Point:
+    """The healthy fit, tried from another start, where it is beside the causes, too."""
+    return resettled(problem, healthy, causes[-1].fit.point, causes[-1].fit.slots) if causes else healthy
+
+
+def _cause(problem: Problem, step: Step, seed: int) -> SelectedCause:
     """The best of those that may be added, with those that this log does not tell from it."""
-    best = simplest(problem, one.able)
-    members = group(problem, one.rivals, seed)
-    if best.hypothesis.name not in dict(members):  # one that closes too little to be named has far more evidence
-        members = group(problem, one.able, seed)
-    members = tuple(sorted(members, key=lambda member: member[0] != best.hypothesis.name))
-    rivals = tuple(replace(r, fitted=r.fitted.light()) for r in one.rivals)
-    fitted = best.fitted if best.fitted.point.scaled else confirm(problem, best.fitted.point.beta, best.fitted.slots)
-    return Named(best.hypothesis, members, fitted, one.detection.p_value(best.hypothesis.label), best.evidence, rivals)
+    best = simplest(problem, step.added)
+    group = confusion_group(problem, step.admitted, seed)
+    if best.hypothesis.name not in dict(group):  # one that gains too little to be a cause has far more evidence
+        group = confusion_group(problem, step.added, seed)
+    group = tuple(sorted(group, key=lambda member: member[0] != best.hypothesis.name))
+    chosen_from = tuple(replace(c, fit=c.fit.light()) for c in step.admitted)
+    whole = best.fit if best.fit.point.scaled else confirm(problem, best.fit.point.beta, best.fit.slots)
+    return SelectedCause(best.hypothesis, group, whole, step.detection.p_value(best.hypothesis.label), best.evidence, chosen_from)
 
 
-def _pruned(problem: Problem, named: list[Named]) -> list[Named]:
-    """Drop effects that the last one made needless: without them the evidence of the joint fit is no worse."""
-    for one in named[:-1]:
-        whole = named[-1].fitted
+def _pruned(problem: Problem, causes: list[SelectedCause]) -> list[SelectedCause]:
+    """Without causes that the last one made needless: the evidence of the joint fit is no worse without them."""
+    for one in causes[:-1]:
+        whole = causes[-1].fit
         slots = tuple(s for s in whole.slots if s not in one.hypothesis.slots)
         start = whole.beta.copy()
         start[list(one.hypothesis.slots)] = problem.origin[list(one.hypothesis.slots)]
         without = roughly(problem, start, slots, whole.point.scaled)
-        if without.evidence > whole.evidence - NEEDLESS:
+        if without.evidence > whole.evidence - NEEDLESS_EVIDENCE:
             without = confirm(problem, without.point.beta, slots)
-            rest = [n for n in named if n is not one]
-            named = [*rest[:-1], replace(rest[-1], fitted=without)]
-    return named
+            rest = [n for n in causes if n is not one]
+            causes = [*rest[:-1], replace(rest[-1], fit=without)]
+    return causes
 
 
-def _ranking(
-    problem: Problem, library: list[Hypothesis], named: list[Named], rounds: Sequence[tuple[tuple[str, float, float], ...]]
-) -> tuple[tuple[str, float], ...]:
-    """Every hypothesis with the held-out share of the gap that it closes by itself, slop standing still: the named ones, then the others by that
-    share, re-simulated for the finalists, linearised for the rest."""
+def _ranking(problem: Problem, library: list[Hypothesis], causes: list[SelectedCause], steps: Sequence[Sequence[Row]]) -> tuple[tuple[str, float], ...]:
+    """Every hypothesis with the reduction of the gap that it makes by itself, held out, coefficients as filed: the causes first, then the others by
+    that, fitted by re-simulation for the first step's candidates, linearised for the rest."""
     _, fits = contest(Ring.of(problem.gap_data, problem.folds), Prior({}), {h.label: prior_of(problem, h) for h in library}, problem.inflation)
     gap, share = float(problem.gap_data.c.sum()), dict[str, float]()
     for h in library:
         share[h.name] = max(1.0 - fits[h.label].loss / gap, share.get(h.name, -np.inf))
-    share |= {name: gain for name, _, gain in (rounds[0] if rounds else ())}
-    leading = dict.fromkeys(n.hypothesis.name for n in named)
-    return tuple((name, share[name]) for name in (*leading, *sorted(share.keys() - leading.keys(), key=lambda n: -share[n])))
+    share |= {name: gain for name, _, gain in (steps[0] if steps else ())}
+    leading = dict.fromkeys(n.hypothesis.name for n in causes)
+    others = sorted((name for name in share if name not in leading), key=lambda name: -share[name])  # equals in the order of the library
+    return tuple((name, share[name]) for name in (*leading, *others))

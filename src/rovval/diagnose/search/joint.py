@@ -1,4 +1,4 @@
-"""Causes in each other's company: each is weighed again beside the others that were found, against its rivals and against its absence.
+"""Joint re-selection: each cause is weighed again beside the others that were found, against its candidates and against its absence.
 
 A search that adds one cause after the other decides about the first without the second. Where two causes offset each other neither
 closes the gap alone, and where the first was the nearest relative of two, another name is better once both are there.
@@ -7,125 +7,123 @@ closes the gap alone, and where the first was the nearest relative of two, anoth
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from rovval.diagnose.criteria import (
+    ALTERNATIVE_EVIDENCE,
+    FIRST_GAIN,
+    FURTHER_EVIDENCE_GAIN,
+    FURTHER_GAIN,
+    LEAST_EVIDENCE,
+    MOST_ALTERNATIVES,
+)
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.hypothesis_fit import Confirmed, confirm, roughly
 from rovval.diagnose.inference.laplace import Point
 from rovval.diagnose.inference.problem import Problem
-from rovval.diagnose.search.baseline import Ground, bare, rival, with_causes
-from rovval.diagnose.search.confusion import Rival, closed, denied, group
-
-LEAST_GAIN = 0.15  # of the gap, on held-out windows: less is not worth a name (opened sets: 0 of 8 below it were right)
-LATER_GAIN = 0.18  # of what is left, the same for a second and third effect: the forms of equations leave structure (0 of 7 were right)
-LEAST_EVIDENCE = 6.0  # over slop: "strong" (Kass & Raftery 1995); no healthy Merlin log of the tuning set got as far as finalists
-LATER_WORTH = 8.0  # evidence times gain, the same for those: little evidence will do where much closes (opened sets: 1 of 9 below it was right)
-RIVALS, SERIOUS = 2, 0.5  # of a cause that are weighed again, and the share of its evidence that makes one
-
-
-@dataclass(frozen=True, slots=True)
-class Named:
-    """One effect that was found: its hypothesis, the group that this log cannot tell apart with probabilities (itself first), the joint
-    fit after it was added, the detection that let it in, its evidence over what was there before, and those that it was chosen from."""
-
-    hypothesis: Hypothesis
-    group: tuple[tuple[str, float], ...]
-    fitted: Confirmed
-    p_value: float
-    evidence: float
-    rivals: tuple[Rival, ...]
+from rovval.diagnose.search.baseline import (
+    Baseline,
+    Candidate,
+    SelectedCause,
+    baseline_of,
+    compared,
+    healthy_baseline,
+    reduction,
+)
+from rovval.diagnose.search.confusion import confusion_group
 
 
-def worthy(one: Rival, alone: bool) -> bool:
-    """Whether a rival closes enough of the gap, of what kinematics show, or from where it begins on, with enough evidence, or mends the file;
-    ``alone``: nothing was found before it."""
-    gain = max(one.closes, one.kinematic, one.begun)
-    if denied(one):
+def sufficient(one: Candidate, alone: bool) -> bool:
+    """Whether a candidate gains enough to be a cause: in the gap, in the parity residuals, or from its onset on, with enough evidence, or by restoring
+    the tolerances of the file; ``alone``: there is no other cause."""
+    gain = max(one.best_gain, one.parity_gain, one.gain_since)
+    if one.contradicted:
         return False
-    if one.mends:
+    if one.restores:
         return True
     if alone:
-        return gain >= LEAST_GAIN and one.evidence >= LEAST_EVIDENCE
-    return gain >= LATER_GAIN and one.evidence * min(gain, 1.0) >= LATER_WORTH
+        return gain >= FIRST_GAIN and one.evidence >= LEAST_EVIDENCE
+    return gain >= FURTHER_GAIN and one.evidence * min(gain, 1.0) >= FURTHER_EVIDENCE_GAIN
 
 
-def together(problem: Problem, named: Sequence[Named], healthy: Point, seed: int) -> list[Named]:
-    """The causes that are worth their names beside the others, under the names that fit best there; ``healthy`` is where slop settles alone."""
-    found = list(named)
+def reselected(problem: Problem, causes: Sequence[SelectedCause], healthy: Point, seed: int) -> list[SelectedCause]:
+    """The causes that are sufficient beside the others, under the names that fit best there; ``healthy`` is the fit without causes."""
+    found = list(causes)
     for i in range(len(found) if len(found) > 1 else 0):
-        found = _renamed(problem, found, i, healthy, seed)
+        found = _exchanged(problem, found, i, healthy, seed)
     while found:
-        whole, alone = found[-1].fitted, len(found) == 1
+        whole, alone = found[-1].fit, len(found) == 1
         without = [_without(problem, found, n, healthy) for n in found]
-        added = [rival(problem, n.hypothesis, whole, ground) for n, ground in zip(found, without, strict=True)]
+        added = [compared(problem, n.hypothesis, whole, baseline) for n, baseline in zip(found, without, strict=True)]
         found = [replace(n, evidence=one.evidence) for n, one in zip(found, added, strict=True)]
-        if all(worthy(one, alone) for one in added):
+        if all(sufficient(one, alone) for one in added):
             break
-        nothing = bare(problem, healthy)
-        seen = [one.kinematic >= LEAST_GAIN and worthy(one, alone) for one in added]  # by kinematics, to which no other cause is a rival
-        stands = [-np.inf if safe and not all(seen) else _worth(problem, ground, nothing) for ground, safe in zip(without, seen, strict=True)]
-        found = _dropped(problem, found, found[int(np.argmax(stands))])
-    return [_apart(n, {other.hypothesis.name for other in found if other is not n}) for n in found]
+        nothing = healthy_baseline(problem, healthy)
+        seen = [one.parity_gain >= FIRST_GAIN and sufficient(one, alone) for one in added]  # by parity, to which no other cause is an alternative
+        rests = [-np.inf if safe and not all(seen) else _merit(baseline, nothing) for baseline, safe in zip(without, seen, strict=True)]
+        found = _removed(problem, found, found[int(np.argmax(rests))])
+    return [_group_apart(n, {other.hypothesis.name for other in found if other is not n}) for n in found]
 
 
-def _without(problem: Problem, found: Sequence[Named], one: Named, healthy: Point) -> Ground:
-    rest = [n for n in found if n is not one]
-    if not rest:
-        return bare(problem, healthy)
-    return with_causes(jointly(problem, found[-1].fitted, [n.hypothesis for n in rest]))
-
-
-def _worth(problem: Problem, ground: Ground, nothing: Ground) -> float:
-    """Evidence of what stands without a cause, over that of ``nothing`` at all, times what it closes of the gap."""
-    gain, _ = closed(nothing.loss, ground.loss)
-    return (ground.evidence - nothing.evidence) * max(gain, 0.0)
-
-
-def jointly(problem: Problem, whole: Confirmed, kept: Sequence[Hypothesis], other: Rival | None = None) -> Confirmed:
-    """The causes ``kept`` from where they stand in ``whole``, with another one from where it stood when it was weighed."""
+def joint_fit(problem: Problem, whole: Confirmed, kept: Sequence[Hypothesis], other: Candidate | None = None) -> Confirmed:
+    """The causes ``kept`` fitted from where they are in ``whole``, with another one from where it was as a candidate."""
     start, slots = whole.point.beta.copy(), [s for h in kept for s in h.slots]
     gone = [s for s in whole.slots if s not in slots]
     start[gone] = problem.origin[gone]
     if other:
         new = list(other.hypothesis.slots)
-        start[new], slots = other.fitted.beta[new], [*slots, *new]
+        start[new], slots = other.fit.beta[new], [*slots, *new]
     return roughly(problem, start, tuple(dict.fromkeys(slots)), whole.point.scaled)
 
 
-def _renamed(problem: Problem, found: list[Named], i: int, healthy: Point, seed: int) -> list[Named]:
-    """The causes with the i-th under the name that fits best beside the others, and those that are not told from it there."""
-    one, whole = found[i], found[-1].fitted
+def _without(problem: Problem, found: Sequence[SelectedCause], one: SelectedCause, healthy: Point) -> Baseline:
+    """The baseline that the others are."""
+    rest = [n for n in found if n is not one]
+    if not rest:
+        return healthy_baseline(problem, healthy)
+    return baseline_of(joint_fit(problem, found[-1].fit, [n.hypothesis for n in rest]))
+
+
+def _merit(rest: Baseline, nothing: Baseline) -> float:
+    """Evidence of what is left without a cause over that of ``nothing`` at all, times its reduction of the gap."""
+    gain, _ = reduction(nothing.losses, rest.losses)
+    return (rest.evidence - nothing.evidence) * max(gain, 0.0)
+
+
+def _exchanged(problem: Problem, found: list[SelectedCause], i: int, healthy: Point, seed: int) -> list[SelectedCause]:
+    """The causes with the i-th under the name that fits best beside the others, and with those that are not told from it there."""
+    one, whole = found[i], found[-1].fit
     taken, rest = {n.hypothesis.name for n in found}, [n.hypothesis for n in found if n is not one]
-    others = [r for r in one.rivals if r.hypothesis.name not in taken and r.evidence > SERIOUS * one.rivals[0].evidence][:RIVALS]
+    others = [c for c in one.candidates if c.hypothesis.name not in taken and c.evidence > ALTERNATIVE_EVIDENCE * one.candidates[0].evidence]
+    others = others[:MOST_ALTERNATIVES]
     if not others:
         return found
-    ground = _without(problem, found, one, healthy)
-    mine = rival(problem, one.hypothesis, whole, ground)
-    rivals = [mine, *(rival(problem, r.hypothesis, jointly(problem, whole, rest, r), ground) for r in others)]
-    rivals.sort(key=lambda r: -r.evidence)
-    best = rivals[0] if rivals[0].evidence > mine.evidence + LEAST_EVIDENCE else mine
-    members = tuple(sorted(group(problem, rivals, seed), key=lambda member: member[0] != best.hypothesis.name))
-    better = replace(one, hypothesis=best.hypothesis, group=members, evidence=best.evidence)
-    renamed = [better if n is one else n for n in found]
+    baseline = _without(problem, found, one, healthy)
+    mine = compared(problem, one.hypothesis, whole, baseline)
+    candidates = [mine, *(compared(problem, c.hypothesis, joint_fit(problem, whole, rest, c), baseline) for c in others)]
+    candidates.sort(key=lambda c: -c.evidence)
+    best = candidates[0] if candidates[0].evidence > mine.evidence + LEAST_EVIDENCE else mine
+    group = tuple(sorted(confusion_group(problem, candidates, seed), key=lambda member: member[0] != best.hypothesis.name))
+    better = replace(one, hypothesis=best.hypothesis, group=group, evidence=best.evidence)
+    exchanged = [better if n is one else n for n in found]
     if best is mine:
-        return renamed
-    return [*renamed[:-1], replace(renamed[-1], fitted=confirm(problem, best.fitted.point.beta, best.fitted.slots))]
+        return exchanged
+    return [*exchanged[:-1], replace(exchanged[-1], fit=confirm(problem, best.fit.point.beta, best.fit.slots))]
 
 
-def _apart(one: Named, others: set[str]) -> Named:
+def _group_apart(one: SelectedCause, others: set[str]) -> SelectedCause:
     """A cause whose group does not hold those that are there as well: they are no alternative to it."""
     kept = [(name, probability) for name, probability in one.group if name not in others]
     whole = sum(probability for _, probability in kept)
     return replace(one, group=tuple((name, probability / whole) for name, probability in kept)) if len(kept) < len(one.group) and whole > 0 else one
 
 
-def _dropped(problem: Problem, found: list[Named], weak: Named) -> list[Named]:
+def _removed(problem: Problem, found: list[SelectedCause], weak: SelectedCause) -> list[SelectedCause]:
     """The causes without a weak one, fitted again."""
     rest = [n for n in found if n is not weak]
     if not rest:
         return []
-    start = jointly(problem, found[-1].fitted, [n.hypothesis for n in rest])
-    return [*rest[:-1], replace(rest[-1], fitted=confirm(problem, start.point.beta, start.slots))]
-
+    start = joint_fit(problem, found[-1].fit, [n.hypothesis for n in rest])
+    return [*rest[:-1], replace(rest[-1], fit=confirm(problem, start.point.beta, start.slots))]

@@ -1,8 +1,8 @@
-"""Whether what is at work began during the log, of effects that have no onset of their own: the part after it is then diagnosed by itself.
+"""Onset of a cause that has none of its own among its parameters: from when on it seems to be at work, and what it is then worth on the whole log.
 
 A cause that is there half of the time is fitted with half of its size, and its nearest relative, which moves in that half only, may fit as well.
-In the linearised model every window could be the first with the cause in it; it must have clearly more evidence there than on the whole log, and the
-windows before must deny that it was there.
+In the linearised model every window could be the first with the cause in it (likelihood ratio over all change points; Basseville and Nikiforov 1993):
+it must have clearly more evidence from there on than on the whole log, and the windows before must deny that it was there.
 """
 
 from __future__ import annotations
@@ -13,88 +13,125 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.hypotheses.hypothesis import Hypothesis
+from rovval.diagnose.criteria import ONSET_DENIED, ONSET_HINTED, ONSETS_TRIED, WINDOWS_AFTER_ONSET, WINDOWS_BEFORE_ONSET
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of
 from rovval.diagnose.inference.cross_validation import free_of, settled
+from rovval.diagnose.inference.hypothesis_fit import Confirmed
+from rovval.diagnose.inference.laplace import Point, whole_evidence
+from rovval.diagnose.inference.map_fit import about
 from rovval.diagnose.inference.prior import Prior
 from rovval.diagnose.inference.problem import Problem
 from rovval.diagnose.residuals.normal_equations import Products
-from rovval.diagnose.search.candidates import prior_of
 from rovval.diagnose.windows.shooting import Stretches
-
-BEFORE, AFTER = 3, 6  # windows without and with it, at least (chosen)
-HINTED, AGAINST = 10.0, 20.0  # twice the log Bayes factor, linearised: of the part over the whole, and of the windows before against it (chosen)
-CLEARER = 20.0  # the same of what was found in the part, at work from then on, over what was found in the whole: on the same windows (chosen)
-TRIED = 12  # first windows with it that are tried, evenly spread, before those about the best of them (chosen)
 
 
 @dataclass(frozen=True, slots=True)
-class _Part:
-    """Sums over some windows, slop taken out: what a hypothesis explains there is read off its own columns."""
+class Onset:
+    """When something seems to begin: ``time`` (s since the run's start), and its ``evidence`` from there on (twice the log Bayes factor over
+    coefficients within tolerance, linearised)."""
+
+    time: float
+    evidence: float
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """Normal equations of neighbouring windows, summed, coefficients within tolerance eliminated: ``A`` (k, k), ``b`` (k,)."""
 
     A: Array
     b: Array
 
     @classmethod
-    def of(cls, data: Products, windows: slice, slop: Prior, inflation: float) -> _Part:
-        """Slop settles on these windows alone."""
+    def of(cls, data: Products, windows: slice, slop: Prior, inflation: float) -> Stretch:
+        """Coefficients are fitted on these windows alone."""
         free, ridge, offset = free_of(data, slop, inflation)
         return cls(*settled(data.A[windows].sum(axis=0), data.b[windows].sum(axis=0), free, ridge, ridge @ offset))
 
+    def explained(self, at: np.ndarray, prior: Prior, inflation: float) -> tuple[float, Array]:
+        """(Twice the log Bayes factor of a hypothesis with the columns ``at`` over none, its fitted size)."""
+        ridge = inflation / np.array(list(prior.sd.values())) ** 2
+        H, slope = self.A[np.ix_(at, at)] + np.diag(ridge), self.b[at]
+        size = np.linalg.solve(H, slope)
+        return float(slope @ size / inflation - np.linalg.slogdet(H)[1] + np.log(ridge).sum()), size
 
-@dataclass(frozen=True, slots=True)
-class Beginning:
-    """Seconds since the run's start from which something seems to be at work, and its linearised evidence there."""
-
-    since: float
-    evidence: float
+    def reduction(self, at: np.ndarray, size: Array) -> float:
+        """What a hypothesis of a given size takes from the loss; negative where it adds to it."""
+        return float(2.0 * self.b[at] @ size - size @ self.A[np.ix_(at, at)] @ size)
 
 
-def began(problem: Problem, data: Products, library: Sequence[Hypothesis]) -> Beginning | None:
-    """From where on something is at work that was not there before; None where nothing says so, and for several logs, each of which has a
-    beginning of its own. ``data`` is the library linearised where healthy coefficients settled."""
-    if len(problem.parts) > 1 or problem.blocks < BEFORE + AFTER:
+def suspected_onset(problem: Problem, data: Products, library: Sequence[Hypothesis]) -> Onset | None:
+    """From when on something is at work that was not there before; None where nothing says so, and for several logs, each of which would have an onset
+    of its own. ``data`` is the library linearised at the healthy fit."""
+    if len(problem.parts) > 1 or problem.blocks < WINDOWS_BEFORE_ONSET + WINDOWS_AFTER_ONSET:
         return None
     priors = {h.label: prior_of(problem, h) for h in library if not h.effect.begins}
-    whole = _Part.of(data, slice(None), problem.slop, problem.inflation)
-    always = {name: _explained(whole, data.place(tuple(prior.sd)), prior, problem.inflation)[0] for name, prior in priors.items()}
-    first, last = BEFORE, problem.blocks - AFTER
-    step = max(1, (last - first) // TRIED)
-    found = {k: _begins(problem, data, priors, always, k) for k in range(first, last + 1, step)}
-    at = max(found, key=lambda k: found[k])
-    near = range(max(first, at - step + 1), min(last, at + step - 1) + 1) if found[at] else ()
-    found |= {k: _begins(problem, data, priors, always, k) for k in near if k not in found}
-    at = max(found, key=lambda k: found[k])
-    part = problem.parts[0]
-    return Beginning(float(part.start[at] * part.run.dt), found[at]) if found[at] else None
+    whole = Stretch.of(data, slice(None), problem.slop, problem.inflation)
+    always = {label: whole.explained(data.place(tuple(prior.sd)), prior, problem.inflation)[0] for label, prior in priors.items()}
+    first, last = WINDOWS_BEFORE_ONSET, problem.blocks - WINDOWS_AFTER_ONSET
+    step = max(1, (last - first) // ONSETS_TRIED)
+    found = {k: _evidence_from(problem, data, priors, always, k) for k in range(first, last + 1, step)}
+    best = max(found, key=lambda k: found[k])
+    near = range(max(first, best - step + 1), min(last, best + step - 1) + 1) if found[best] else ()
+    found |= {k: _evidence_from(problem, data, priors, always, k) for k in near if k not in found}
+    best = max(found, key=lambda k: found[k])
+    windows = problem.parts[0]
+    return Onset(float(windows.start[best] * windows.run.dt), found[best]) if found[best] else None
 
 
-def _begins(problem: Problem, data: Products, priors: Mapping[str, Prior], always: Mapping[str, float], k: int) -> float:
-    """Most evidence of a hypothesis in the windows from the ``k``-th on, of those with more than on the whole log that the windows before deny."""
-    after = _Part.of(data, slice(k, None), problem.slop, problem.inflation)
-    before = _Part.of(data, slice(k), problem.slop, problem.inflation)
+def _evidence_from(problem: Problem, data: Products, priors: Mapping[str, Prior], always: Mapping[str, float], k: int) -> float:
+    """Most evidence of a hypothesis in the windows from the ``k``-th on, of those with clearly more than on the whole log that the windows before deny;
+    0 where there is none."""
+    after = Stretch.of(data, slice(k, None), problem.slop, problem.inflation)
+    before = Stretch.of(data, slice(k), problem.slop, problem.inflation)
     best = 0.0
-    for name, prior in priors.items():
+    for label, prior in priors.items():
         at = data.place(tuple(prior.sd))
-        evidence, size = _explained(after, at, prior, problem.inflation)
-        if evidence > max(best, max(always[name], 0.0) + HINTED) and _worth(before, at, size) < -AGAINST * problem.inflation:
+        evidence, size = after.explained(at, prior, problem.inflation)
+        if evidence > max(best, max(always[label], 0.0) + ONSET_HINTED) and before.reduction(at, size) < -ONSET_DENIED * problem.inflation:
             best = evidence
     return best
 
 
-def _explained(part: _Part, at: np.ndarray, prior: Prior, inflation: float) -> tuple[float, Array]:
-    """Twice the log Bayes factor of a hypothesis, whose columns are ``at``, over slop in some windows, and its size there."""
-    ridge = inflation / np.array(list(prior.sd.values())) ** 2
-    H, slope = part.A[np.ix_(at, at)] + np.diag(ridge), part.b[at]
-    size = np.linalg.solve(H, slope)
-    return float(slope @ size / inflation - np.linalg.slogdet(H)[1] + np.log(ridge).sum()), size
+def windows_from(windows: Stretches, time: float) -> Stretches:
+    """The windows of a run from ``time`` (s since its start) on."""
+    kept = windows.start * windows.run.dt >= time
+    return replace(
+        windows, start=windows.start[kept], nu0=windows.nu0[kept], eta0=windows.eta0[kept], y=windows.y[kept], ok=windows.ok[kept]
+    )
 
 
-def _worth(part: _Part, at: np.ndarray, size: Array) -> float:
-    """What a hypothesis of a given size takes from the loss of some windows."""
-    return float(2.0 * part.b[at] @ size - size @ part.A[np.ix_(at, at)] @ size)
+def evidence_with_onset(problem: Problem, late: Confirmed, time: float, healthy: Point) -> float:
+    """Twice the log Bayes factor over the nominal vehicle, on every window, of the causes that the fit ``late`` shows from ``time`` (s) on and of a healthy
+    vehicle before.
+
+    Coefficients and sensors that are healthy are the same all through the log; they are fitted from where they are beside the causes, or from where they
+    are at the ``healthy`` fit, whichever is better.
+    """
+    own = list(late.slots)
+    beside, alone, without = late.point.beta, healthy.beta.copy(), late.point.beta.copy()
+    alone[own], without[own] = beside[own], healthy.beta[own]
+    starts = (beside, without), (alone, healthy.beta)
+    return max(whole_evidence(problem, _switched(problem, late.slots, now, then, time)) for now, then in starts)
 
 
-def after(part: Stretches, since: float) -> Stretches:
-    """The windows of a run from ``since`` (s) on."""
-    kept = part.start * part.run.dt >= since
-    return replace(part, start=part.start[kept], nu0=part.nu0[kept], eta0=part.eta0[kept], y=part.y[kept], ok=part.ok[kept])
+def _switched(problem: Problem, own: tuple[int, ...], now: Array, then: Array, time: float) -> Point:
+    """The windows before ``time`` linearised about ``then``, the others about ``now``. A coefficient that the causes take is one of the vehicle's own, with
+    its tolerance, before they do."""
+    columns = (*own, *(c for c in problem.slop.sd if c not in own))
+    begun, before = about(problem, now, columns, len(own)), about(problem, then, columns, len(own))
+    taken = [i for i, slot in enumerate(own) if slot in problem.slop.sd]
+    k, slots = len(columns), [own[i] for i in taken]
+    late, early = np.eye(k + len(taken), k), np.eye(k + len(taken), k)
+    early[: len(own)] = 0.0
+    early[np.arange(k, k + len(taken)), taken] = 1.0
+    first = np.concatenate([part.start * part.run.dt < time for part in problem.parts])
+    A = np.where(first[:, None, None], early @ before.data.A @ early.T, late @ begun.data.A @ late.T)
+    b = np.where(first[:, None], before.data.b @ early.T, begun.data.b @ late.T)
+    none = np.zeros(len(taken))
+    return replace(
+        begun,
+        columns=(*columns, *slots), data=Products(A, b, np.where(first, before.data.c, begun.data.c), (*columns, *slots)),
+        precision=np.concatenate([begun.precision, [problem.inflation / problem.slop.sd[s] ** 2 for s in slots]]),
+        offset=np.concatenate([begun.offset, (then - problem.origin)[slots]]),
+        side=np.concatenate([begun.side, none]), still=np.concatenate([begun.still, none > 0]),
+    )  # fmt: skip

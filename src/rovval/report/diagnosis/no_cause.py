@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from rovval.diagnose.criteria import LEAST_EVIDENCE
 from rovval.diagnose.decision.unexplained import Accounted
 from rovval.diagnose.result.diagnosis import Candidate, Diagnosis, SensorFault, Unexplained
-from rovval.diagnose.search.joint import LEAST_EVIDENCE
 from rovval.report.common.numbers import listed, number, per_cent
 from rovval.report.diagnosis.words import parameter, sensor_tolerance
 
