@@ -17,6 +17,10 @@ from rovval.blind.plant.spec import Planted
 from rovval.core.channels import POSE, VELOCITIES
 from rovval.core.data import Array, ClockReport, Reason, Run
 from rovval.diagnose import Diagnosis, diagnose
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of
+from rovval.diagnose.hypotheses.library import hypotheses
+from rovval.diagnose.inference.problem import Problem, pose
+from rovval.diagnose.windows.shooting import cut_all
 from rovval.simulation import simulate
 from rovval.storage.archive import open_run
 from rovval.vehicle.model import Vehicle, allocation
@@ -80,6 +84,19 @@ def diagnosed(effects: tuple[str, ...] = (), seed: int = 5, seconds: float = 100
 
 
 @functools.cache
+def posed(effects: tuple[str, ...] = (), seed: int = 5, seconds: float = 200.0) -> tuple[Problem, list[Hypothesis]]:
+    """The estimation problem of such a log of Merlin, and the hypotheses of the library that it was linearised in."""
+    windows, _ = cut_all([own(effects, seed, seconds)], merlin(), "fossen", 10.0)
+    library, _ = hypotheses(windows)
+    return pose(windows, columns_of(library), 0.05), library
+
+
+def slot(problem: Problem, key: str) -> int:
+    """Place of a parameter, ``waves.period``, among those of the problem's plant."""
+    return next(i for i, s in enumerate(problem.plant.slots) if s.key == key)
+
+
+@functools.cache
 def foreign(
     folder: Path, planted: Sequence[tuple[str, str, float]], seed: int, seconds: float = 200.0, slop: float = 0.0, v: str = "merlin",
     mission: str = "rich", onset: float | None = None,
@@ -90,6 +107,13 @@ def foreign(
     path = folder / f"foreign{seed}.csv"
     write_csv(flight, path)
     return open_run(path, "merlin", folder / "archive")
+
+
+def bluerov2(folder: Path, name: str, seed: int, seconds: float, slop: float, *effects: tuple[str, str, float]) -> Run:
+    """A log of the independent plant of a BlueROV2, flown open-loop; ``effects``: (effect, target, severity)."""
+    planted = [Planted(name, target or None, severity) for name, target, severity in effects]
+    write_csv(fly(LIBRARY / "bluerov2_heavy.toml", "rich", planted, seed, seconds, slop), folder / name)
+    return open_run(folder / name, "merlin")
 
 
 def without(run: Run, *channels: str) -> Run:

@@ -10,7 +10,6 @@ from diagnose_case import NOISE, bare, commands, merlin, own
 
 from rovval.core.data import Array, Reason, Run
 from rovval.core.frames import euler_rates, rotation_from_euler
-from rovval.diagnose.hypotheses.change_points import change_points
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.inference.cross_validation import Fold, Ring, contest, fit, folds_of, heldout
@@ -23,7 +22,6 @@ from rovval.diagnose.residuals.parity import Parity, parity
 from rovval.diagnose.residuals.sensitivities import Linear
 from rovval.diagnose.residuals.sensor_faults import faults
 from rovval.diagnose.result.attribution import slices, worst
-from rovval.diagnose.search.detection import detect
 from rovval.diagnose.windows.shooting import Stretches, axis_channels, cut
 from rovval.effects import load
 
@@ -286,36 +284,6 @@ def test_parity_of_healthy_sensors_finds_nothing():
 # -- detection ---------------------------------------------------------------------------------------------------------------------
 
 
-def test_detection_is_calibrated_on_its_own_null():
-    """Logs with slop within its prior and white noise, 80 of them: false alarms at the stated rate (loose), none systematic."""
-    rng, m, k, p_values = RNG(10), 30, 8, []
-    slop, wide = Prior({0: 0.05, 1: 0.05, 2: 0.05}), {f"h{i}": Prior({i: 2.0}) for i in range(3, k)}
-    for _ in range(80):
-        S = rng.normal(size=(m, 20, k)) + rng.normal(size=(m, 1, k))
-        delta = np.concatenate([0.05 * rng.normal(size=3), np.zeros(k - 3)])
-        r = S @ delta + rng.normal(size=(m, 20))
-        data = Products(np.einsum("wni,wnj->wij", S, S), np.einsum("wni,wn->wi", S, r), (r**2).sum(axis=1), tuple(range(k)))
-        everything = np.linalg.solve(data.A.sum(axis=0), data.b.sum(axis=0))
-        found = detect(data, slop, slop, wide, 1.0, everything, int(rng.integers(1 << 30)))
-        p_values.append(found.p_value(found.best))
-    p = np.array(p_values)
-    assert (p <= 0.05).mean() <= 0.125  # 0.05 expected, three standard errors
-    assert (p <= 0.2).mean() <= 0.35
-    assert p.min() > 0.004
-
-
-def test_detection_sees_what_is_there():
-    rng, m, k = RNG(11), 30, 5
-    S = rng.normal(size=(m, 20, k))
-    r = S @ np.array([0, 0, 0, 0.5, 0]) + rng.normal(size=(m, 20))
-    data = Products(np.einsum("wni,wnj->wij", S, S), np.einsum("wni,wn->wi", S, r), (r**2).sum(axis=1), tuple(range(k)))
-    slop = Prior({0: 0.05})
-    everything = np.linalg.solve(data.A.sum(axis=0), data.b.sum(axis=0))
-    found = detect(data, slop, slop, {"true": Prior({3: 2.0}), "other": Prior({4: 2.0})}, 1.0, everything, 0)
-    assert found.best == "true"
-    assert found.p_value("true") < 0.01
-
-
 # -- where -------------------------------------------------------------------------------------------------------------------------
 
 
@@ -342,15 +310,6 @@ def test_a_gap_planted_in_a_regime_is_found_with_its_share(part):
 def test_an_even_gap_has_no_worst_place(part):
     error = RNG(13).normal(size=part.y.shape)
     assert not worst(slices(part, error, part.ok, 0), dict.fromkeys(axis_channels(part), 1 / 6))
-
-
-def test_a_change_point_is_found_and_none_invented(part):
-    rng, m = RNG(14), part.count
-    signal = rng.normal(size=(m, 3))
-    assert change_points(part, signal, 0) == []
-    signal[3 * m // 4 :, 1] += 8.0
-    [at] = change_points(part, signal, 0)
-    assert at == pytest.approx(part.start[3 * m // 4] * 0.1, abs=10.5)
 
 
 def test_idle_thrusters_and_all_regimes_have_names(part):

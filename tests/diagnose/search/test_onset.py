@@ -15,8 +15,9 @@ from rovval.blind.cases.flight import fly
 from rovval.blind.plant.spec import Planted
 from rovval.core.data import Run
 from rovval.core.errors import BadInput
-from rovval.diagnose import diagnose
-from rovval.diagnose.decision.finding import Finding, find
+from rovval.diagnose import diagnose, pipeline
+from rovval.diagnose.criteria import ONSET_CLEARER
+from rovval.diagnose.decision.finding import Finding, clearer
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.inference.hypothesis_fit import confirm
@@ -25,11 +26,9 @@ from rovval.diagnose.inference.map_fit import healthy_point
 from rovval.diagnose.inference.prior import Prior
 from rovval.diagnose.inference.problem import pose
 from rovval.diagnose.residuals.normal_equations import Products
-from rovval.diagnose.search.baseline import bare, rival
-from rovval.diagnose.search.confusion import closed
-from rovval.diagnose.search.joint import worthy
-from rovval.diagnose.search.onset import CLEARER, Beginning, _explained, _Part, _worth, after
-from rovval.diagnose.search.switched import switched
+from rovval.diagnose.search.baseline import compared, healthy_baseline, reduction
+from rovval.diagnose.search.joint import sufficient
+from rovval.diagnose.search.onset import Onset, Stretch, evidence_with_onset, windows_from
 from rovval.diagnose.windows.shooting import Stretches, cut_all
 from rovval.report.diagnosis.json import document as written
 from rovval.report.diagnosis.sentence import since
@@ -73,29 +72,37 @@ def test_the_windows_before_deny_what_they_do_not_hold() -> None:
     r = 0.1 * rng.normal(size=(8, 30)) + np.where(np.arange(8)[:, None] >= 4, 2.0, 0.0) * x[..., 0] + 0.03 * x[..., 1]
     data = Products(np.einsum("wti,wtj->wij", x, x), np.einsum("wti,wt->wi", x, r), (r**2).sum(axis=1), (0, 1))
     slop, wide, at = Prior({1: 0.05}), Prior({0: 4.0}), np.array([0])
-    late, early = (_Part.of(data, windows, slop, 1.0) for windows in (slice(4, None), slice(4)))
-    evidence, size = _explained(late, at, wide, 1.0)
+    late, early = (Stretch.of(data, windows, slop, 1.0) for windows in (slice(4, None), slice(4)))
+    evidence, size = late.explained(at, wide, 1.0)
     assert size == pytest.approx([2.0], abs=0.05) and evidence > 300.0
-    assert _worth(late, at, size) > 300.0 and _worth(early, at, size) < -300.0
-    assert _explained(early, at, wide, 1.0)[0] < 0.0
+    assert late.reduction(at, size) > 300.0 and early.reduction(at, size) < -300.0
+    assert early.explained(at, wide, 1.0)[0] < 0.0
+
+
+def finding(causes: float = 0.0, name: str = "voltage_sag", first: tuple[tuple[str, float, float], ...] = (), onset: Onset | None = None) -> Finding:
+    """What a search of the whole log may find: one cause of so much evidence, or none."""
+    named = (SimpleNamespace(hypothesis=SimpleNamespace(name=name, effect=SimpleNamespace(begins=False))),) if causes else ()
+    selection: Any = SimpleNamespace(onset=onset, steps=(first,) if first else (), healthy=None)
+    decision: Any = SimpleNamespace(causes=named, evidence=causes, fit=object() if causes else None)
+    problem: Any = None
+    return Finding(problem, {}, selection, [], decision)
 
 
 def test_a_part_that_cannot_be_simulated_leaves_the_answer_of_the_whole(monkeypatch: pytest.MonkeyPatch):
-    parts, _ = cut_all([own((), 5, 100.0)], merlin(), "fossen", 10.0)
-    whole: Any = SimpleNamespace(
-        selection=SimpleNamespace(began=Beginning(40.0, 500.0), rounds=()), decision=SimpleNamespace(causes=())
-    )
-    asked = list[int]()
+    windows, whole = list[int](), finding(onset=Onset(40.0, 500.0))
+    run = own((), 5, 100.0)
 
-    def searched(some: tuple[Stretches, ...], *_: Any) -> Any:
-        asked.append(some[0].count)
-        if len(asked) > 1:
+    def analysed(some: tuple[Stretches, ...], *_: Any) -> Any:
+        windows.append(some[0].count)
+        if len(windows) > 1:
             raise BadInput("too few windows can be simulated", "")
         return whole
 
-    monkeypatch.setattr("rovval.diagnose.decision.finding._searched", searched)
-    assert find(parts, (), 0.05, 0, lambda *_: None) is whole
-    assert asked == [parts[0].count, int((parts[0].start * parts[0].run.dt >= 40.0).sum())]
+    monkeypatch.setattr(pipeline, "analyse", analysed)
+    monkeypatch.setattr(pipeline, "assemble", lambda found, *_: found)
+    assert pipeline.diagnose([run], merlin()) is whole  # type: ignore[comparison-overlap]
+    (part,), _ = cut_all([run], merlin(), "fossen", 10.0)
+    assert windows == [part.count, int((part.start * part.run.dt >= 40.0).sum())]
 
 
 @pytest.mark.parametrize(
@@ -111,22 +118,11 @@ def test_a_part_that_cannot_be_simulated_leaves_the_answer_of_the_whole(monkeypa
 def test_what_follows_a_change_has_to_outdo_what_the_whole_log_shows(
     monkeypatch: pytest.MonkeyPatch, first: tuple[tuple[str, float, float], ...], causes: float, evidence: float, told: bool
 ):
-    parts, _ = cut_all([own((), 5, 100.0)], merlin(), "fossen", 10.0)
-
-    def finding(name: str, causes: float, began: Beginning | None) -> Finding:
-        named = (SimpleNamespace(hypothesis=SimpleNamespace(name=name, effect=SimpleNamespace(begins=False))),) if causes else ()
-        selection: Any = SimpleNamespace(began=began, rounds=(first,), healthy=None)
-        problem: Any = None
-        decision: Any = SimpleNamespace(causes=named, evidence=causes, fit=object())
-        return Finding(problem, {}, selection, [], decision)
-
-    found = iter((finding("voltage_sag", causes, Beginning(40.0, 70.0)), finding("reverse_asymmetry", 80.0, None)))
-    monkeypatch.setattr("rovval.diagnose.decision.finding._searched", lambda *_: next(found))
     monkeypatch.setattr("rovval.diagnose.decision.finding.whole_evidence", lambda *_: 1000.0)
-    monkeypatch.setattr("rovval.diagnose.decision.finding.switched", lambda problem, late, since, healthy: evidence if since == 40.0 else 0.0)
-    one = find(parts, (), 0.05, 0, lambda *_: None)
-    assert one.since == (40.0 if told else None)
-    assert [n.hypothesis.name for n in one.decision.causes] == (["reverse_asymmetry"] if told else ["voltage_sag"] if causes else [])
+    monkeypatch.setattr("rovval.diagnose.decision.finding.evidence_with_onset", lambda problem, late, time, healthy: evidence if time == 40.0 else 0.0)
+    onset = Onset(40.0, 70.0)
+    assert clearer(finding(80.0, "reverse_asymmetry"), finding(causes, first=first, onset=onset), onset) is told
+    assert not clearer(finding(), finding(causes, first=first, onset=onset), onset), "nothing is named in the part"
 
 
 def test_a_cause_that_never_begins_is_a_healthy_vehicle_with_its_own_tolerance(logs: tuple[Run, Run]) -> None:
@@ -137,8 +133,8 @@ def test_a_cause_that_never_begins_is_a_healthy_vehicle_with_its_own_tolerance(l
     drag = next(h for h in library if h.name == "linear_drag[surge]")
     always, alone = confirm(problem, problem.origin, drag.slots), healthy_point(problem)
     assert set(drag.slots) <= set(problem.slop.sd)
-    assert switched(problem, always, 1e6, alone) == pytest.approx(whole_evidence(problem, alone), abs=1.0)
-    assert switched(problem, always, 0.0, alone) == pytest.approx(always.evidence, abs=5.0)  # slopes of slop made anew where it settled
+    assert evidence_with_onset(problem, always, 1e6, alone) == pytest.approx(whole_evidence(problem, alone), abs=1.0)
+    assert evidence_with_onset(problem, always, 0.0, alone) == pytest.approx(always.evidence, abs=5.0)  # slopes of slop made anew where it settled
 
 
 def test_a_cause_from_some_moment_on_is_weighed_on_every_window(logs: tuple[Run, Run]) -> None:
@@ -149,10 +145,10 @@ def test_a_cause_from_some_moment_on_is_weighed_on_every_window(logs: tuple[Run,
     slots = next(h.slots for h in library if h.name == "inflow_loss")
     always = confirm(problem, problem.origin, slots)
     alone = healthy_point(problem)
-    assert switched(problem, always, 0.0, alone) == pytest.approx(always.evidence, rel=1e-3)
-    late = confirm(pose((after(parts[0], BEGINS),), columns_of(library), 0.05), always.beta, slots)
-    assert switched(problem, late, BEGINS, alone) > always.evidence + CLEARER
-    assert switched(problem, always, 1e6, alone) == pytest.approx(whole_evidence(problem, alone), abs=1.0)
+    assert evidence_with_onset(problem, always, 0.0, alone) == pytest.approx(always.evidence, rel=1e-3)
+    late = confirm(pose((windows_from(parts[0], BEGINS),), columns_of(library), 0.05), always.beta, slots)
+    assert evidence_with_onset(problem, late, BEGINS, alone) > always.evidence + ONSET_CLEARER
+    assert evidence_with_onset(problem, always, 1e6, alone) == pytest.approx(whole_evidence(problem, alone), abs=1.0)
 
 
 def test_what_begins_late_is_asked_what_it_closes_from_there_on() -> None:
@@ -163,27 +159,17 @@ def test_what_begins_late_is_asked_what_it_closes_from_there_on() -> None:
     fault = next(h for h in hypotheses(parts)[0] if h.name == "thruster_fault_onset[HFP]")
     start = problem.origin.copy()
     start[list(fault.slots)] = [{"loss": 1.0, "onset": BEGINS}[problem.plant.slots[s].parameter.name] for s in fault.slots]
-    fitted, ground = confirm(problem, start, fault.slots), bare(problem, healthy_point(problem))
-    one = rival(problem, fault, fitted, ground)
-    everywhere, _ = closed(ground.loss, (fitted.loss, fitted.dynamic_loss))
+    fitted, ground = confirm(problem, start, fault.slots), healthy_baseline(problem, healthy_point(problem))
+    one = compared(problem, fault, fitted, ground)
+    everywhere, _ = reduction(ground.losses, (fitted.loss, fitted.dynamic_loss))
     acts = np.concatenate([(part.start + part.steps) * part.run.dt > fitted.beta[list(fault.slots)].max() for part in problem.parts])
-    there, _ = closed((ground.loss[0][acts], ground.loss[1][acts]), (fitted.loss[acts], fitted.dynamic_loss[acts]))
-    assert one.begun == pytest.approx(there) and there > everywhere + 0.03 and one.gain == pytest.approx(everywhere)
-    little = replace(one, gain=0.05, beside=0.0, mends=False)
-    assert worthy(little, alone=True) and not worthy(replace(little, begun=0.0), alone=True)
+    there, _ = reduction((ground.losses[0][acts], ground.losses[1][acts]), (fitted.loss[acts], fitted.dynamic_loss[acts]))
+    assert one.gain_since == pytest.approx(there) and there > everywhere + 0.03 and one.gain == pytest.approx(everywhere)
+    little = replace(one, gain=0.05, gain_beside=0.0, restores=False)
+    assert sufficient(little, alone=True) and not sufficient(replace(little, gain_since=0.0), alone=True)
 
 
 @pytest.mark.parametrize(("hinted", "searched"), [(59.0, False), (61.0, True)])
-def test_what_promises_little_beside_the_whole_log_is_not_searched(monkeypatch: pytest.MonkeyPatch, hinted: float, searched: bool) -> None:
-    selection: Any = SimpleNamespace(began=Beginning(40.0, hinted), rounds=((("waves", 300.0, 0.3),),), healthy=None)
-    decision: Any = SimpleNamespace(causes=(), evidence=0.0, fit=None)
-    problem: Any = None
-    asked, parts = list[int](), cut_all([own((), 5, 100.0)], merlin(), "fossen", 10.0)[0]
-
-    def once(*_: Any) -> Finding:
-        asked.append(1)
-        return Finding(problem, {}, selection, [], decision)
-
-    monkeypatch.setattr("rovval.diagnose.decision.finding._searched", once)
-    assert find(parts, (), 0.05, 0, lambda *_: None).since is None
-    assert len(asked) == (2 if searched else 1)
+def test_what_promises_little_beside_the_whole_log_is_not_searched(hinted: float, searched: bool) -> None:
+    whole = finding(first=(("waves", 300.0, 0.3),), onset=Onset(40.0, hinted))
+    assert whole.onset == (Onset(40.0, hinted) if searched else None)

@@ -1,0 +1,97 @@
+"""Initial points: effects whose place, period or size no slope at no effect shows are found from them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from diagnose_case import foreign, merlin, own, posed, slot
+
+from rovval.diagnose import diagnose
+from rovval.diagnose.criteria import LEVER_SHARE
+from rovval.diagnose.hypotheses.hypothesis import prior_of
+from rovval.diagnose.hypotheses.initial_points import Hints
+from rovval.diagnose.hypotheses.library import hypotheses
+from rovval.diagnose.windows.shooting import cut_all
+
+
+@pytest.mark.parametrize(
+    ("effect", "name"),
+    [("waves:amplitude=1,period=9.3,direction=2.6,phase=-2.0", "waves"), ("current_varying:north=0.15,east=-0.1,period=83,phase=2.5", "current_varying")],
+)
+def test_what_swings_is_found_whatever_its_period_and_phase(effect, name):
+    document = diagnose([own((effect,), 5, 240.0)], merlin()).document()
+    assert [c["effect"] for c in document["causes"]] == [name], document["sentence"]
+    found, true = document["causes"][0]["parameters"]["period"]["value"], float(effect.split("period=")[1].split(",")[0])
+    assert found == pytest.approx(true, rel=0.03) and document["shrinkage"]["total"] > 0.8
+
+
+def test_waves_of_the_independent_plant_are_found(tmp_path: Path):
+    document = diagnose([foreign(tmp_path, (("waves", "", 1.5),), 31, 240.0, 0.03)], merlin()).document()
+    assert "waves" in [c["effect"] for c in document["causes"]], document["sentence"]
+
+
+def test_a_pull_may_begin_ahead_or_astern():
+    p, library = posed()
+    x, reach = slot(p, "tether_tension.x"), LEVER_SHARE * max(float(np.linalg.norm(t.position)) for t in merlin().thruster)
+    starts = [dict(h.at)[x] for h in library if h.name == "tether_tension" and h.at]
+    assert starts == pytest.approx([-min(reach, 2.0), min(reach, 2.0)])
+    document = diagnose([own(("tether_tension:north=250,east=120,x=-1.4",), 5, 200.0)], merlin()).document()
+    assert document["causes"][0]["effect"] == "tether_tension", document["sentence"]
+    assert document["causes"][0]["parameters"]["x"]["value"] == pytest.approx(-1.4, abs=0.4)
+
+
+def test_a_long_lag_is_found_though_it_is_no_multiple_of_a_short_one():
+    document = diagnose([own(("velocity_filter_lag:tau=0.9",), 5, 200.0)], merlin()).document()
+    assert document["causes"][0]["effect"] == "velocity_filter_lag", document["sentence"]
+
+
+def test_a_change_with_depth_begins_at_depths_of_the_log():
+    p, library = posed()
+    z = np.concatenate([part.eta0[:, 2] for part in p.parts])
+    for name in ("density_gradient", "current_shear"):
+        data = [dict(h.at)[slot(p, f"{name}.depth")] for h in library if h.name == name]
+        assert len(data) == 3 and z.min() < min(data) < max(data) < z.max()
+
+
+def test_an_offset_along_one_axis_is_tried_by_itself():
+    """Three parameters free for one that is off are evidence lost."""
+    p, library = posed()
+    assert {h.slots for h in library if h.label in ("cg_offset@x", "cg_offset@y", "cg_offset@z")} == {(slot(p, f"cg_offset.{c}"),) for c in "xyz"}
+    document = diagnose([own(("cg_offset:y=0.012",), 5, 200.0)], merlin()).document()
+    (cause,) = document["causes"]
+    assert cause["effect"] == "cg_offset" and cause["parameters"]["y"]["value"] == pytest.approx(0.012, rel=0.15)
+
+
+def test_a_coefficient_that_slop_moves_competes_wherever_its_search_begins():
+    """Begun elsewhere, a dead band would else be held to its tolerance by slop's own column for it."""
+    p, library = posed()
+    width = slot(p, "thruster_deadband.width")
+    begun = [h for h in library if h.name == "thruster_deadband"]
+    assert width in p.slop.sd and all(h.directions for h in begun)
+    assert all(prior_of(p, h).sd[width] > 10.0 * p.slop.sd[width] for h in begun)
+
+
+def test_what_holds_the_vehicle_begins_where_it_is_said_to():
+    """Until then where the vehicle was in the middle of the log; beyond its bounds nothing begins."""
+    parts, _ = cut_all([own((), 5, 200.0)], merlin(), "fossen", 10.0)
+    names = {i: s.parameter.name for i, s in enumerate(parts[0].plant.slots)}
+
+    def snags(held: list[dict[str, float]]) -> list[dict[str, float]]:
+        library, _ = hypotheses(parts, hints=Hints(changes_s=[120.0], springs=held))
+        assert 120.0 in {dict(h.at)[h.slots[1]] for h in library if h.name == "thruster_fault_onset[VAC]"}
+        return [{names[s]: value for s, value in h.at} for h in library if h.name == "tether_snag"]
+
+    run, (somewhere,) = parts[0].run, snags([])
+    assert 60.0 < somewhere["onset"] < 140.0
+    for place, channel in {"north": "x", "east": "y", "down": "z"}.items():
+        assert somewhere[place] == pytest.approx(float(np.interp(somewhere["onset"] / run.dt, np.arange(len(run)), run.get(channel))))
+    spring = {"stiffness": 300.0, "north": 3.0, "east": -2.0, "down": 9.0, "radius": 1.5, "onset": 80.0, "x": -0.5, "z": 0.0}
+    assert snags([spring, spring | {"x": -9.0}]) == [spring, spring | {"x": -2.0}]
+
+
+def test_a_hypothesis_is_tried_without_what_only_refines_it():
+    _, library = posed()
+    lags = [h for h in library if h.name == "thrust_lag" and not h.at]
+    assert sorted(len(h.slots) for h in lags) == [1, 2] and len({h.label for h in lags}) == 2

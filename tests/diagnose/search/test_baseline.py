@@ -1,0 +1,56 @@
+"""The baseline: what a candidate gains beside coefficients within tolerance, and what parity residuals contradict."""
+
+from __future__ import annotations
+
+from diagnose_case import merlin, own, posed, slot
+
+from rovval.diagnose import diagnose
+from rovval.diagnose.criteria import (
+    COUNTED_REDUCTION,
+    FIRST_GAIN,
+)
+from rovval.diagnose.inference.hypothesis_fit import confirm
+from rovval.diagnose.inference.map_fit import healthy_point
+from rovval.diagnose.search.admissibility import possible
+from rovval.diagnose.search.baseline import Candidate, healthy_without, reduction_beside
+from rovval.diagnose.search.joint import sufficient
+from rovval.report.diagnosis.json import document as written
+
+
+def test_a_cause_that_healthy_coefficients_hide_is_found_beside_them():
+    """Thrust within its tolerance makes most of the gap, a weak current the rest: by itself it closes too little to be named."""
+    document = diagnose([own(("current_constant:north=0.03,east=0.015", "reverse_asymmetry:scale=0.1", "rpm_scale:scale=0.06"), 5, 240.0)], merlin()).document()
+    (cause,) = document["causes"]
+    assert "current_constant" in cause["group"] and document["shrinkage"]["total"] < FIRST_GAIN, document["sentence"]
+    assert document["beside_slop"]["low"] > COUNTED_REDUCTION
+
+
+def test_a_coefficient_surely_off_is_named_though_the_gap_is_another_axis():
+    """Trim within its tolerance makes nine tenths of the gap, in heave; sway's drag is out of tolerance as no healthy file's is."""
+    document = written(diagnose([own(("quadratic_drag[sway]:scale=0.8", "buoyancy_error:force=60"), 5, 240.0)], merlin()))
+    (cause,) = document["causes"]
+    assert cause["effect"] == "quadratic_drag[sway]" and document["shrinkage"]["total"] < FIRST_GAIN
+    assert document["shrinkage"]["axes"]["sway"] > 0.4 and "that of sway by" in document["sentence"]
+
+
+def test_a_fault_of_a_sensor_that_the_kinematic_checks_deny_is_not_named():
+    p, library = posed(("buoyancy_error:force=60",))
+    (h,) = (h for h in library if h.label == "time_offset[attitude]")
+    fitted = confirm(p, p.origin, h.slots)
+    seen, against = (Candidate(h, fitted, 900.0, 0.5, parity_gain) for parity_gain in (0.1, -0.5))
+    assert sufficient(seen, alone=True) and not seen.contradicted
+    assert against.contradicted and not sufficient(against, alone=True) and against not in possible(p, [against])
+
+
+def test_what_slop_alone_makes_is_not_called_a_cause_beside_it():
+    document = diagnose([own(("reverse_asymmetry:scale=0.1", "rpm_scale:scale=0.06"), 5, 240.0)], merlin()).document()
+    assert document["causes"] == [] and document["beside_slop"] is None
+
+
+def test_a_coefficient_does_not_hide_behind_its_own_tolerance():
+    """Healthy drag may be what the cause is a departure of: without its own tolerance the others leave the gap open."""
+    p = posed(("quadratic_drag[surge]:scale=0.4",), seconds=100.0)[0]
+    own, healthy = (slot(p, "quadratic_drag[surge].scale"),), healthy_point(p)
+    others, final = healthy_without(p, healthy, own), confirm(p, p.origin, own)
+    assert healthy.beta[own[0]] != p.origin[own[0]] and others.beta[own[0]] == p.origin[own[0]]
+    assert reduction_beside(p, final, others, 0)[1] > reduction_beside(p, final, healthy, 0)[1] - 0.01 and reduction_beside(p, final, others, 0)[1] > 0.0

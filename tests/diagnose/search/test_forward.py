@@ -1,0 +1,121 @@
+"""Forward selection: effects of both plants are found, and what a bogus candidate kept out is tried."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from diagnose_case import bluerov2, foreign, merlin, own, posed
+
+from rovval.diagnose import diagnose
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis
+from rovval.diagnose.hypotheses.library import initialised
+from rovval.diagnose.inference.map_fit import healthy_point
+from rovval.diagnose.inference.prior import slop_prior
+from rovval.diagnose.inference.problem import Problem
+from rovval.diagnose.search.baseline import Candidate
+from rovval.diagnose.search.candidates import candidates
+from rovval.diagnose.search.forward import search
+from rovval.diagnose.windows.shooting import cut_all
+from rovval.vehicle import load
+
+
+def test_a_list_that_an_autopilot_holds_is_found(tmp_path: Path):
+    """It makes roll and pitch count little, and other coefficients within slop show more than the list itself."""
+    document = diagnose([bluerov2(tmp_path, "list.csv", 12, 200.0, 0.03, ("cg_offset", "", -1.6))], load("bluerov2_heavy")).document()
+    assert [c["effect"] for c in document["causes"]] == ["cg_offset"], document["sentence"]
+
+
+def test_a_channel_that_never_changes_is_no_measurement():
+    run = own((), 5, 100.0)
+    stuck = replace(run, values={**run.values, "u": np.full(len(run), 0.5)})
+    document = diagnose([stuck], merlin()).document()
+    assert "u" not in document["gap"]["axes"] and any("all along" in row["detail"] for row in document["log"])
+    assert document["verdict"] == "no_gap", document["sentence"]
+
+
+@pytest.mark.parametrize(
+    ("planted", "name"),
+    [
+        ((("density_gradient", "", -0.8),), "density_gradient"), ((("thruster_deadband", "", 2.3),), "thruster_deadband"),
+        pytest.param((("crossflow_loss", "", 1.5),), "crossflow_loss", marks=pytest.mark.slow),
+        pytest.param((("current_shear", "", 1.2),), "current_shear", marks=pytest.mark.slow),
+    ],
+)  # fmt: skip
+def test_what_is_large_or_has_its_datum_in_the_log_is_found(tmp_path: Path, planted, name):
+    """A loss or a dead band beyond what is usual, and a change with depth about a depth that the log goes through; independent plant. The dead band there
+    is of low flow: above it nothing is missing, which no gain of all thrusters is to make up for."""
+    document = diagnose([foreign(tmp_path, planted, 41, 160.0, 0.03)], merlin()).document()
+    assert name in document["causes"][0]["group"][:2], document["sentence"]
+    assert "rpm_scale" not in {c["effect"] for c in document["causes"]}
+
+
+def test_propellers_that_are_all_of_one_hand_are_found_where_the_file_has_them_in_pairs(tmp_path: Path):
+    document = diagnose([bluerov2(tmp_path, "hand.csv", 12, 160.0, 0.03, ("propeller_torque", "", 1.5))], load("bluerov2_heavy")).document()
+    (cause,) = document["causes"]
+    assert cause["effect"] == "propeller_torque" and cause["parameters"]["common"]["value"] < -0.02, document["sentence"]
+
+
+def test_what_the_finalists_kept_out_is_tried_where_none_of_them_stands(monkeypatch: pytest.MonkeyPatch):
+    """The first ones settled are none that is there, as where a bogus one promises much."""
+    p, library = posed(("buoyancy_error:force=200",))
+    asked = list[set[str]]()
+
+    def settled(problem: Problem, data: Any, hypotheses: list[Hypothesis], promised: dict[str, float], *rest: Any) -> list[Candidate]:
+        asked.append({h.name for h in hypotheses})
+        if len(asked) > 1:
+            return candidates(problem, data, hypotheses, promised, *rest)
+        bogus = [h for h in hypotheses if h.label == "linear_drag[yaw]"]
+        return candidates(problem, data, bogus, {h.label: 50.0 for h in bogus}, *rest)
+
+    monkeypatch.setattr("rovval.diagnose.search.forward.candidates", settled)
+    healthy = healthy_point(p)
+    found = search(p, library, initialised(p, library, healthy), healthy, 0, lambda *_: None)
+    assert [n.hypothesis.name for n in found.causes] == ["buoyancy_error"]
+    assert asked[0] - asked[1] == {"linear_drag[yaw]"}, "what was settled is not settled again"
+
+
+def test_a_depth_sensor_that_is_late_is_named_and_has_no_tolerance(tmp_path: Path):
+    """Half a sample of delay is nothing that a check of the depth is held to see, so it is no slop; a longer one is told by that check alone."""
+    run = foreign(tmp_path, (("time_offset", "depth", 1.5),), 12, 200.0, 0.02)
+    parts, _ = cut_all([run], merlin(), "fossen", 10.0)
+    late = {parts[0].plant.slots[s].key for s in slop_prior(parts[0].plant, 0.05).sd if parts[0].plant.slots[s].effect == "time_offset"}
+    assert late == {"time_offset.tau", "time_offset[velocity].delay", "time_offset[attitude].delay"}
+    (cause,) = diagnose([run], merlin()).document()["causes"]
+    assert cause["effect"] == "time_offset[depth]" and cause["parameters"]["delay"]["low"] < 0.6 < cause["parameters"]["delay"]["high"]
+
+
+@pytest.mark.parametrize(
+    ("planted", "seed", "effect", "parameter", "true"),
+    [
+        (("time_offset", "attitude", 2.0), 13, "time_offset[attitude]", "delay", 0.8),
+        (("time_offset", "attitude", -1.5), 13, "time_offset[attitude]", "delay", -0.6),
+        (("payload_change", "", -1.5), 14, "payload_change", "mass", None),
+    ],
+    ids=["late", "early", "set down"],
+)
+def test_a_late_sensor_and_a_load_that_is_set_down_are_told_in_their_size(
+    planted: tuple[str, str, float], seed: int, effect: str, parameter: str, true: float | None, tmp_path: Path
+):
+    """From the independent plant: delays that are a good part of a roll's period, and a mass that leaves with its load."""
+    run = foreign(tmp_path, (planted,), seed, 200.0, 0.02)
+    cause = diagnose([run], merlin()).document()["causes"][0]
+    told = cause["parameters"][parameter]
+    assert cause["effect"] == effect
+    assert told["low"] < true < told["high"] if true else told["high"] < 0.0
+
+
+def test_commands_that_come_most_of_a_second_late_are_found_though_no_slope_shows_it():
+    document = diagnose([own(("time_offset:tau=0.8",), 5, 160.0)], merlin()).document()
+    (cause,) = document["causes"]
+    assert cause["effect"] == "time_offset" and cause["parameters"]["tau"]["low"] < 0.8 < cause["parameters"]["tau"]["high"]
+
+
+def test_velocities_in_knots_are_a_scale():
+    run = own((), 5, 160.0)
+    knots = replace(run, values={**run.values, **{c: 1.944 * run.get(c) for c in "uvw"}})
+    (cause,) = diagnose([knots], merlin()).document()["causes"]
+    assert cause["effect"] == "dvl_scale" and cause["parameters"]["scale"]["value"] == pytest.approx(0.944, abs=0.05)
