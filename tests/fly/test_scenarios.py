@@ -16,7 +16,7 @@ def test_scenarios_meet_the_thesis(number, name):
     assert all(check["holds"] for check in document["checks"])
 
 
-def test_scenario_2_is_table_6_1():
+def test_scenario_2_ends_on_the_thrusts_of_table_6_1():
     rows = json.loads(run("scenario", "2", "--json").stdout)["table_6_1"]
     assert [round(r["thrust_n"], 1) for r in rows] == [82.7, 31.3, 83.8, 87.0, 35.2, 86.7, 31.4]
 

@@ -1,4 +1,4 @@
-"""What the plant refuses, where it stops a lane, and what else it computes: table 6.1, equation 2.4, lags, YAML vehicles."""
+"""What the plant refuses, where it stops a lane, and what else it computes: equation 2.4, lags."""
 
 from __future__ import annotations
 
@@ -15,11 +15,9 @@ from real_data import real
 
 from rovval import vehicle
 from rovval.core.errors import BadInput, UsageProblem
-from rovval.fly.scenarios import table_6_1 as table61
 from rovval.plant import Inputs, Plant, electrical, parse_settings
 from rovval.plant import thruster_lag as lag
 from rovval.plant.reference import plant as oracle
-from rovval.vehicle import uuv_yaml
 
 
 def test_a_lane_that_leaves_sane_limits_stops_with_reason_and_time():
@@ -113,14 +111,6 @@ def test_freefloating_has_no_added_mass_and_no_linear_drag():
     assert b == pytest.approx(1e-4, rel=1e-3)
 
 
-def test_table_6_1_on_both_platforms():
-    rows = table61.rows(cases.merlin())
-    assert [r.fossen for r in rows] == pytest.approx(table61.PRINTED["MATLAB"], rel=1e-6)
-    assert [r.freefloating for r in rows] == pytest.approx(table61.PRINTED["MATLAB"], rel=1e-6)
-    assert all(abs(r.freefloating / r.ros - 1) < 0.12 for r in rows if r.ros)
-    assert "VFP" in table61.text(cases.merlin())
-
-
 def test_equation_2_4_recovers_a_motor_and_states_its_fit_error():
     thrust = np.array([-40.0, -20, -5, 3, 10, 30, 50])
     truth = electrical.Electrical(0.05, 0.6, 0.0, 0.0, 0, 0.0, 0.0)
@@ -159,41 +149,6 @@ def test_minerva_thrust_is_its_cubic():
     on, off = (cases.run(plant, s, seconds=dt, dt=dt, nu=[u, 0, 0, 0, 0, 0]).nu[0, 1, 0] for s in (speed, 0 * speed))
     force = (on - off) / dt * (460 + 293)
     assert force == pytest.approx(2 * 0.985 / np.hypot(0.985, 0.174) * 1025 * d**4 * n**2 * 0.72 * 0.0125, rel=0.01)
-
-
-YAML = """
-pid:
-  mass: 1862.87
-  inertial: {ixx: 525.39, ixy: 1.44, ixz: 33.41, iyy: 794.2, iyz: 2.6, izz: 691.23}
-  volume: 1.838
-  cog: [0.0, 0.0, 0.0]
-  cob: [0.0, 0.1, 0.3]
-  Ma: [779.79, 1222.0, 3659.9, 534.9, 842.69, 224.32]
-  linear_damping: [-74.82, -69.48, -728.4, -268.8, -309.77, -105]
-  quad_damping: [-748.22, -992.53, -1821.01, -672, -774.44, -523.27]
-tam: [[1, 0.7], [0, 0.7], [0, 0], [0, 0], [0, 0], [0.1, -0.3]]
-conversion_fcn_params: {gain: 0.00031}
-"""
-
-
-def test_a_uuv_simulator_vehicle_is_read(tmp_path):
-    """Forward-left-up and negative damping become ours; inertia keeps its meaning."""
-    path = tmp_path / "rexrov.yaml"
-    path.write_text(YAML, encoding="utf-8")
-    v = uuv_yaml.read([path], "rexrov")
-    assert v.body.centre_of_buoyancy == (0.0, -0.1, -0.3)
-    assert v.body.linear_drag[0] == 74.82 and v.thruster[0].k_pos == pytest.approx(0.00031 * (2 * np.pi / 60) ** 2)
-    from rovval.vehicle.model import allocation, inertia
-
-    flip = np.array([1, -1, -1, 1, -1, -1])
-    tam = np.array([[1, 0.7], [0, 0.7], [0, 0], [0, 0], [0, 0], [0.1, -0.3]])
-    lengths = np.linalg.norm(tam[:3], axis=0)
-    assert allocation(v) * lengths == pytest.approx(flip[:, None] * tam)
-    theirs = np.array([[525.39, 1.44, 33.41], [1.44, 794.2, 2.6], [33.41, 2.6, 691.23]])
-    assert inertia(v.body) == pytest.approx(flip[:3, None] * theirs * flip[:3])
-    with pytest.raises(UsageProblem, match="tam is in none of the files"):
-        path.write_text(YAML.replace("tam:", "tan:"), encoding="utf-8")
-        uuv_yaml.read([path], "rexrov")
 
 
 @pytest.mark.slow
