@@ -12,7 +12,6 @@ from report_cases import make_run, make_sim
 from rovval import vehicle
 from rovval.comparison import compare
 from rovval.core.data import Array, Comparison
-from rovval.report.recording import world
 from rovval.report.recording import write as recording
 
 MERLIN = vehicle.load("merlin")
@@ -86,12 +85,19 @@ def test_holes_stops_and_a_log_without_epoch(tmp_path: Path) -> None:
     assert np.isnan(scalars["/velocity/surge"][:50, 0]).all() and np.isnan(scalars["/velocity/surge"][120:, 2]).all()
 
 
-@pytest.mark.parametrize("cut", [0, 10])
-def test_tracks_are_cut_where_they_are_missing(cut: int) -> None:
-    points = np.arange(60.0).reshape(20, 3)
-    points[cut] = np.nan
-    pieces = world._strips(points, np.repeat([0, 1], 10))
-    assert [len(p) for p in pieces] == ([9, 10] if cut == 0 else [10, 9])
+def test_tracks_are_cut_where_they_are_missing_and_where_a_window_begins(tmp_path: Path) -> None:
+    from rerun.chunk import RrdReader
+
+    run = make_run(300, holes={"x": slice(120, 150)})
+    recording.write(compare(run, make_sim(run)), tmp_path / "run.rrd", MERLIN)
+    lengths: dict[str, list[int]] = {}
+    for chunk in RrdReader(str(tmp_path / "run.rrd")).stream():
+        batch = chunk.to_record_batch()
+        if "LineStrips3D:strips" in batch.schema.names:
+            lengths[chunk.entity_path] = [len(strip) for strip in batch.column("LineStrips3D:strips").flatten()]
+    assert lengths["/world/track/measured"] == [120, 150]
+    assert lengths["/world/track/windows"] == [100, 100, 100]
+    assert lengths["/world/track/free_run"] == [300]
 
 
 def test_a_recording_that_could_not_be_written_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
