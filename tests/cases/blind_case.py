@@ -14,6 +14,7 @@ from rovval.blind.plant.parameters import nominal_parameters
 from rovval.blind.plant.scales import scales
 from rovval.blind.plant.spec import AXES
 from rovval.blind.planted.catalogue import catalogue
+from rovval.blind.scoring import ground_truth
 
 ROOT = Path(__file__).parents[2]
 LIBRARY = ROOT / "src/rovval/vehicle/library"
@@ -87,3 +88,13 @@ def answer(*causes: dict[str, Any], verdict: str = "", where: str = "heave", lef
         "left": {"axes": left, "depends_on": ["thrust of HFP"]} if left else None,
     }
     return {"document": document, "floors": {"ridge": "rpm_scale"}, "cpu_s": 1.0}
+
+
+def answered_right(rng: np.random.Generator, many: int) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Labels over the library and an answerer that is always right."""
+    labels, answers = {}, {}
+    for i in range(many):
+        name, _, target = HYPOTHESES[int(rng.integers(len(HYPOTHESES)))].partition("[")
+        labels[str(i)] = label(planted(name, target.rstrip("]") or None, loss=0.5, relative=0.1, lift=1.0))
+        answers[str(i)] = answer(cause(ground_truth.name(labels[str(i)]["effects"][0])))
+    return labels, answers
