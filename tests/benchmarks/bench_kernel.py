@@ -20,11 +20,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rovval import vehicle
-from rovval.plant import Inputs, Plant, model, parse_settings
+from rovval import effects, vehicle
+from rovval.plant import Inputs, Plant, Slot, model, parse_settings
+from rovval.plant.arguments import ABSENT
 from rovval.plant.codegen import cache as kernel
-from rovval.plant.codegen import source as template
-from rovval.plant.codegen import spec as compose
+from rovval.plant.codegen import spec as specs
+from rovval.plant.codegen import text
+from rovval.plant.codegen.layout import layout
 from rovval.plant.lowering import lower, pack
 from rovval.plant.reference import plant as oracle
 
@@ -87,8 +89,8 @@ def c_rate(plant: Plant, folder: Path) -> float:
     """Steps/s of one core of the plain C kernel, after it has given the same motion."""
     library = built(HERE / "plant_soa.c", folder / "soa.so")
     lowered = lower(plant.nominal, plant.slots, plant.index, plant.null, np.tile(plant.null, (LANES, 1)))
-    spec = compose.Spec(7, False, False, False)
-    where = compose.layout(spec)
+    spec = specs.Spec(7, False, False, False)
+    where = layout(spec)
     first = where.first
     columns = [*range(first["mass"], first["mass"] + 31), *range(first["restoring"], first["restoring"] + 4)]
     columns += [first[k] + i for k in ("added", "linear", "quadratic") for i in range(6)] + list(range(where.body_rows, where.rows))
@@ -101,7 +103,7 @@ def c_rate(plant: Plant, folder: Path) -> float:
     def call():
         s = states.copy()
         library.run(
-            0, LANES // compose.W, pointer(numbers), pointer(s), pointer(start), pointer(log.speed),
+            0, LANES // specs.W, pointer(numbers), pointer(s), pointer(start), pointer(log.speed),
             ctypes.c_double(0.1 / plant.substeps), STEPS, plant.substeps, pointer(out),
         )  # fmt: skip
 
@@ -114,10 +116,10 @@ def c_rate(plant: Plant, folder: Path) -> float:
 
 def flops_per_step() -> int:
     """Additions and multiplications of one nominal step, counted in the kernel's own text (the quaternion's length and output left out)."""
-    text = template.render(compose.Spec(7, False, False, False))
-    stage = text[text.index(" half = ") : text.index("settle(m, stopped[b]")]
-    rest = text[text.index("for s in range(again, 3)") : text.index("for stage in range(4)")]
-    end = text[text.index(" n0 = ") : text.index(" inverse = ")]
+    source = text.render(specs.Spec(7, False, False, False))
+    stage = source[source.index(" half = ") : source.index("take_step(m, stopped[b]")]
+    rest = source[source.index("for s in range(again, 3)") : source.index("for stage in range(4)")]
+    end = source[source.index(" n0, ") : source.index(" inverse = ")]
 
     def count(part: str) -> int:
         return sum(len(re.findall(r"(?<=[\w)\]]) [-+*/]=? (?=[\w(])", re.sub(r"m\[[^]]*\]|tv\[[^]]*\]", "m", line))) for line in part.splitlines())
@@ -125,12 +127,17 @@ def flops_per_step() -> int:
     return 4 * count(stage) + 2 * count(rest) + count(end)
 
 
+def held(slot: Slot) -> bool:
+    """Whether the log of `inputs`, which holds thruster speeds alone, has the channels that a parameter acts with."""
+    return not {*effects.load(slot.effect).needs, slot.parameter.needs} & set(ABSENT)
+
+
 def everything(plant: Plant):
     """A little of every effect whose channel the log holds, in every lane."""
     beta = plant.null.copy()
     for c, slot in enumerate(plant.slots):
         p = slot.parameter
-        if slot.effect not in ("ground_effect", "wall_suction", "voltage_sag", "tether_drag"):
+        if held(slot):
             beta[c] = p.null + 0.01 * p.typical if p.null + 0.01 * p.typical <= p.high else p.null - 0.01 * p.typical
     return beta
 
@@ -216,7 +223,7 @@ def test_whole_calls(lanes):
     for b in range(lanes):
         c = b % len(plant.slots)
         p = plant.slots[c].parameter
-        screen[b, c] = min(p.null + p.typical, p.high) if plant.slots[c].effect not in ("ground_effect", "wall_suction") else p.null
+        screen[b, c] = min(p.null + p.typical, p.high) if held(plant.slots[c]) else p.null
     plant.simulate(log, start, 100, zero, zero, screen)
     took = best(lambda: plant.simulate(log, start, 100, zero, zero, screen), 3, time.perf_counter)
     print(f"{lanes:6} stretches of 10 s, every slot in turn: {took * 1e3:9.2f} ms")

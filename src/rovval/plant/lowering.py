@@ -13,6 +13,7 @@ from rovval.core.frames import skew
 from rovval.effects.lanes import Lanes
 from rovval.plant import slots
 from rovval.plant.codegen import spec as compose
+from rovval.plant.codegen.layout import SYMMETRIC, layout
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -119,14 +120,14 @@ def mass_numbers(lanes: Lanes) -> Array:
     moment = lanes.mass[:, None] * lanes.centre_of_gravity
     i = lanes.inertia
     inverse = np.linalg.inv(rigid_body(lanes.mass, moment, i) + lanes.added_mass)
-    upper = np.stack([0.5 * (inverse[:, a, b] + inverse[:, b, a]) for a, b in compose.SYMMETRIC], axis=1)
+    upper = np.stack([0.5 * (inverse[:, a, b] + inverse[:, b, a]) for a, b in SYMMETRIC], axis=1)
     tensor = np.stack([i[:, a, b] for a in range(3) for b in range(a, 3)], axis=1)
     return np.concatenate([lanes.mass[:, None], moment, tensor, upper], axis=1)
 
 
 def pack(lowered: Lowered, spec: compose.Spec, dt: float, substeps: int) -> Array:
     """(B, rows) in the order of `compose.layout`."""
-    lanes, where = lowered.lanes, compose.layout(spec)
+    lanes, where = lowered.lanes, layout(spec)
     size, k = len(lanes), len(lanes.vehicle.thruster)
     out = np.zeros((size, where.rows))
 

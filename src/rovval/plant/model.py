@@ -18,7 +18,7 @@ from rovval.plant import sensor_delay as late
 from rovval.plant.arguments import checked
 from rovval.plant.codegen import cache as kernel
 from rovval.plant.codegen import spec as compose
-from rovval.plant.codegen.source import RATE_LIMIT, SPEED_LIMIT
+from rovval.plant.codegen.layout import RATE_LIMIT, SPEED_LIMIT
 from rovval.plant.inputs import Inputs, Prepared, prepare
 from rovval.plant.lowering import Lowered, lower, mass_numbers, pack, steps_before_nothing, with_payload
 from rovval.vehicle.model import Vehicle, square

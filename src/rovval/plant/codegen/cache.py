@@ -20,8 +20,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from rovval.plant.codegen import source as template
 from rovval.plant.codegen import spec as compose
+from rovval.plant.codegen import text
 
 ROOT = Path(__file__).parent
 
@@ -54,7 +54,7 @@ def _fingerprint(spec: compose.Spec) -> str:
     """Hash of all that the kernel's machine code depends on: its text with every effect in it, helpers, versions."""
     import numba
 
-    digest = hashlib.sha256(f"{numba.__version__} {sys.version}\n{template.render(spec)}".encode())
+    digest = hashlib.sha256(f"{numba.__version__} {sys.version}\n{text.render(spec)}".encode())
     digest.update((ROOT / "runtime.py").read_bytes())
     return digest.hexdigest()[:16]
 
@@ -65,7 +65,7 @@ def module(spec: compose.Spec) -> ModuleType:
     name = f"kernel_{spec.name}_{_fingerprint(spec)}"
     path = cache_folder() / f"{name}.py"
     if not path.exists():
-        _write(path, template.render(spec))
+        _write(path, text.render(spec))
     return _imported(name, path)
 
 

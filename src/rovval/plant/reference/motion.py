@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval.core.frames import rotation_from_quaternion
-from rovval.plant.codegen.source import ADVANCE_LIMIT
+from rovval.plant.codegen.layout import ADVANCE_LIMIT
 from rovval.plant.reference.state import LOG, Run, chain, total
 
 Array = NDArray[np.float64]

@@ -13,7 +13,7 @@ from rovval.core.frames import euler_from_quaternion, quaternion_from_euler
 from rovval.effects.log import Log
 from rovval.plant import sensor_delay as late
 from rovval.plant import sensors
-from rovval.plant.codegen.source import RATE_LIMIT, SPEED_LIMIT
+from rovval.plant.codegen.layout import RATE_LIMIT, SPEED_LIMIT
 from rovval.plant.inputs import Inputs, Prepared, prepare
 from rovval.plant.lowering import Lowered, lower, rigid_body, steps_before_nothing, with_payload
 from rovval.plant.model import Motion, Plant
