@@ -21,12 +21,13 @@ import numpy as np
 import pytest
 
 from rovval import effects, vehicle
-from rovval.plant import Inputs, Plant, Slot, model, parse_settings
+from rovval.plant import Inputs, Plant, Slot, parse_settings
 from rovval.plant.arguments import ABSENT
 from rovval.plant.codegen import cache as kernel
 from rovval.plant.codegen import spec as specs
 from rovval.plant.codegen import text
 from rovval.plant.codegen.layout import layout
+from rovval.plant.integration import blocked
 from rovval.plant.lowering import lower, pack
 from rovval.plant.reference import plant as oracle
 
@@ -94,10 +95,10 @@ def c_rate(plant: Plant, folder: Path) -> float:
     first = where.first
     columns = [*range(first["mass"], first["mass"] + 31), *range(first["restoring"], first["restoring"] + 4)]
     columns += [first[k] + i for k in ("added", "linear", "quadratic") for i in range(6)] + list(range(where.body_rows, where.rows))
-    numbers = model._blocked(pack(lowered, spec, 0.1, 1)[:, columns])
+    numbers = blocked(pack(lowered, spec, 0.1, 1)[:, columns])
     state = np.zeros((LANES, 13))
     state[:, 3] = 1
-    states, start, log = model._blocked(state), np.zeros(LANES, dtype=np.int64), inputs(plant)
+    states, start, log = blocked(state), np.zeros(LANES, dtype=np.int64), inputs(plant)
     out = np.empty((LANES, STEPS, 13))
 
     def call():

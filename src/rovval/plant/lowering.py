@@ -12,8 +12,8 @@ from rovval import effects
 from rovval.core.frames import skew
 from rovval.effects.lanes import Lanes
 from rovval.plant import slots
-from rovval.plant.codegen import spec as compose
 from rovval.plant.codegen.layout import SYMMETRIC, layout
+from rovval.plant.codegen.spec import HOOKS, Spec, effect_rows, switches
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -24,7 +24,7 @@ ROUNDING = 1e-9  # of a step, in the time of a sample
 @dataclass(frozen=True, slots=True)
 class Lowered:
     """Lanes after every active effect, each effect's own rows, (B,) or (B, k) under ``effect.row``, which lanes (B,) need the full
-    kernel, and which effects of `compose.switches` each has (B, E)."""
+    kernel, and which effects of `switches` each has (B, E)."""
 
     lanes: Lanes
     rows: Mapping[str, Array]
@@ -55,7 +55,7 @@ def lower(nominal: Lanes, found: tuple[slots.Slot, ...], index: Mapping[str, int
         if hasattr(module, "lower"):
             lanes = module.lower(lanes, p)
     for name in effects.names():
-        own, _ = compose.effect_rows(name)
+        own, _ = effect_rows(name)
         if not own:
             continue
         p = slots.gather(vehicle, index, name, beta if name in active else null[None])
@@ -67,14 +67,14 @@ def lower(nominal: Lanes, found: tuple[slots.Slot, ...], index: Mapping[str, int
 
 def _full(found: tuple[slots.Slot, ...], null: Array, beta: Array) -> Flags:
     """Lanes (B,) that need the kernel with every effect in it: some effect acts on more than the numbers of the nominal one."""
-    beyond = {name for name in effects.names() if any(hasattr(effects.module(name), kind) for kind in (*compose.HOOKS, "FULL_KERNEL"))}
+    beyond = {name for name in effects.names() if any(hasattr(effects.module(name), kind) for kind in (*HOOKS, "FULL_KERNEL"))}
     columns = [c for c, slot in enumerate(found) if slot.effect in beyond]
     return np.asarray((beta[:, columns] != null[columns]).any(axis=1))
 
 
 def _acts(found: tuple[slots.Slot, ...], null: Array, beta: Array) -> Flags:
     """Which of the effects that a kernel can pass over each lane has (B, E)."""
-    away, names = beta != null, compose.switches()
+    away, names = beta != null, switches()
     out = np.zeros((len(beta), len(names)), dtype=bool)
     for c, slot in enumerate(found):
         if slot.effect in names:
@@ -125,8 +125,8 @@ def mass_numbers(lanes: Lanes) -> Array:
     return np.concatenate([lanes.mass[:, None], moment, tensor, upper], axis=1)
 
 
-def pack(lowered: Lowered, spec: compose.Spec, dt: float, substeps: int) -> Array:
-    """(B, rows) in the order of `compose.layout`."""
+def pack(lowered: Lowered, spec: Spec, dt: float, substeps: int) -> Array:
+    """(B, rows) in the order of `layout`."""
     lanes, where = lowered.lanes, layout(spec)
     size, k = len(lanes), len(lanes.vehicle.thruster)
     out = np.zeros((size, where.rows))

@@ -20,8 +20,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from rovval.plant.codegen import spec as compose
-from rovval.plant.codegen import text
+from rovval.plant.codegen.spec import Spec
+from rovval.plant.codegen.text import render
 
 ROOT = Path(__file__).parent
 
@@ -50,22 +50,22 @@ def _own_folder() -> Path:
 
 
 @cache
-def _fingerprint(spec: compose.Spec) -> str:
-    """Hash of all that the kernel's machine code depends on: its text with every effect in it, helpers, versions."""
+def _fingerprint(spec: Spec) -> str:
+    """Hash of all that the kernel's machine code depends on: its source with every effect in it, helpers, versions."""
     import numba
 
-    digest = hashlib.sha256(f"{numba.__version__} {sys.version}\n{text.render(spec)}".encode())
+    digest = hashlib.sha256(f"{numba.__version__} {sys.version}\n{render(spec)}".encode())
     digest.update((ROOT / "runtime.py").read_bytes())
     return digest.hexdigest()[:16]
 
 
 @cache
-def module(spec: compose.Spec) -> ModuleType:
+def module(spec: Spec) -> ModuleType:
     """The generated module of that spec, compiled or from the cache; says so when compilation takes longer than a second."""
     name = f"kernel_{spec.name}_{_fingerprint(spec)}"
     path = cache_folder() / f"{name}.py"
     if not path.exists():
-        _write(path, text.render(spec))
+        _write(path, render(spec))
     return _imported(name, path)
 
 
@@ -96,11 +96,11 @@ def threads() -> int:
 _compiled: set[str] = set()
 
 
-def run(spec: compose.Spec, blocks: int, arguments: tuple[Any, ...]) -> None:
-    """Run the kernel over all blocks; ``arguments`` are those of ``run`` in the template after ``first, last``."""
+def run(spec: Spec, blocks: int, arguments: tuple[Any, ...]) -> None:
+    """Run the kernel over all blocks; ``arguments`` are those of `rovval.plant.codegen.kernel.run` after ``first, last``."""
     function = module(spec).run
     if spec.name not in _compiled:
-        _warm(function, spec, arguments)
+        _compile(function, spec, arguments)
     workers = min(threads(), blocks)
     if workers <= 1:
         function(0, blocks, *arguments)
@@ -112,7 +112,7 @@ def run(spec: compose.Spec, blocks: int, arguments: tuple[Any, ...]) -> None:
             future.result()
 
 
-def _warm(function: Any, spec: compose.Spec, arguments: tuple[Any, ...]) -> None:
+def _compile(function: Any, spec: Spec, arguments: tuple[Any, ...]) -> None:
     """Compile (or load) by a call over no block at all, with a word on stderr if it is going to take a while."""
     start = time.monotonic()
     cached = any(cache_folder().glob(f"__pycache__/kernel_{spec.name}_{_fingerprint(spec)}.run-*.nbc"))

@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 
-from rovval.plant.codegen import spec as specs
 from rovval.plant.codegen.spec import LOG, Spec, effect_rows, hooks
 
 SYMMETRIC = tuple((i, j) for i in range(6) for j in range(i, 6))
@@ -71,7 +70,7 @@ def constants(spec: Spec) -> dict[str, float]:
     numbers: dict[str, float] = {"FULL": spec.full, "DENSE": spec.dense, "ADVANCE": spec.advance, "FLOW": spec.flow}
     numbers |= {name.upper(): where.first[name] for name in GROUPS}
     numbers |= {
-        "W": specs.W, "THRUSTERS": k, "BODY": where.body_rows, "STRIDE": where.stride, "INPUT_ROWS": where.rows, "LOG_ROWS": LOG_ROWS,
+        "W": spec.lanes, "THRUSTERS": k, "BODY": where.body_rows, "STRIDE": where.stride, "INPUT_ROWS": where.rows, "LOG_ROWS": LOG_ROWS,
         "THRUST_ROWS": 3 * k + 6 if spec.flow else 6, "PAYLOAD_ROWS": MASS_ROWS,
         "SPEED_LIMIT_2": SPEED_LIMIT**2, "RATE_LIMIT_2": RATE_LIMIT**2, "ADVANCE_LIMIT": ADVANCE_LIMIT, "THIRD": 1.0 / 3.0,
     }  # fmt: skip

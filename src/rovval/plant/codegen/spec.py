@@ -39,12 +39,13 @@ class Hook:
 @dataclass(frozen=True, slots=True)
 class Spec:
     """What a kernel holds: number of ``thrusters``; ``dense`` 6 x 6 added mass and drag or diagonals; ``advance``: thrust depends on
-    the advance ratio; ``full``: every effect or none."""
+    the advance ratio; ``full``: every effect or none; ``lanes`` of a block."""
 
     thrusters: int
     dense: bool
     advance: bool
     full: bool
+    lanes: int = W
 
     @property
     def flow(self) -> bool:

@@ -1,0 +1,131 @@
+"""Lanes in blocks of W side by side, as the kernel reads them, and their true motion in time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rovval.core.frames import quaternion_from_euler
+from rovval.effects.lanes import Lanes
+from rovval.plant import geometry
+from rovval.plant.codegen import cache
+from rovval.plant.codegen.spec import Spec, W
+from rovval.plant.inputs import Inputs, Prepared
+from rovval.plant.lowering import Lowered, mass_numbers, pack, steps_before_nothing, with_payload
+from rovval.vehicle.model import Vehicle, square
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+GAP, NOTHING = 4, 5  # reasons for which a lane stops (`rovval.plant.model.REASONS`); the kernel gives the first for either
+
+
+@dataclass(frozen=True, slots=True)
+class Starts:
+    """Where each lane begins: sample of the log (B,), true ``nu`` and ``eta`` there (B, 6), which extra wrench acts (B,) (-1: none) and its factor."""
+
+    sample: Indices
+    nu: Array
+    eta: Array
+    which: Indices
+    gain: Array
+
+    def take(self, part: Indices) -> Starts:
+        """Some of the lanes."""
+        return Starts(self.sample[part], self.nu[part], self.eta[part], self.which[part], self.gain[part])
+
+
+class Integrator:
+    """The kernels of one vehicle: a nominal one, and one with every effect for the lanes that need it."""
+
+    def __init__(self, vehicle: Vehicle, substeps: int) -> None:
+        """``substeps``: Runge-Kutta steps per sample of the log."""
+        body = vehicle.body
+        self.thrusters, self.substeps = len(vehicle.thruster), substeps
+        self._dense = any(_coupled(m) for m in (body.added_mass, body.linear_drag, body.quadratic_drag))
+        self._advance = any(t.diameter > 0 and any((*t.advance_pos, *t.advance_neg)) for t in vehicle.thruster)
+        self._geometry = _geometry(vehicle)
+
+    def motion(self, inputs: Inputs, prepared: Prepared, lowered: Lowered, starts: Starts, steps: int) -> tuple[Array, Indices, Indices]:
+        """True motion (B, steps + 1, 12): u v w p q r, x y z phi theta psi; first invalid sample (B,) (-1: none) and its reason (B,)."""
+        full = lowered.full | (starts.which >= 0)
+        if full.all() or not full.any():
+            return self._one_kernel(inputs, prepared, lowered, starts, steps, bool(full.any()))
+        out = np.empty((len(full), steps + 1, 12))
+        stopped, codes = np.empty(len(full), dtype=np.int64), np.empty(len(full), dtype=np.int64)
+        for kind in (False, True):
+            part = np.flatnonzero(full == kind)
+            out[part], stopped[part], codes[part] = self._one_kernel(inputs, prepared, lowered.take(part), starts.take(part), steps, kind)
+        return out, stopped, codes
+
+    def _one_kernel(
+        self, inputs: Inputs, prepared: Prepared, lowered: Lowered, starts: Starts, steps: int, full: bool
+    ) -> tuple[Array, Indices, Indices]:
+        spec = Spec(self.thrusters, self._dense, self._advance, full)
+        size, blocks = len(starts.sample), -(-len(starts.sample) // W)
+        numbers = blocked(pack(lowered, spec, inputs.dt, self.substeps))
+        late, onset = _payload(lowered.lanes, blocks)
+        states = blocked(np.concatenate([starts.eta[:, :3], quaternion_from_euler(starts.eta[:, 3:]), starts.nu], axis=1))
+        out = np.empty((blocks * W, steps + 1, 12))
+        stopped, reason = np.full((blocks, W), -1), np.zeros((blocks, W), dtype=np.int64)
+        gap = prepared.steps_before_gap(starts.sample, inputs.hold)
+        nothing = steps_before_nothing(lowered.lanes, prepared.t[starts.sample], inputs.dt)
+        limit = np.minimum(gap, nothing)
+        cache.run(
+            spec, blocks,
+            (
+                numbers, _some(lowered.acts), late, onset, states, _flat(starts.sample), _flat(limit), _flat(starts.which, -1), _flat(starts.gain),
+                prepared.speed, prepared.log, prepared.t, prepared.extra, *self._geometry, inputs.dt, inputs.hold, steps, self.substeps,
+                out, stopped, reason,
+            ),
+        )  # fmt: skip
+        codes = np.where((reason.reshape(-1)[:size] == GAP) & (nothing < gap), NOTHING, reason.reshape(-1)[:size])
+        return out[:size], stopped.reshape(-1)[:size], codes
+
+
+def blocked(values: Array) -> Array:
+    """(B, R) -> (blocks, R * W): W lanes side by side, the last block filled with copies of the last lane."""
+    size, rows = values.shape
+    blocks = -(-size // W)
+    padded = values if size == blocks * W else np.concatenate([values, np.repeat(values[-1:], blocks * W - size, axis=0)])
+    return np.ascontiguousarray(padded.reshape(blocks, W, rows).transpose(0, 2, 1)).reshape(blocks, rows * W)
+
+
+def _flat(values: NDArray[np.generic], fill: float | None = None) -> NDArray[np.generic]:
+    """(B,) -> (blocks, W), filled with the last lane's value or ``fill``."""
+    blocks = -(-len(values) // W)
+    rest = np.full(blocks * W - len(values), values[-1] if fill is None else fill, dtype=values.dtype)
+    return np.concatenate([values, rest]).reshape(blocks, W)
+
+
+def _some(acts: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """(B, E) -> (blocks, E): what some lane of the block has."""
+    size, count = acts.shape
+    padded = np.concatenate([acts, np.zeros((-size % W, count), dtype=bool)])
+    return np.asarray(padded.reshape(-1, W, count).any(axis=1))
+
+
+def _payload(lanes: Lanes, blocks: int) -> tuple[Array, Array]:
+    """Mass numbers after a payload's onset, and the onsets (s; infinite where there is none)."""
+    onset = np.full(blocks * W, np.inf)
+    if not lanes.payload_mass.any():
+        return np.zeros((blocks, 1)), onset.reshape(blocks, W)
+    onset[: len(lanes)] = np.where(lanes.payload_mass != 0, lanes.payload_onset, np.inf)
+    return blocked(mass_numbers(with_payload(lanes))), onset.reshape(blocks, W)
+
+
+def _coupled(values: tuple[float, ...] | tuple[tuple[float, ...], ...]) -> bool:
+    matrix = square(values)
+    return bool((matrix != np.diag(np.diag(matrix))).any())
+
+
+def _geometry(vehicle: Vehicle) -> tuple[Array, Indices, Array]:
+    """What the kernel needs of the thrusters once per vehicle: 16 numbers each (place, advance-ratio rows, wrench of 1 N of side
+    force, diameter), pairs and weights of the jets."""
+    jets, side = geometry.jets(vehicle), geometry.hull_side(vehicle)
+    rows = []
+    for i, t in enumerate(vehicle.thruster):
+        advance = (*t.advance_pos, *t.advance_neg) if t.diameter > 0 else (0.0,) * 6
+        rows.append([*t.position, *advance, *side[i], t.diameter or 1.0])
+    return np.array(rows).reshape(-1), jets.pairs, jets.weights
