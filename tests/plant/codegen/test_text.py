@@ -10,7 +10,7 @@ import pytest
 from rovval.plant.codegen.kernel import symbols
 from rovval.plant.codegen.layout import constants, layout
 from rovval.plant.codegen.spec import BODY_NAMES, PER_THRUSTER, THRUSTER_NAMES, Spec, effect_rows, hooks
-from rovval.plant.codegen.specialise import Specialiser
+from rovval.plant.codegen.specialise import Insertion, Specialiser
 from rovval.plant.codegen.text import render
 
 SPECS = [Spec(k, *choice) for k, choice in itertools.product((1, 7), itertools.product((False, True), repeat=3))]
@@ -70,9 +70,11 @@ def test_no_two_numbers_of_a_lane_stand_in_one_place(spec):
 
 def specialised(source: str, **numbers: float) -> str:
     functions = {f.name: f for f in ast.parse(source).body if isinstance(f, ast.FunctionDef)}
-    insertions = {"turns": lambda call: ([], ast.Tuple([ast.Constant(i) for i in range(ast.literal_eval(call.args[0]))], ast.Load()))}
+    insertions: dict[str, Insertion] = {
+        "turns": lambda call: ([], ast.Tuple([ast.Constant(i) for i in range(ast.literal_eval(call.args[0]))], ast.Load()))
+    }
     whole = Specialiser(functions, numbers, insertions, frozenset({"main"})).function("main")
-    return ast.unparse(whole.body[1:])
+    return ast.unparse(ast.Module(whole.body[1:], []))
 
 
 @pytest.mark.parametrize(
