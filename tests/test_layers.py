@@ -35,7 +35,7 @@ ROOMS = (
 )
 # The same inside a room; "" are the files that lie in the room itself.
 INSIDE = {
-    "diagnose": (("",), ("result",), ("decision",), ("search",), ("hypotheses",), ("inference",), ("residuals",), ("windows",), ("criteria",)),
+    "diagnose": (("",), ("result",), ("decision",), ("search",), ("hypotheses",), ("inference",), ("problem",), ("residuals",), ("windows",), ("criteria",)),
     "blind": (("",), ("scoring",), ("sealed",), ("baselines", "cases"), ("planted",), ("missions",), ("plant",)),
     "report": (("",), ("batch", "blind", "diagnosis", "recording"), ("comparison",), ("common",)),
     "effects": (("library",), ("",)),

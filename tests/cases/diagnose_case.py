@@ -19,8 +19,8 @@ from rovval.core.data import Array, ClockReport, Reason, Run
 from rovval.diagnose import Diagnosis, diagnose
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
-from rovval.diagnose.inference.problem import Problem, pose
-from rovval.diagnose.windows.shooting import cut_all
+from rovval.diagnose.problem.problem import Problem, pose
+from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.simulation import simulate
 from rovval.storage.archive import open_run
 from rovval.vehicle.model import Vehicle, allocation
@@ -86,7 +86,7 @@ def diagnosed(effects: tuple[str, ...] = (), seed: int = 5, seconds: float = 100
 @functools.cache
 def posed(effects: tuple[str, ...] = (), seed: int = 5, seconds: float = 200.0) -> tuple[Problem, list[Hypothesis]]:
     """The estimation problem of such a log of Merlin, and the hypotheses of the library that it was linearised in."""
-    windows, _ = cut_all([own(effects, seed, seconds)], merlin(), "fossen", 10.0)
+    windows, _ = cut([own(effects, seed, seconds)], merlin(), "fossen", 10.0)
     library, _ = hypotheses(windows)
     return pose(windows, columns_of(library), 0.05), library
 

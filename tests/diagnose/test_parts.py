@@ -12,25 +12,32 @@ from rovval.core.data import Array, Reason, Run
 from rovval.core.frames import euler_rates, rotation_from_euler
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
-from rovval.diagnose.inference.cross_validation import Fold, Ring, contest, fit, folds_of, heldout
-from rovval.diagnose.inference.hypothesis_fit import confirm
-from rovval.diagnose.inference.prior import Prior
-from rovval.diagnose.inference.problem import pose
+from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
+from rovval.diagnose.problem.cross_validation import Fold, FoldSums, contest, cross_validate, held_out_losses, make_folds
+from rovval.diagnose.problem.problem import pose
 from rovval.diagnose.residuals.coherence import coherence
-from rovval.diagnose.residuals.normal_equations import Products, beside, products, scaled, start_corrected
-from rovval.diagnose.residuals.parity import Parity, parity
-from rovval.diagnose.residuals.sensitivities import Linear
-from rovval.diagnose.residuals.sensor_faults import faults
+from rovval.diagnose.residuals.normal_equations import (
+    Linearisation,
+    NormalEquations,
+    normal_equations,
+    nuisance_corrected,
+    whiten,
+    with_frozen_columns,
+)
+from rovval.diagnose.residuals.parity import ParityResiduals, parity_residuals
+from rovval.diagnose.residuals.ridge import Prior
+from rovval.diagnose.residuals.sensor_faults import sensor_faults
 from rovval.diagnose.result.attribution import slices, worst
-from rovval.diagnose.windows.shooting import Stretches, axis_channels, cut
+from rovval.diagnose.windows.multiple_shooting import cut_run
+from rovval.diagnose.windows.windows import Windows, axis_channels
 from rovval.effects import load
 
 RNG = np.random.default_rng
 
 
-def random_linear(seed: int = 0, m: int = 6, n: int = 9, c: int = 3, k: int = 4, s: int = 2) -> tuple[Linear, np.ndarray, Array, Array]:
+def random_linear(seed: int = 0, m: int = 6, n: int = 9, c: int = 3, k: int = 4, s: int = 2) -> tuple[Linearisation, np.ndarray, Array, Array]:
     rng = RNG(seed)
-    linear = Linear(
+    linear = Linearisation(
         rng.normal(size=(m, n, c)), rng.normal(size=(m, n, c, k)), rng.normal(size=(m, n, c, s)), tuple(range(10, 10 + k)), np.ones(m, dtype=bool)
     )
     return linear, rng.random((m, n, c)) > 0.2, rng.uniform(0.5, 2, (n, c)), rng.uniform(0.1, 3, s)
@@ -39,7 +46,7 @@ def random_linear(seed: int = 0, m: int = 6, n: int = 9, c: int = 3, k: int = 4,
 def test_products_are_the_inner_products_of_the_full_covariance():
     """A, b, c with V = diag(variance) + J Sigma J^T inverted as a whole over the samples that hold a value."""
     linear, ok, variance, spread = random_linear()
-    got = products(linear, ok, variance, spread)
+    got = normal_equations(linear, ok, variance, spread)
     for w in range(len(ok)):
         keep = ok[w].ravel()
         J, S, r = (x[w].reshape(keep.size, -1)[keep] for x in (linear.J, linear.S, linear.r))
@@ -56,25 +63,25 @@ def test_slopes_that_stand_still_give_the_same_products():
     near, ok, variance, spread = random_linear(3)
     own = replace(random_linear(4, k=2)[0], columns=(11, 3), valid=np.arange(6) != 4)
     own.S[4] = 0.0
-    got = beside(own, scaled(near, ok, variance, spread), (13, 10))
+    got = with_frozen_columns(own, whiten(near, ok, variance, spread), (13, 10))
     S, J = np.concatenate([own.S, near.S[..., [3, 0]]], axis=-1), near.J.copy()
     S[4], J[4] = 0.0, 0.0
-    whole = Linear(own.r, S, J, (11, 3, 13, 10), own.valid)
-    want, there = products(whole, ok, variance, spread), got.products(own.r)
+    whole = Linearisation(own.r, S, J, (11, 3, 13, 10), own.valid)
+    want, there = normal_equations(whole, ok, variance, spread), got.normal_equations(own.r)
     assert there.columns == want.columns
     np.testing.assert_allclose(got.linear.S, S * ok[..., None], rtol=1e-12)
     assert there.c[4] == pytest.approx(((own.r[4] ** 2 / variance) * ok[4]).sum())
     for one, other in ((there.A, want.A), (there.b, want.b), (there.c, want.c)):
         np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-9)
     other_r = RNG(5).normal(size=own.r.shape)
-    moved = products(replace(whole, r=other_r), ok, variance, spread)
-    np.testing.assert_allclose(got.products(other_r).b, moved.b, rtol=1e-9, atol=1e-9)
-    np.testing.assert_allclose(got.products(other_r).c, moved.c, rtol=1e-9, atol=1e-9)
+    moved = normal_equations(replace(whole, r=other_r), ok, variance, spread)
+    np.testing.assert_allclose(got.normal_equations(other_r).b, moved.b, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(got.normal_equations(other_r).c, moved.c, rtol=1e-9, atol=1e-9)
 
 
 def test_start_states_are_taken_out_as_ridge_regression_does():
     linear, ok, variance, spread = random_linear(1)
-    got = start_corrected(linear, ok, variance, spread)
+    got = nuisance_corrected(linear, ok, variance, spread)
     root = (np.where(ok, 1.0, 0.0) / np.sqrt(variance)).reshape(len(ok), -1)
     for w in range(len(ok)):
         J, r = linear.J[w].reshape(root.shape[1], -1), linear.r[w].ravel()
@@ -84,21 +91,21 @@ def test_start_states_are_taken_out_as_ridge_regression_does():
 
 
 def test_contest_is_ridge_regression_on_held_out_windows():
-    rng, m, n, k, inflation = RNG(2), 10, 12, 5, 3.0
+    rng, m, n, k, design_effect = RNG(2), 10, 12, 5, 3.0
     S, r = rng.normal(size=(m, n, k)), rng.normal(size=(m, n))
-    data = Products(np.einsum("wni,wnj->wij", S, S), np.einsum("wni,wn->wi", S, r), (r**2).sum(axis=1), tuple(range(k)))
-    folds, prior = folds_of(np.zeros(m, dtype=int)), Prior({1: 0.5, 3: 2.0})
+    data = NormalEquations(np.einsum("wni,wnj->wij", S, S), np.einsum("wni,wn->wi", S, r), (r**2).sum(axis=1), tuple(range(k)))
+    folds, prior = make_folds(np.zeros(m, dtype=int)), Prior({1: 0.5, 3: 2.0})
 
     def brute(train: np.ndarray) -> Array:
-        X = np.concatenate([S[train][:, :, [1, 3]].reshape(-1, 2), np.sqrt(inflation) * np.diag([2.0, 0.5])])
+        X = np.concatenate([S[train][:, :, [1, 3]].reshape(-1, 2), np.sqrt(design_effect) * np.diag([2.0, 0.5])])
         return np.asarray(np.linalg.lstsq(X, np.concatenate([r[train].ravel(), [0, 0]]), rcond=None)[0])
 
     held = sum(((r[f.test] - S[f.test][:, :, [1, 3]] @ brute(f.train)) ** 2).sum() for f in folds)
-    ring = Ring.of(data, folds)
-    base, named = contest(ring, Prior({1: 0.5}), {"both": Prior({3: 2.0})}, inflation)
+    ring = FoldSums.of(data, folds)
+    base, named = contest(ring, Prior({1: 0.5}), {"both": Prior({3: 2.0})}, design_effect)
     assert named["both"].loss == pytest.approx(held)
-    assert base.loss == pytest.approx(fit(ring, Prior({1: 0.5}), inflation).loss)
-    assert heldout(data, folds, prior, inflation).sum() == pytest.approx(held)
+    assert base.loss == pytest.approx(cross_validate(ring, Prior({1: 0.5}), design_effect).loss)
+    assert held_out_losses(data, folds, prior, design_effect).sum() == pytest.approx(held)
     np.testing.assert_allclose(named["both"].step[[1, 3]], brute(np.ones(m, dtype=bool)))
 
 
@@ -106,15 +113,15 @@ def test_folds_hold_logs_out_where_there_are_enough():
     def tests(folds: tuple[Fold, ...]) -> list[list[int]]:
         return [np.flatnonzero(f.test).tolist() for f in folds]
 
-    assert tests(folds_of(np.array([0, 0, 1, 1, 2]))) == [[0, 1], [2, 3], [4]]
-    assert tests(folds_of(np.zeros(6, dtype=int))) == [[0, 1], [2], [3], [4], [5]]
-    assert all(not (f.train & f.test).any() and (f.train | f.test).all() for f in folds_of(np.zeros(7, dtype=int)))
+    assert tests(make_folds(np.array([0, 0, 1, 1, 2]))) == [[0, 1], [2, 3], [4]]
+    assert tests(make_folds(np.zeros(6, dtype=int))) == [[0, 1], [2], [3], [4], [5]]
+    assert all(not (f.train & f.test).any() and (f.train | f.test).all() for f in make_folds(np.zeros(7, dtype=int)))
 
 
 def test_coherence_knows_the_same_and_the_foreign():
     x = RNG(3).normal(size=(200, 3))
     S = np.concatenate([x, x[:, :1] * 2], axis=1)[None]
-    data = Products(np.einsum("wni,wnj->wij", S, S), np.zeros((1, 4)), np.zeros(1), (0, 1, 2, 3))
+    data = NormalEquations(np.einsum("wni,wnj->wij", S, S), np.zeros((1, 4)), np.zeros(1), (0, 1, 2, 3))
     assert coherence(data, (0,), (3,)) == pytest.approx(1.0)
     assert coherence(data, (0,), (1,)) == pytest.approx(abs(float(np.asarray(np.corrcoef(x.T))[0, 1])), abs=0.05)
     assert coherence(data, (0, 1), (1, 2)) == pytest.approx(1.0)
@@ -131,16 +138,16 @@ def test_coherence_knows_the_same_and_the_foreign():
 )
 def test_confirm_recovers_what_was_planted(name, truth):
     setting = f"{name}:" + ",".join(f"{p}={v}" for p, v in truth.items())
-    parts = (cut(own((setting,), 4, 120.0), merlin(), "fossen", 10.0),)
+    parts = (cut_run(own((setting,), 4, 120.0), merlin(), "fossen", 10.0),)
     library = [h for h in hypotheses(parts)[0] if h.name == name]
     problem = pose(parts, columns_of(library), 0.05)
-    done = confirm(problem, problem.origin, library[0].slots)
+    done = fit_hypothesis(problem, problem.origin, library[0].slots)
     for slot in library[0].slots:
         p = problem.plant.slots[slot].parameter
         if p.name in truth:
             assert done.beta[slot] == pytest.approx(truth[p.name], abs=0.1 * p.typical)
     assert done.evidence > 20
-    assert done.dynamic_loss.sum() < 0.6 * problem.gap.c.sum()  # what is left is noise
+    assert done.dynamics_loss.sum() < 0.6 * problem.gap.dynamics.c.sum()  # what is left is noise
 
 
 # -- parity ------------------------------------------------------------------------------------------------------------------------
@@ -197,9 +204,9 @@ def spoilt(fault: dict[str, float]) -> Run:
 
 
 def parity_of(run: Run) -> dict[str, dict[str, object]]:
-    part = cut(run, merlin(), "fossen", 10.0)
+    part = cut_run(run, merlin(), "fossen", 10.0)
     sensor = tuple(i for i, s in enumerate(part.plant.slots) if load(s.effect).place == "sensor")
-    return {str(row["fault"]): row for row in faults(parity(part, sensor), part, part.plant.null)}
+    return {str(row["fault"]): row for row in sensor_faults(parity_residuals(part, sensor), part, part.plant.null)}
 
 
 @pytest.mark.parametrize(
@@ -229,9 +236,9 @@ def test_a_fault_is_not_told_of_fewer_windows_than_its_scatter_needs():
 
 def test_parity_about_another_point_is_that_of_its_moved_rows():
     """Products from those at the null value against the rows moved one by one; other columns, in another order, some without a trace."""
-    part = cut(spoilt({"gyro_bias.r": 0.01, "dvl_scale.scale": 0.05}), merlin(), "fossen", 10.0)
+    part = cut_run(spoilt({"gyro_bias.r": 0.01, "dvl_scale.scale": 0.05}), merlin(), "fossen", 10.0)
     index = part.plant.index
-    rows = parity(part, tuple(i for i, s in enumerate(part.plant.slots) if s.effect != "dvl_lever_arm"))
+    rows = parity_residuals(part, tuple(i for i, s in enumerate(part.plant.slots) if s.effect != "dvl_lever_arm"))
     beta = part.plant.null.copy()
     for key, value in (("gyro_bias.r", 0.008), ("dvl_scale.scale", 0.04), ("dvl_misalignment.yaw", -0.1), ("buoyancy_error.force", 30.0)):
         beta[index[key]] = value
@@ -241,7 +248,7 @@ def test_parity_about_another_point_is_that_of_its_moved_rows():
     taken[scale] = 0.04 / 1.04  # of a velocity that is 1.04 times the true one, the fault is 0.04 / 1.04
     T, r = rows.traces[..., place].copy(), rows.rows - rows.traces @ taken[list(rows.columns)]
     T[..., columns.index(scale)] /= 1.04**2
-    got = rows.moved(beta, (*columns, len(part.plant.slots))).products(2.0 * rows.inflation)
+    got = rows.normal_equations(beta, (*columns, len(part.plant.slots)), 2.0 * rows.design_effect)
     assert got.columns == (*columns, len(part.plant.slots)) and not got.A[:, -1].any() and not got.b[:, -1].any()
     wanted = np.einsum("wqi,wqj->wij", T, T), np.einsum("wqi,wq->wi", T, r), (r**2).sum(axis=1)
     for found, want in zip((got.A[:, :-1, :-1], got.b[:, :-1], got.c), wanted, strict=True):
@@ -250,11 +257,11 @@ def test_parity_about_another_point_is_that_of_its_moved_rows():
 
 def test_a_velocity_scale_is_read_without_the_bias_of_its_tangent():
     """12 % too large: the tangent at nothing would say 0.12 / 1.12."""
-    part = cut(spoilt({"dvl_scale.scale": 0.12}), merlin(), "fossen", 10.0)
+    part = cut_run(spoilt({"dvl_scale.scale": 0.12}), merlin(), "fossen", 10.0)
     slot = part.plant.index["dvl_scale.scale"]
-    rows, beta = parity(part, (slot,)), part.plant.null.copy()
+    rows, beta = parity_residuals(part, (slot,)), part.plant.null.copy()
     for _ in range(4):
-        one = rows.moved(beta, (slot,)).products(rows.inflation)
+        one = rows.normal_equations(beta, (slot,), rows.design_effect)
         beta[slot] += float(one.b.sum() / one.A.sum())
     assert beta[slot] == pytest.approx(0.12, abs=0.004)
 
@@ -263,13 +270,13 @@ def test_a_velocity_scale_is_read_without_the_bias_of_its_tangent():
 @pytest.mark.parametrize("late", [1.2, -0.9])
 def test_a_late_sensor_is_read_without_the_bias_of_its_tangent(name: str, late: float):
     """Of a vehicle that turns, at the delay the horizontal rows are nearly those of the sound log; a straight trace leaves much."""
-    parts = [cut(spoilt(fault), merlin(), "fossen", 10.0) for fault in ({name: late}, {})]
+    parts = [cut_run(spoilt(fault), merlin(), "fossen", 10.0) for fault in ({name: late}, {})]
     slot = parts[0].plant.index[name]
-    (rows, sound), beta = (parity(part, (slot,)) for part in parts), parts[0].plant.null.copy()
+    (rows, sound), beta = (parity_residuals(part, (slot,)) for part in parts), parts[0].plant.null.copy()
     beta[slot] = late
 
-    def metres(scaled: Array, check: Parity) -> float:
-        return float(np.sqrt(np.mean((scaled.reshape(len(scaled), -1, 6) * check.sigma)[..., :2] ** 2)))
+    def metres(whiten: Array, check: ParityResiduals) -> float:
+        return float(np.sqrt(np.mean((whiten.reshape(len(whiten), -1, 6) * check.sigma)[..., :2] ** 2)))
 
     straight = metres(rows.rows - rows.traces[..., 0] * late, rows)
     assert metres(rows.undone(beta)[0], rows) < min(1.2 * metres(sound.rows, sound), 0.95 * straight)
@@ -288,8 +295,8 @@ def test_parity_of_healthy_sensors_finds_nothing():
 
 
 @pytest.fixture(scope="module")
-def part() -> Stretches:
-    return cut(own((), 4, 240.0), merlin(), "fossen", 10.0)
+def part() -> Windows:
+    return cut_run(own((), 4, 240.0), merlin(), "fossen", 10.0)
 
 
 def test_a_gap_planted_in_a_regime_is_found_with_its_share(part):

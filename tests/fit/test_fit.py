@@ -14,9 +14,9 @@ from rovval.core.errors import UsageProblem
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.inference.identifiability import _confused
-from rovval.diagnose.inference.prior import slop_prior
-from rovval.diagnose.inference.problem import pose
-from rovval.diagnose.windows.shooting import cut_all
+from rovval.diagnose.problem.prior import tolerance_prior
+from rovval.diagnose.problem.problem import pose
+from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.fit import FitResult, fit
 from rovval.fit.tunable import chosen
 from rovval.plant import Plant
@@ -85,10 +85,10 @@ def test_collinear_parameters_are_named_with_what_they_are_like():
 
 def test_what_only_a_start_elsewhere_shows_is_no_namesake():
     """An onset has no slope where nothing is at work: a parameter is not said to be like it."""
-    parts, _ = cut_all([own((), 5, 100.0)], merlin(), "fossen", 10.0)
+    parts, _ = cut([own((), 5, 100.0)], merlin(), "fossen", 10.0)
     p = pose(parts, columns_of(hypotheses(parts)[0]), 0.05)
     drag, onset, mass = (p.plant.index[key] for key in ("linear_drag[surge].scale", "tether_snag.onset", "added_mass[surge].scale"))
-    assert onset not in p.data.columns
+    assert onset not in p.likelihood.total.columns
     assert [row["parameter"] for row in _confused(p, drag, (drag, onset, mass), "why")["with"]] == ["added_mass[surge].scale"]
 
 
@@ -137,7 +137,7 @@ def _coverage(slop: float, logs: int) -> tuple[float, float]:
         truth = np.maximum(rng.normal(size=3) * [0.2, 0.15, 0.15], -0.45)
         planted = [f"{h}:{p}={float(v)!r}" for (h, p), v in zip(names.items(), truth, strict=True)]
         off: dict[str, list[str]] = {}
-        for s, sd in slop_prior(plant, slop).sd.items():
+        for s, sd in tolerance_prior(plant, slop).sd.items():
             slot = plant.slots[s]
             if slot.hypothesis not in names:
                 value = float(np.clip(rng.normal() * sd, slot.parameter.low, slot.parameter.high))

@@ -12,13 +12,14 @@ from rovval.diagnose.decision.verdict import decide
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses, initialised
 from rovval.diagnose.hypotheses.observability import observable
-from rovval.diagnose.inference.map_fit import healthy_point
-from rovval.diagnose.inference.problem import corrected_residuals, pose
+from rovval.diagnose.inference.map_fit import healthy_fit
+from rovval.diagnose.problem.problem import corrected_residuals, pose
 from rovval.diagnose.result.assembly import assemble
 from rovval.diagnose.result.diagnosis import Diagnosis
 from rovval.diagnose.search.forward import search
 from rovval.diagnose.search.onset import windows_from
-from rovval.diagnose.windows.shooting import Stretches, cut_all
+from rovval.diagnose.windows.multiple_shooting import cut
+from rovval.diagnose.windows.windows import Windows
 from rovval.vehicle.model import Vehicle
 
 Progress = Callable[[str, float], None]
@@ -51,7 +52,7 @@ def diagnose(
         BadInput: too little of a log can be simulated, or thruster inputs are missing.
     """
     say = progress or _silent
-    windows, left_out = cut_all(runs, vehicle, model, window_s)
+    windows, left_out = cut(runs, vehicle, model, window_s)
     found = analyse(windows, without, calibration_slop, seed, say)
     if onset := found.onset:
         say(f"searching the part from {onset.time:.0f} s on", 0.85)
@@ -60,20 +61,20 @@ def diagnose(
     return assemble(found, left_out, calibration_slop, seed, say)
 
 
-def analyse(windows: tuple[Stretches, ...], without: Sequence[str], tolerance: float, seed: int, say: Progress) -> Finding:
+def analyse(windows: tuple[Windows, ...], without: Sequence[str], tolerance: float, seed: int, say: Progress) -> Finding:
     """One pass over the windows of the logs: pose the estimation problem, fit the healthy vehicle, search for causes, decide."""
     library, untestable = hypotheses(windows, without)
     say(f"simulating every effect of the library on {sum(part.count for part in windows)} windows", 0.05)
     problem = pose(windows, columns_of(library), tolerance)
     library, unseen = observable(problem, library)
-    healthy = healthy_point(problem)
+    healthy = healthy_fit(problem)
     selection = search(problem, library, initialised(problem, library, healthy), healthy, seed, say)
     say("asking how much any systematic cause could explain", 0.85)
     residuals = corrected_residuals(problem)
     return Finding(problem, untestable | unseen, selection, residuals, decide(problem, selection, residuals))
 
 
-def _analysed_from(time: float, windows: Stretches, without: Sequence[str], tolerance: float, seed: int) -> Finding | None:
+def _analysed_from(time: float, windows: Windows, without: Sequence[str], tolerance: float, seed: int) -> Finding | None:
     """The same over the windows from ``time`` (s) on; None where too few of them can be simulated: the log as a whole was."""
     try:
         return replace(analyse((windows_from(windows, time),), without, tolerance, seed, _silent), since=time)

@@ -15,12 +15,11 @@ from rovval.core.data import Array
 from rovval.core.version import __version__
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
-from rovval.diagnose.inference.hypothesis_fit import Confirmed
-from rovval.diagnose.inference.identifiability import determinable, tuned, undetermined
-from rovval.diagnose.inference.problem import Problem, corrected_residuals, pose
-from rovval.diagnose.inference.refit import shrinkage_refitted
-from rovval.diagnose.inference.shrinkage import NONE, harm
-from rovval.diagnose.windows.shooting import cut_all
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
+from rovval.diagnose.inference.identifiability import fit_identifiable, identifiable, unidentified_row
+from rovval.diagnose.inference.shrinkage import NO_SHRINKAGE, refitted_shrinkage, worsened_axes
+from rovval.diagnose.problem.problem import Problem, corrected_residuals, pose
+from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.fit.tunable import chosen
 from rovval.plant import Plant
 from rovval.vehicle.write import to_toml, with_effects
@@ -60,20 +59,20 @@ def fit(
     """
     say = progress or (lambda text, share: None)
     wanted = chosen(Plant(vehicle, model), parameters)
-    parts, left_out = cut_all(runs, vehicle, model, window_s)
+    parts, left_out = cut(runs, vehicle, model, window_s)
     library, missing = hypotheses(parts)
     plant = parts[0].plant
     why = {s: missing.get(plant.slots[s].hypothesis) or missing.get(plant.slots[s].key) for s in wanted}
-    out = {s: undetermined(reason) for s, reason in why.items() if reason}
+    out = {s: unidentified_row(reason) for s, reason in why.items() if reason}
     able = tuple(s for s in wanted if s not in out)
     say(f"simulating {len(able)} parameters on {sum(p.count for p in parts)} windows", 0.1)
     names = {plant.slots[s].hypothesis for s in able}
-    kept = [h for h in library if not h.directions and (h.name in names or effects.load(h.name.partition("[")[0]).place == "sensor")]
+    kept = [h for h in library if not h.displaced and (h.name in names or effects.load(h.name.partition("[")[0]).place == "sensor")]
     problem = pose(parts, columns_of(kept), calibration_slop)
-    able, blind = determinable(problem, able)
+    able, blind = identifiable(problem, able)
     out |= blind
     say(f"tuning {len(able)} parameters by re-simulation", 0.4)
-    fitted, low, high, vague = tuned(problem, able)
+    fitted, low, high, vague = fit_identifiable(problem, able)
     out |= vague
     say("asking how far the gap shrinks on held-out windows", 0.9)
     document = _document(problem, fitted, low, high, {s: out[s] for s in wanted if s in out}, calibration_slop, seed)
@@ -83,10 +82,10 @@ def fit(
 
 
 def _document(
-    problem: Problem, fitted: Confirmed | None, low: Array, high: Array, out: dict[int, dict[str, Any]], slop: float, seed: int
+    problem: Problem, fitted: HypothesisFit | None, low: Array, high: Array, out: dict[int, dict[str, Any]], slop: float, seed: int
 ) -> dict[str, Any]:
     plant, rows = problem.plant, dict[str, Any]()
-    shrunk = shrinkage_refitted(problem, fitted, corrected_residuals(problem), slop, seed) if fitted else dict(NONE)
+    shrunk = refitted_shrinkage(problem, fitted, corrected_residuals(problem), slop, seed) if fitted else dict(NO_SHRINKAGE)
     for i, slot in enumerate(fitted.slots if fitted else ()):
         assert fitted is not None
         p, value, was = plant.slots[slot].parameter, float(fitted.beta[slot]), float(problem.origin[slot])
@@ -98,22 +97,22 @@ def _document(
     return {
         "schema": "rovval.fit/1",
         "rovval": __version__,
-        "run": ", ".join(part.run.id for part in problem.parts),
+        "run": ", ".join(part.run.id for part in problem.runs),
         "vehicle": plant.vehicle.name,
         "vehicle_hash": plant.vehicle.hash,
         "model": plant.model,
-        "window_s": round((problem.parts[0].steps + 1) * problem.parts[0].run.dt, 6),
-        "windows": problem.blocks,
+        "window_s": round((problem.runs[0].steps + 1) * problem.runs[0].run.dt, 6),
+        "windows": problem.window_count,
         "calibration_slop": slop,
         "parameters": rows,
         "undetermined": [{"parameter": plant.slots[s].key, **why, "left_at": float(problem.origin[s])} for s, why in out.items()],
         "shrinkage": shrunk,
-        "harm": harm(shrunk),
+        "harm": worsened_axes(shrunk),
         "settings": list(_settings(problem, fitted)) if fitted else [],
     }
 
 
-def _settings(problem: Problem, fitted: Confirmed) -> tuple[str, ...]:
+def _settings(problem: Problem, fitted: HypothesisFit) -> tuple[str, ...]:
     """Every tuned hypothesis as ``--effect`` takes it, with what the vehicle's file says of its other parameters."""
     plant, found = problem.plant, []
     for name in dict.fromkeys(plant.slots[s].hypothesis for s in fitted.slots):

@@ -8,10 +8,10 @@ from diagnose_case import posed, slot
 from rovval.core.channels import AXES
 from rovval.diagnose.criteria import ROUNDING_SHARE
 from rovval.diagnose.decision.benefit import Benefit, beneficial, benefit_as_filed, benefit_beside, followed
-from rovval.diagnose.inference.hypothesis_fit import confirm
-from rovval.diagnose.inference.map_fit import healthy_point
-from rovval.diagnose.inference.problem import corrected_residuals
+from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
+from rovval.diagnose.inference.map_fit import healthy_fit
 from rovval.diagnose.inference.shrinkage import shrinkage
+from rovval.diagnose.problem.problem import corrected_residuals
 
 
 def test_harm_is_told_from_what_is_closed_in_all():
@@ -30,7 +30,7 @@ def test_a_drag_that_spoils_its_own_axis_is_none():
 
 def test_beside_a_cause_coefficients_may_be_as_slop_lets_them_be():
     p = posed(("buoyancy_error:force=60", "quadratic_drag[surge]:scale=0.2",), seconds=100.0)[0]
-    final, healthy = confirm(p, p.origin, (slot(p, "buoyancy_error.force"),)), healthy_point(p)
+    final, healthy = fit_hypothesis(p, p.origin, (slot(p, "buoyancy_error.force"),)), healthy_fit(p)
     filed, eased = benefit_as_filed(p, final, corrected_residuals(p)), benefit_beside(p, final, healthy, corrected_residuals(p))
     assert filed.sure and eased.sure and filed.followed and eased.followed
     assert eased.after["surge"] < 0.8 * filed.after["surge"]
@@ -39,7 +39,7 @@ def test_beside_a_cause_coefficients_may_be_as_slop_lets_them_be():
 
 def test_what_closes_one_axis_surely_and_the_whole_perhaps_is_not_sure(monkeypatch: pytest.MonkeyPatch):
     p = posed(("buoyancy_error:force=60",), seconds=100.0)[0]
-    final, before = confirm(p, p.origin, (slot(p, "buoyancy_error.force"),)), corrected_residuals(p)
+    final, before = fit_hypothesis(p, p.origin, (slot(p, "buoyancy_error.force"),)), corrected_residuals(p)
     told = shrinkage(p, final, before, 0)
     monkeypatch.setattr("rovval.diagnose.decision.benefit.shrinkage", lambda *_: told | {"low": -0.01})
     assert told["axes_interval"]["heave"]["low"] > 0.0 and not benefit_as_filed(p, final, before).sure

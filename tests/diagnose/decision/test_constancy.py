@@ -10,15 +10,15 @@ from diagnose_case import foreign, merlin, posed
 from rovval.diagnose import diagnose
 from rovval.diagnose.decision.constancy import variation, variation_evidence
 from rovval.diagnose.hypotheses.library import initialised
-from rovval.diagnose.inference.map_fit import healthy_point
-from rovval.diagnose.residuals.normal_equations import Products
+from rovval.diagnose.inference.map_fit import healthy_fit
+from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.search.forward import search
 from rovval.report.diagnosis.json import document as written
 
 
 def test_a_cause_that_is_there_holds_still():
     p, library = posed(("inflow_loss:loss=0.4", "thruster_degraded[VAC]:loss=0.4",))
-    healthy = healthy_point(p)
+    healthy = healthy_fit(p)
     found = search(p, library, initialised(p, library, healthy), healthy, 0, lambda text, share: None)
     assert {n.hypothesis.name for n in found.causes} == {"inflow_loss", "thruster_degraded[VAC]"} and found.fit
     assert all(most < 0.1 * n.evidence for n, most in zip(found.causes, variation(p, found.fit, found.causes).values(), strict=True))
@@ -38,7 +38,7 @@ def test_what_varies_is_told_from_what_does_not():
     found = {}
     for scatter, value in values.items():
         departure = (value - value.mean()) / noise**2
-        data = Products(np.full((m, 1, 1), noise**-2), departure[:, None], departure**2, (0,))
+        data = NormalEquations(np.full((m, 1, 1), noise**-2), departure[:, None], departure**2, (0,))
         found[scatter] = variation_evidence(data, size, 1.0)
     assert found[0.0] < 0 and found[0.5] > 50
 

@@ -8,14 +8,15 @@ from diagnose_case import merlin, own
 
 from rovval.diagnose.criteria import CHANGE_LEAST_WINDOWS
 from rovval.diagnose.hypotheses.change_points import change_points, largest_changes
-from rovval.diagnose.windows.shooting import Stretches, cut
+from rovval.diagnose.windows.multiple_shooting import cut_run
+from rovval.diagnose.windows.windows import Windows
 
 RNG = np.random.default_rng
 
 
 @pytest.fixture(scope="module")
-def part() -> Stretches:
-    return cut(own((), 4, 240.0), merlin(), "fossen", 10.0)
+def part() -> Windows:
+    return cut_run(own((), 4, 240.0), merlin(), "fossen", 10.0)
 
 
 @pytest.mark.parametrize("at", [3, 10, 17])

@@ -13,7 +13,7 @@ from rovval.diagnose.criteria import LEVER_SHARE
 from rovval.diagnose.hypotheses.hypothesis import prior_of
 from rovval.diagnose.hypotheses.initial_points import Hints
 from rovval.diagnose.hypotheses.library import hypotheses
-from rovval.diagnose.windows.shooting import cut_all
+from rovval.diagnose.windows.multiple_shooting import cut
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,7 @@ def test_a_long_lag_is_found_though_it_is_no_multiple_of_a_short_one():
 
 def test_a_change_with_depth_begins_at_depths_of_the_log():
     p, library = posed()
-    z = np.concatenate([part.eta0[:, 2] for part in p.parts])
+    z = np.concatenate([part.eta0[:, 2] for part in p.runs])
     for name in ("density_gradient", "current_shear"):
         data = [dict(h.at)[slot(p, f"{name}.depth")] for h in library if h.name == name]
         assert len(data) == 3 and z.min() < min(data) < max(data) < z.max()
@@ -69,13 +69,13 @@ def test_a_coefficient_that_slop_moves_competes_wherever_its_search_begins():
     p, library = posed()
     width = slot(p, "thruster_deadband.width")
     begun = [h for h in library if h.name == "thruster_deadband"]
-    assert width in p.slop.sd and all(h.directions for h in begun)
-    assert all(prior_of(p, h).sd[width] > 10.0 * p.slop.sd[width] for h in begun)
+    assert width in p.tolerance.sd and all(h.displaced for h in begun)
+    assert all(prior_of(p, h).sd[width] > 10.0 * p.tolerance.sd[width] for h in begun)
 
 
 def test_what_holds_the_vehicle_begins_where_it_is_said_to():
     """Until then where the vehicle was in the middle of the log; beyond its bounds nothing begins."""
-    parts, _ = cut_all([own((), 5, 200.0)], merlin(), "fossen", 10.0)
+    parts, _ = cut([own((), 5, 200.0)], merlin(), "fossen", 10.0)
     names = {i: s.parameter.name for i, s in enumerate(parts[0].plant.slots)}
 
     def snags(held: list[dict[str, float]]) -> list[dict[str, float]]:

@@ -9,12 +9,12 @@ import pytest
 from diagnose_case import merlin, own, without
 
 from rovval.diagnose.hypotheses.library import hypotheses
-from rovval.diagnose.inference.prior import slop_prior
-from rovval.diagnose.windows.shooting import cut_all
+from rovval.diagnose.problem.prior import tolerance_prior
+from rovval.diagnose.windows.multiple_shooting import cut
 
 
 def test_a_parameter_whose_channel_is_not_in_the_log_does_not_compete():
-    parts, _ = cut_all([own((), 5, 120.0)], merlin(), "fossen", 10.0)
+    parts, _ = cut([own((), 5, 120.0)], merlin(), "fossen", 10.0)
     library, untestable = hypotheses(parts)
     (sag,) = [h for h in library if h.name == "voltage_sag"]
     assert [parts[0].plant.slots[s].key for s in sag.slots] == ["voltage_sag.rate"]
@@ -23,7 +23,7 @@ def test_a_parameter_whose_channel_is_not_in_the_log_does_not_compete():
 
 def test_a_late_depth_needs_a_velocity_to_be_late_against():
     """Where depth is all that is known of heave, a late one is any force that lifts."""
-    parts, _ = cut_all([without(own((), 5, 120.0), "w")], merlin(), "fossen", 10.0)
+    parts, _ = cut([without(own((), 5, 120.0), "w")], merlin(), "fossen", 10.0)
     library, untestable = hypotheses(parts)
     assert "time_offset[depth]" not in {h.name for h in library} and "needs w" in untestable["time_offset[depth].delay"]
 
@@ -34,14 +34,14 @@ def test_what_acts_close_by_does_not_compete_from_afar(least: float, there: bool
     run = own((), 5, 120.0)
     altitude = {"altitude": least + np.linspace(4.0, 0.0, len(run))}
     logged = replace(run, values={**run.values, **altitude}, reasons={**run.reasons, "altitude": run.reasons["psi"]})
-    parts, _ = cut_all([logged], merlin(), "fossen", 10.0)
+    parts, _ = cut([logged], merlin(), "fossen", 10.0)
     library, untestable = hypotheses(parts)
     assert ("ground_effect" in {h.name for h in library}) == there
     assert untestable.get("ground_effect") == (None if there else "no altitude below 3 m in this log")
 
 
 def test_a_tolerance_is_no_diagnosis():
-    parts, _ = cut_all([own((), 5, 100.0)], merlin(), "fossen", 10.0)
+    parts, _ = cut([own((), 5, 100.0)], merlin(), "fossen", 10.0)
     names = {h.name.partition("[")[0] for h in hypotheses(parts)[0]}
     assert "thruster_astern" not in names and "thruster_degraded" in names
-    assert any(parts[0].plant.slots[s].effect == "thruster_astern" for s in slop_prior(parts[0].plant, 0.05).sd)
+    assert any(parts[0].plant.slots[s].effect == "thruster_astern" for s in tolerance_prior(parts[0].plant, 0.05).sd)

@@ -15,7 +15,7 @@ from rovval.diagnose.criteria import SPRING_EVIDENT_SHARE
 from rovval.diagnose.hypotheses.initial_points import Hints
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.hypotheses.snag import MissingWrench, fitted_spring
-from rovval.diagnose.windows.shooting import cut_all
+from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.vehicle import load
 
 
@@ -29,7 +29,7 @@ def test_a_stiff_spring_is_found_through_the_beginnings_of_windows(tmp_path: Pat
 
 
 def test_a_slack_spring_is_a_steady_pull_and_not_evident():
-    parts, _ = cut_all([own((), 5, 200.0)], merlin(), "fossen", 10.0)
+    parts, _ = cut([own((), 5, 200.0)], merlin(), "fossen", 10.0)
     spring = {"stiffness": 300.0, "onset": 80.0}
     springs = [spring | {"share": SPRING_EVIDENT_SHARE}, spring | {"share": 0.9 * SPRING_EVIDENT_SHARE}, spring]
     assert [h.evident for h in hypotheses(parts, hints=Hints(springs=springs))[0] if h.name == "tether_snag"] == [True, False, False]

@@ -8,13 +8,13 @@ import pytest
 from diagnose_case import posed, without
 
 from rovval.diagnose.hypotheses.spectrum import spectral_lines, wave_periods
-from rovval.diagnose.inference.map_fit import settle
+from rovval.diagnose.inference.map_fit import map_fit
 
 
 @pytest.mark.parametrize("period", [7.7, 12.4])
 def test_the_period_of_waves_is_the_strongest_line(period):
     p, _ = posed((f"waves:amplitude=1,period={period},direction=2.6,phase=-2.0",))
-    (best, share), *others = spectral_lines(p, settle(p, p.origin, ()))
+    (best, share), *others = spectral_lines(p, map_fit(p, p.origin, ()))
     assert best == pytest.approx(period, rel=0.02)
     assert share > 0.3 and all(share > 2 * other for _, other in others)
 
@@ -23,14 +23,14 @@ def test_the_period_of_waves_is_the_strongest_line(period):
 def test_a_vehicle_under_way_meets_waves_at_another_period_than_theirs(period, direction, amplitude):
     """Whose direction is right finds their own; without a position none is looked for."""
     p, _ = posed((f"waves:amplitude={amplitude},period={period},direction={direction},phase=1",))
-    point = settle(p, p.origin, ())
+    point = map_fit(p, p.origin, ())
     met = [one for one, _ in spectral_lines(p, point)]
     [found] = wave_periods(p, point, met, (2.0, 20.0), (direction,))[direction]
     assert abs(found - period) < 0.4 * abs(met[0] - period)
-    lost = replace(p, parts=tuple(replace(part, run=without(part.run, "x")) for part in p.parts))
+    lost = replace(p, runs=tuple(replace(part, run=without(part.run, "x")) for part in p.runs))
     assert wave_periods(lost, point, met, (2.0, 20.0), (direction,)) == wave_periods(p, point, [70.0], (2.0, 20.0), (direction,)) == {}
 
 
 def test_a_healthy_log_has_no_line():
     p, _ = posed()
-    assert max((share for _, share in spectral_lines(p, settle(p, p.origin, ()))), default=0.0) < 0.1
+    assert max((share for _, share in spectral_lines(p, map_fit(p, p.origin, ()))), default=0.0) < 0.1

@@ -20,36 +20,42 @@ from rovval.core.channels import AXES
 from rovval.diagnose import diagnose
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
-from rovval.diagnose.inference.disturbance import PIECES, answers, disturbance, shown, undisturbed
-from rovval.diagnose.inference.problem import pose
+from rovval.diagnose.problem.disturbance import (
+    SEGMENTS,
+    estimate_disturbance,
+    initial_disturbance,
+    principal_parts,
+    unit_responses,
+)
+from rovval.diagnose.problem.problem import pose
 from rovval.diagnose.residuals.sensitivities import linearise
-from rovval.diagnose.windows.shooting import cut_all
+from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.storage.archive import open_run
 
 
 @pytest.fixture(scope="module")
 def quiet():
     """Windows of a healthy log of the project's own plant, what they answer to pushes, and noise that hides little."""
-    parts, _ = cut_all([own((), 5, 240.0)], merlin(), "fossen", 10.0)
+    parts, _ = cut([own((), 5, 240.0)], merlin(), "fossen", 10.0)
     origin = parts[0].plant.null
-    return parts, origin, answers(parts, origin), np.full((parts[0].steps + 1, len(parts[0].channels)), 0.002**2)
+    return parts, origin, unit_responses(parts, origin), np.full((parts[0].steps + 1, len(parts[0].channels)), 0.002**2)
 
 
 @pytest.mark.parametrize("memory_s", [0.5, 5.0])
 def test_size_and_memory_of_what_was_put_in_are_found(quiet, memory_s):
     parts, origin, to, variance = quiet
-    rng, piece_s, share = np.random.default_rng(1), 10.0 / PIECES, np.array([0.1, 0.05, 0.1, 0.02, 0.05, 0.1])
+    rng, piece_s, share = np.random.default_rng(1), 10.0 / SEGMENTS, np.array([0.1, 0.05, 0.1, 0.02, 0.05, 0.1])
     keep = np.exp(-piece_s / memory_s)
-    f = np.zeros((parts[0].count, len(AXES), PIECES))
+    f = np.zeros((parts[0].count, len(AXES), SEGMENTS))
     f[..., 0] = rng.normal(size=f.shape[:2])
-    for i in range(1, PIECES):
+    for i in range(1, SEGMENTS):
         f[..., i] = keep * f[..., i - 1] + np.sqrt(1 - keep**2) * rng.normal(size=f.shape[:2])
     moved = np.einsum("wtci,wi->wtc", to.pushed[0], (f * share[:, None]).reshape(len(f), -1))
     one = linearise(parts[0], origin, ())
     left = [replace(one, r=np.where(parts[0].ok, moved + 0.002 * rng.normal(size=moved.shape), 0.0))]
-    found = undisturbed(to)
+    found = initial_disturbance(to)
     for _ in range(4):
-        found = disturbance(parts, to, left, variance, 1.0, found)
+        found = estimate_disturbance(parts, to, left, variance, 1.0, found)
     measured = [0, 1, 2, 5]  # the others hardly show on a log flown level
     assert np.abs(found.rms / to.wrench / share - 1)[measured].max() < 0.3
     assert (found.memory_s[measured] / memory_s > 0.4).all() and (found.memory_s[measured] / memory_s < 2.5).all()
@@ -59,15 +65,15 @@ def test_nothing_is_found_where_nothing_was_put_in(quiet):
     parts, origin, to, variance = quiet
     one = linearise(parts[0], origin, ())
     left = [replace(one, r=np.where(parts[0].ok, 0.002 * np.random.default_rng(2).normal(size=one.r.shape), 0.0))]
-    found = undisturbed(to)
+    found = initial_disturbance(to)
     for _ in range(4):
-        found = disturbance(parts, to, left, variance, 1.0, found)
+        found = estimate_disturbance(parts, to, left, variance, 1.0, found)
     assert (found.rms / to.wrench)[[0, 1, 2, 5]].max() < 0.03
 
 
 def test_fewer_columns_hold_the_same_covariance(quiet):
     parts, _, to, variance = quiet
-    whole, (fewer,) = 0.05 * to.pushed[0], shown(parts, [0.05 * to.pushed[0]], variance)
+    whole, (fewer,) = 0.05 * to.pushed[0], principal_parts(parts, [0.05 * to.pushed[0]], variance)
     assert fewer.shape[-1] < whole.shape[-1]
     for w in (0, 7):
         a, b = (np.where(parts[0].ok[w], 1 / np.sqrt(variance), 0.0)[..., None] * x[w] for x in (whole, fewer))
@@ -83,7 +89,7 @@ def test_a_healthy_vehicle_on_station_is_not_blamed_and_the_push_is_found(tmp_pa
     write_csv(fly(Path(hull), "station", (), 6, 240.0, 0.03), tmp_path / "station.csv")
     run, v = open_run(tmp_path / "station.csv", "merlin"), vehicle.load("bluerov2_heavy")
     true = Background(scales(read_vehicle(Path(hull))), 0.03, stream(1, "any")).size
-    parts, _ = cut_all([run], v, "fossen", 10.0)
+    parts, _ = cut([run], v, "fossen", 10.0)
     found = pose(parts, columns_of(hypotheses(parts)[0]), 0.05).disturbance.rms
     assert (found > 0.4 * true).all() and (found < 2.5 * true).all()
     assert diagnose([run], v).document()["verdict"] == "no_gap"

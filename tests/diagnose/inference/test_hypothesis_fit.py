@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from diagnose_case import posed, slot
 
-from rovval.diagnose.inference.hypothesis_fit import confirm, errors
+from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis, standard_errors
 
 
 def test_a_drag_that_is_gone_altogether_is_significant_though_it_rests_on_its_bound():
@@ -16,11 +16,11 @@ def test_a_drag_that_is_gone_altogether_is_significant_though_it_rests_on_its_bo
     where = slot(p, "linear_drag[sway].scale")
     start = p.origin.copy()
     start[where] = -0.95
-    fitted = confirm(p, start, (where,))
-    point, first = fitted.point, np.arange(len(fitted.point.columns)) == 0
-    pushed = replace(point.data, b=point.data.b - first * 0.2 * point.curvature[0, 0])
-    on_bound = replace(fitted, point=replace(point, data=pushed, side=np.where(first, -1.0, 0.0)))
-    assert errors(p, on_bound)[0] < 1.5 * errors(p, fitted)[0]
+    fitted = fit_hypothesis(p, start, (where,))
+    point, first = fitted.posterior, np.arange(len(fitted.posterior.columns)) == 0
+    pushed = replace(point.total, b=point.total.b - first * 0.2 * point.curvature[0, 0])
+    on_bound = replace(fitted, posterior=replace(point, total=pushed, bound_side=np.where(first, -1.0, 0.0)))
+    assert standard_errors(p, on_bound)[0] < 1.5 * standard_errors(p, fitted)[0]
 
 
 def test_what_only_places_an_effect_does_not_make_its_size_unsure():
@@ -29,6 +29,6 @@ def test_what_only_places_an_effect_does_not_make_its_size_unsure():
     north, phase, period = (slot(p, f"current_varying.{name}") for name in ("north", "phase", "period"))
     beta = p.origin.copy()
     beta[[north, phase, period]] = 0.1, 0.4, 60.0
-    fitted = confirm(p, beta, (north, phase, period))
-    free, fixed = errors(p, fitted), errors(p, fitted, (phase, period))
+    fitted = fit_hypothesis(p, beta, (north, phase, period))
+    free, fixed = standard_errors(p, fitted), standard_errors(p, fitted, (phase, period))
     assert (fixed[1:] == 0.0).all() and 0.0 < fixed[0] <= free[0]

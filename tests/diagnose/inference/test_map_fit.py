@@ -10,59 +10,59 @@ from diagnose_case import bluerov2, posed, slot
 
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
-from rovval.diagnose.inference.hypothesis_fit import confirm
-from rovval.diagnose.inference.laplace import evidence
-from rovval.diagnose.inference.map_fit import healthy_point, resettled, settle
-from rovval.diagnose.inference.problem import Problem, pose
+from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
+from rovval.diagnose.inference.laplace import resampled_evidence
+from rovval.diagnose.inference.map_fit import healthy_fit, map_fit, refit_healthy
+from rovval.diagnose.problem.problem import Problem, pose
 from rovval.diagnose.search.discrepancy import generic_forces
-from rovval.diagnose.windows.shooting import cut_all
+from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.vehicle import load
 
 
 def rolling(folder: Path) -> Problem:
-    parts, _ = cut_all([bluerov2(folder, "rolling.csv", 12, 150.0, 0.05)], load("bluerov2_heavy"), "fossen", 10.0)
+    parts, _ = cut([bluerov2(folder, "rolling.csv", 12, 150.0, 0.05)], load("bluerov2_heavy"), "fossen", 10.0)
     return pose(parts, columns_of(hypotheses(parts)[0]), 0.05)
 
 
 def test_the_beginning_first_ends_no_higher(tmp_path: Path):
     """A vehicle that rolls freely on a log of the independent plant: a fit of whole windows from far away stops in the first valley."""
     p = rolling(tmp_path)
-    far, near = settle(p, p.origin, ()), healthy_point(p)
-    assert near.profile() <= 1.02 * far.profile()
+    far, near = map_fit(p, p.origin, ()), healthy_fit(p)
+    assert near.predicted_cost() <= 1.02 * far.predicted_cost()
 
 
 def test_no_cause_gains_by_another_start():
     p, _ = posed(("inflow_loss:loss=0.4",))
-    healthy, slots = settle(p, p.origin, ()), (slot(p, "inflow_loss.loss"),)
-    cause = confirm(p, p.origin, slots)
-    again = resettled(p, healthy, cause.point, slots)
-    assert again.profile() <= healthy.profile()
+    healthy, slots = map_fit(p, p.origin, ()), (slot(p, "inflow_loss.loss"),)
+    cause = fit_hypothesis(p, p.origin, slots)
+    again = refit_healthy(p, healthy, cause.posterior, slots)
+    assert again.predicted_cost() <= healthy.predicted_cost()
     assert all(again.beta[s] == p.origin[s] for s in slots)
 
 
 def test_a_coefficient_within_tolerance_settles_where_it_is():
     p = posed(("thruster_degraded[HFP]:loss=0.05", "linear_drag[surge]:scale=-0.06",), seconds=100.0)[0]
-    point = settle(p, p.origin, ())
+    point = map_fit(p, p.origin, ())
     assert point.beta[slot(p, "thruster_degraded[HFP].loss")] == pytest.approx(0.05, abs=0.02)
-    assert np.abs(point.sigmas()).max() < 2.5
+    assert np.abs(point.standardised_departures()).max() < 2.5
     assert generic_forces(p, point).evidence() < 0, "nothing systematic is left of a vehicle that is only slop away"
 
 
 def test_an_effect_that_slop_must_imitate_strains_it():
     p = posed(("thruster_degraded[HFP]:loss=0.5",), seconds=100.0)[0]
-    point = settle(p, p.origin, ())
-    strained = p.plant.slots[point.columns[int(np.abs(point.sigmas()).argmax())]].key
-    assert strained == "thruster_degraded[HFP].loss" and np.abs(point.sigmas()).max() > 7.0
+    point = map_fit(p, p.origin, ())
+    strained = p.plant.slots[point.columns[int(np.abs(point.standardised_departures()).argmax())]].key
+    assert strained == "thruster_degraded[HFP].loss" and np.abs(point.standardised_departures()).max() > 7.0
 
 
 def test_settling_the_true_effect_is_worth_more_than_slop_alone_and_no_step_makes_it_worse():
     p = posed(("inflow_loss:loss=0.3",), seconds=100.0)[0]
-    alone = settle(p, p.origin, ())
+    alone = map_fit(p, p.origin, ())
     own_slot = slot(p, "inflow_loss.loss")
     start = alone.beta.copy()
     start[own_slot] = 0.1
-    found = settle(p, start, (own_slot,))
-    ones = np.ones((1, p.blocks))
+    found = map_fit(p, start, (own_slot,))
+    ones = np.ones((1, p.window_count))
     assert found.beta[own_slot] == pytest.approx(0.3, abs=0.05)
-    assert evidence(p, found, ones)[0] > evidence(p, alone, ones)[0] + 50
-    assert settle(p, found.beta, (own_slot,)).cost() <= found.cost() * (1 + 1e-9)
+    assert resampled_evidence(p, found, ones)[0] > resampled_evidence(p, alone, ones)[0] + 50
+    assert map_fit(p, found.beta, (own_slot,)).cost() <= found.cost() * (1 + 1e-9)

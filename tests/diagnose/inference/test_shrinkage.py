@@ -10,29 +10,29 @@ from diagnose_case import merlin, own
 
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
-from rovval.diagnose.inference.gap import axis_squares
-from rovval.diagnose.inference.hypothesis_fit import Confirmed, confirm
-from rovval.diagnose.inference.problem import Problem, corrected_residuals, pose
-from rovval.diagnose.inference.shrinkage import harm, held_linear, shrinkage
-from rovval.diagnose.residuals.normal_equations import products
-from rovval.diagnose.residuals.sensitivities import state_spread
-from rovval.diagnose.windows.shooting import cut
+from rovval.diagnose.inference.gap import squared_errors
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, fit_hypothesis
+from rovval.diagnose.inference.shrinkage import held_out_linearisations, shrinkage, worsened_axes
+from rovval.diagnose.problem.problem import Problem, corrected_residuals, pose
+from rovval.diagnose.residuals.normal_equations import normal_equations
+from rovval.diagnose.residuals.nuisances import initial_state_sd
+from rovval.diagnose.windows.multiple_shooting import cut_run
 
 
 @functools.cache
-def fitted(name: str, planted: str = "", *seeds: int) -> tuple[Problem, Confirmed]:
-    parts = tuple(cut(own((planted,) if planted else (), seed, 120.0), merlin(), "fossen", 10.0) for seed in seeds)
+def fitted(name: str, planted: str = "", *seeds: int) -> tuple[Problem, HypothesisFit]:
+    parts = tuple(cut_run(own((planted,) if planted else (), seed, 120.0), merlin(), "fossen", 10.0) for seed in seeds)
     library = [h for h in hypotheses(parts)[0] if h.name == name]
     problem = pose(parts, columns_of(library), 0.05)
-    return problem, confirm(problem, problem.origin, library[0].slots)
+    return problem, fit_hypothesis(problem, problem.origin, library[0].slots)
 
 
 @pytest.mark.parametrize("seeds", [(4,), (4, 5, 6)], ids=["fifths of one log", "one of three logs"])
 def test_windows_are_scored_as_the_total_scores_them(seeds):
     problem, found = fitted("inflow_loss", "inflow_loss:loss=0.25", *seeds)
-    moved = held_linear(problem, found)
-    loss = [products(one, p.ok, problem.variance, state_spread(p)).c for one, p in zip(moved, problem.parts, strict=True)]
-    np.testing.assert_allclose(np.concatenate(loss), found.dynamic_loss, rtol=1e-9)
+    moved = held_out_linearisations(problem, found)
+    loss = [normal_equations(one, p.ok, problem.gap.variance, initial_state_sd(p)).c for one, p in zip(moved, problem.runs, strict=True)]
+    np.testing.assert_allclose(np.concatenate(loss), found.dynamics_loss, rtol=1e-9)
 
 
 def test_every_axis_has_a_share_inside_its_interval():
@@ -40,13 +40,13 @@ def test_every_axis_has_a_share_inside_its_interval():
     shrunk = shrinkage(problem, found, corrected_residuals(problem), 0)
     assert shrunk["axes"].keys() == shrunk["axes_interval"].keys() == {"surge", "sway", "heave", "roll", "pitch", "yaw"}
     assert all(shrunk["axes_interval"][a]["low"] <= share <= shrunk["axes_interval"][a]["high"] for a, share in shrunk["axes"].items())
-    assert shrunk["axes"]["surge"] > 0.9 and not harm(shrunk)
+    assert shrunk["axes"]["surge"] > 0.9 and not worsened_axes(shrunk)
 
 
 def test_what_fits_only_noise_shrinks_no_axis():
     """In-sample, a fit to noise always gains; on held-out windows it does not."""
     problem, found = fitted("cg_offset", "", 7)
-    before, inside = (axis_squares(problem, corrected_residuals(problem, b)) for b in (None, found.beta))
+    before, inside = (squared_errors(problem, corrected_residuals(problem, b)) for b in (None, found.beta))
     shrunk = shrinkage(problem, found, corrected_residuals(problem), 0)
     flattered = {a: 1 - inside[a].sum() / before[a].sum() for a in before}
     assert sum(shrunk["axes"].values()) < sum(flattered.values())
@@ -59,4 +59,4 @@ def test_nothing_fitted_shrinks_nothing_and_a_worse_axis_is_named():
     assert shrinkage(problem, None, [], 0) == {
         "total": 0.0, "low": 0.0, "high": 0.0, "of_explainable": 0.0, "axes": {}, "axes_interval": {}, "held_out": True
     }  # fmt: skip
-    assert harm({"axes": {"surge": 0.4, "yaw": -0.051, "roll": -0.049}}) == [{"axis": "yaw", "change": 0.051}]
+    assert worsened_axes({"axes": {"surge": 0.4, "yaw": -0.051, "roll": -0.049}}) == [{"axis": "yaw", "change": 0.051}]

@@ -8,19 +8,19 @@ from diagnose_case import posed, slot
 
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.residuals import perturbations as lanes
-from rovval.diagnose.residuals.perturbations import lanes_of
+from rovval.diagnose.residuals.perturbations import perturbations
 from rovval.diagnose.residuals.sensitivities import linearise
 
 
 def test_where_nothing_is_there_yet_the_nominal_simulation_serves(monkeypatch: pytest.MonkeyPatch):
     """To the last digit: onsets, periods, depths, levers of effects of no size; once there is a size, the place counts."""
     p, library = posed()
-    part, asked = p.parts[0], columns_of(library)
-    columns, directions = tuple(sorted({*asked.slots, *p.slop.sd})), asked.directions
+    part, asked = p.runs[0], columns_of(library)
+    columns, directions = tuple(sorted({*asked.slots, *p.tolerance.sd})), asked.displaced
     beta = p.origin.copy()
     beta[slot(p, "payload_change.weight")] = 50.0
-    lean, few = linearise(part, beta, columns, directions), len(lanes_of(part, beta, [], columns, directions))
+    lean, few = linearise(part, beta, columns, directions), len(perturbations(part, beta, [], columns, directions))
     monkeypatch.setattr(lanes, "_idle", lambda *known: set())
-    whole, all_of_them = linearise(part, beta, columns, directions), len(lanes_of(part, beta, [], columns, directions))
+    whole, all_of_them = linearise(part, beta, columns, directions), len(perturbations(part, beta, [], columns, directions))
     np.testing.assert_array_equal(lean.S, whole.S)
     assert few < 0.9 * all_of_them

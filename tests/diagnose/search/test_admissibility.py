@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from diagnose_case import posed, slot
 
-from rovval.diagnose.inference.hypothesis_fit import Confirmed
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 from rovval.diagnose.search.admissibility import beyond_bounds, simplest
 from rovval.diagnose.search.baseline import Candidate
 
 
 def test_what_only_refines_an_effect_does_not_make_it_less_simple():
     p, library = posed()
-    fitted = Confirmed((), p.origin, SimpleNamespace(), 0.0, np.zeros(1), np.zeros(1), ())  # type: ignore[arg-type]
+    fitted = HypothesisFit((), p.origin, SimpleNamespace(), 0.0, np.zeros(1), np.zeros(1), ())  # type: ignore[arg-type]
     by_name = {h.name: Candidate(h, fitted, evidence, 0.8, 0.0) for h in library for evidence in [400.0 if h.name == "thrust_lag" else 390.0]}
     lag, offset, hull = (by_name[name] for name in ("thrust_lag", "time_offset", "hull_interaction"))
     assert len(lag.hypothesis.slots) == 2 and len(offset.hypothesis.slots) == 1
@@ -32,7 +32,7 @@ def test_what_only_refines_an_effect_does_not_make_it_less_simple():
 def test_evidence_says_whether_a_loss_of_thrust_began_in_mid_log(other: str, evidence: float, told: str):
     """No form of an equation lies between the two; between two thrusters it may."""
     p, library = posed()
-    fitted = Confirmed((), p.origin, SimpleNamespace(), 0.0, np.zeros(1), np.zeros(1), ())  # type: ignore[arg-type]
+    fitted = HypothesisFit((), p.origin, SimpleNamespace(), 0.0, np.zeros(1), np.zeros(1), ())  # type: ignore[arg-type]
     worth = {"thruster_fault_onset[HFP]": 400.0, other: evidence}
     rivals = [Candidate(next(h for h in library if h.name == name), fitted, much, 0.8, 0.0) for name, much in worth.items()]
     assert simplest(p, rivals).hypothesis.name == told

@@ -9,8 +9,8 @@ from rovval.diagnose.criteria import (
     COUNTED_REDUCTION,
     FIRST_GAIN,
 )
-from rovval.diagnose.inference.hypothesis_fit import confirm
-from rovval.diagnose.inference.map_fit import healthy_point
+from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
+from rovval.diagnose.inference.map_fit import healthy_fit
 from rovval.diagnose.search.admissibility import possible
 from rovval.diagnose.search.baseline import Candidate, healthy_without, reduction_beside
 from rovval.diagnose.search.joint import sufficient
@@ -36,7 +36,7 @@ def test_a_coefficient_surely_off_is_named_though_the_gap_is_another_axis():
 def test_a_fault_of_a_sensor_that_the_kinematic_checks_deny_is_not_named():
     p, library = posed(("buoyancy_error:force=60",))
     (h,) = (h for h in library if h.label == "time_offset[attitude]")
-    fitted = confirm(p, p.origin, h.slots)
+    fitted = fit_hypothesis(p, p.origin, h.slots)
     seen, against = (Candidate(h, fitted, 900.0, 0.5, parity_gain) for parity_gain in (0.1, -0.5))
     assert sufficient(seen, alone=True) and not seen.contradicted
     assert against.contradicted and not sufficient(against, alone=True) and against not in possible(p, [against])
@@ -50,7 +50,7 @@ def test_what_slop_alone_makes_is_not_called_a_cause_beside_it():
 def test_a_coefficient_does_not_hide_behind_its_own_tolerance():
     """Healthy drag may be what the cause is a departure of: without its own tolerance the others leave the gap open."""
     p = posed(("quadratic_drag[surge]:scale=0.4",), seconds=100.0)[0]
-    own, healthy = (slot(p, "quadratic_drag[surge].scale"),), healthy_point(p)
-    others, final = healthy_without(p, healthy, own), confirm(p, p.origin, own)
+    own, healthy = (slot(p, "quadratic_drag[surge].scale"),), healthy_fit(p)
+    others, final = healthy_without(p, healthy, own), fit_hypothesis(p, p.origin, own)
     assert healthy.beta[own[0]] != p.origin[own[0]] and others.beta[own[0]] == p.origin[own[0]]
     assert reduction_beside(p, final, others, 0)[1] > reduction_beside(p, final, healthy, 0)[1] - 0.01 and reduction_beside(p, final, others, 0)[1] > 0.0

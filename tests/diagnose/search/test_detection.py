@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rovval.diagnose.inference.prior import Prior
-from rovval.diagnose.residuals.normal_equations import Products
+from rovval.diagnose.residuals.normal_equations import NormalEquations
+from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.search.detection import detect
 
 RNG = np.random.default_rng
@@ -19,7 +19,7 @@ def test_detection_is_calibrated_on_its_own_null():
         S = rng.normal(size=(m, 20, k)) + rng.normal(size=(m, 1, k))
         delta = np.concatenate([0.05 * rng.normal(size=3), np.zeros(k - 3)])
         r = S @ delta + rng.normal(size=(m, 20))
-        data = Products(np.einsum("wni,wnj->wij", S, S), np.einsum("wni,wn->wi", S, r), (r**2).sum(axis=1), tuple(range(k)))
+        data = NormalEquations(np.einsum("wni,wnj->wij", S, S), np.einsum("wni,wn->wi", S, r), (r**2).sum(axis=1), tuple(range(k)))
         everything = np.linalg.solve(data.A.sum(axis=0), data.b.sum(axis=0))
         found = detect(data, slop, slop, wide, 1.0, everything, int(rng.integers(1 << 30)))
         p_values.append(found.p_value(found.best))
@@ -33,7 +33,7 @@ def test_detection_sees_what_is_there():
     rng, m, k = RNG(11), 30, 5
     S = rng.normal(size=(m, 20, k))
     r = S @ np.array([0, 0, 0, 0.5, 0]) + rng.normal(size=(m, 20))
-    data = Products(np.einsum("wni,wnj->wij", S, S), np.einsum("wni,wn->wi", S, r), (r**2).sum(axis=1), tuple(range(k)))
+    data = NormalEquations(np.einsum("wni,wnj->wij", S, S), np.einsum("wni,wn->wi", S, r), (r**2).sum(axis=1), tuple(range(k)))
     slop = Prior({0: 0.05})
     everything = np.linalg.solve(data.A.sum(axis=0), data.b.sum(axis=0))
     found = detect(data, slop, slop, {"true": Prior({3: 2.0}), "other": Prior({4: 2.0})}, 1.0, everything, 0)

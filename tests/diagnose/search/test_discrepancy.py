@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rovval.diagnose.residuals.normal_equations import Products
+from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.search.discrepancy import GenericForces
 
 
@@ -17,7 +17,7 @@ def test_one_force_alone_is_worth_what_it_is_with_the_others_held():
     axes = ("surge", "sway", "surge", "yaw", "roll", "heave")
     X = rng.normal(size=(30, 12, 4 + len(axes)))
     r = rng.normal(size=(30, 12)) + 0.8 * X[..., 6]
-    data = Products(np.einsum("wni,wnj->wij", X, X), np.einsum("wni,wn->wi", X, r), (r**2).sum(axis=1), tuple(range(X.shape[-1])))
+    data = NormalEquations(np.einsum("wni,wnj->wij", X, X), np.einsum("wni,wn->wi", X, r), (r**2).sum(axis=1), tuple(range(X.shape[-1])))
     beside = GenericForces(tuple((axis, str(i)) for i, axis in enumerate(axes)), data, np.full(4, 2.0), rng.normal(size=4), 1.7)
     one_by_one = {axis: max(beside.evidence([axis], str(i)) for i, a in enumerate(axes) if a == axis) for axis in axes}
     assert beside.single(["surge"]) == pytest.approx(one_by_one["surge"]) == pytest.approx(beside.single())
@@ -31,7 +31,7 @@ def test_a_few_forces_are_worth_what_they_are_one_after_another():
     axes = ("surge", "sway", "surge", "yaw", "roll", "heave")
     X = rng.normal(size=(30, 12, 4 + len(axes)))
     r = rng.normal(size=(30, 12)) + 0.8 * X[..., 6] + 0.9 * X[..., 7]
-    data = Products(np.einsum("wni,wnj->wij", X, X), np.einsum("wni,wn->wi", X, r), (r**2).sum(axis=1), tuple(range(X.shape[-1])))
+    data = NormalEquations(np.einsum("wni,wnj->wij", X, X), np.einsum("wni,wn->wi", X, r), (r**2).sum(axis=1), tuple(range(X.shape[-1])))
     beside = GenericForces(tuple((axis, str(i)) for i, axis in enumerate(axes)), data, np.full(4, 2.0), rng.normal(size=4), 1.7)
     of_two = X[..., [0, 1, 2, 3, 6, 7]]
     two = Products(np.einsum("wni,wnj->wij", of_two, of_two), np.einsum("wni,wn->wi", of_two, r), data.c, tuple(range(6)))
@@ -45,7 +45,7 @@ def test_a_force_that_the_cause_itself_could_be_is_not_held_against_it():
     X = rng.normal(size=(30, 12, 2))
     X[..., 1] = X[..., 0] + 0.1 * X[..., 1]
     r = rng.normal(size=(30, 12)) + 0.5 * X[..., 0]
-    data = Products(np.einsum("wni,wnj->wij", X, X), np.einsum("wni,wn->wi", X, r), (r**2).sum(axis=1), (7, 8))
+    data = NormalEquations(np.einsum("wni,wnj->wij", X, X), np.einsum("wni,wn->wi", X, r), (r**2).sum(axis=1), (7, 8))
     beside = GenericForces((("surge", "u"),), data, np.full(1, 1e3), np.zeros(1), 1.0)
     assert beside.single(causes=(3,)) == beside.single() > 20.0
     assert beside.single(causes=(7,)) == 0.0
@@ -58,7 +58,7 @@ def test_a_force_that_a_coefficient_undoes_is_no_force_of_its_own(own: float, co
     X = rng.normal(size=(30, 12, 2))
     X[..., 1] = own * X[..., 0] + np.sqrt(1.0 - own**2) * X[..., 1]
     r = rng.normal(size=(30, 12)) + 20.0 * (X[..., 1] - own * X[..., 0])
-    data = Products(np.einsum("wni,wnj->wij", X, X), np.einsum("wni,wn->wi", X, r), (r**2).sum(axis=1), (0, 1))
+    data = NormalEquations(np.einsum("wni,wnj->wij", X, X), np.einsum("wni,wn->wi", X, r), (r**2).sum(axis=1), (0, 1))
     beside = GenericForces((("surge", "u"),), data, np.full(1, 1e-3), np.zeros(1), 1.0)
     assert beside.evidence() > 100.0
     assert beside.single() == (pytest.approx(beside.evidence()) if counts else 0.0)

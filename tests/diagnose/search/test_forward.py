@@ -13,13 +13,13 @@ from diagnose_case import bluerov2, foreign, merlin, own, posed
 from rovval.diagnose import diagnose
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.hypotheses.library import initialised
-from rovval.diagnose.inference.map_fit import healthy_point
-from rovval.diagnose.inference.prior import slop_prior
-from rovval.diagnose.inference.problem import Problem
+from rovval.diagnose.inference.map_fit import healthy_fit
+from rovval.diagnose.problem.prior import tolerance_prior
+from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.search.baseline import Candidate
 from rovval.diagnose.search.candidates import candidates
 from rovval.diagnose.search.forward import search
-from rovval.diagnose.windows.shooting import cut_all
+from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.vehicle import load
 
 
@@ -72,7 +72,7 @@ def test_what_the_finalists_kept_out_is_tried_where_none_of_them_stands(monkeypa
         return candidates(problem, data, bogus, {h.label: 50.0 for h in bogus}, *rest)
 
     monkeypatch.setattr("rovval.diagnose.search.forward.candidates", settled)
-    healthy = healthy_point(p)
+    healthy = healthy_fit(p)
     found = search(p, library, initialised(p, library, healthy), healthy, 0, lambda *_: None)
     assert [n.hypothesis.name for n in found.causes] == ["buoyancy_error"]
     assert asked[0] - asked[1] == {"linear_drag[yaw]"}, "what was settled is not settled again"
@@ -81,8 +81,8 @@ def test_what_the_finalists_kept_out_is_tried_where_none_of_them_stands(monkeypa
 def test_a_depth_sensor_that_is_late_is_named_and_has_no_tolerance(tmp_path: Path):
     """Half a sample of delay is nothing that a check of the depth is held to see, so it is no slop; a longer one is told by that check alone."""
     run = foreign(tmp_path, (("time_offset", "depth", 1.5),), 12, 200.0, 0.02)
-    parts, _ = cut_all([run], merlin(), "fossen", 10.0)
-    late = {parts[0].plant.slots[s].key for s in slop_prior(parts[0].plant, 0.05).sd if parts[0].plant.slots[s].effect == "time_offset"}
+    parts, _ = cut([run], merlin(), "fossen", 10.0)
+    late = {parts[0].plant.slots[s].key for s in tolerance_prior(parts[0].plant, 0.05).sd if parts[0].plant.slots[s].effect == "time_offset"}
     assert late == {"time_offset.tau", "time_offset[velocity].delay", "time_offset[attitude].delay"}
     (cause,) = diagnose([run], merlin()).document()["causes"]
     assert cause["effect"] == "time_offset[depth]" and cause["parameters"]["delay"]["low"] < 0.6 < cause["parameters"]["delay"]["high"]

@@ -20,16 +20,17 @@ from rovval.diagnose.criteria import ONSET_CLEARER
 from rovval.diagnose.decision.finding import Finding, clearer
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
-from rovval.diagnose.inference.hypothesis_fit import confirm
-from rovval.diagnose.inference.laplace import whole_evidence
-from rovval.diagnose.inference.map_fit import healthy_point
-from rovval.diagnose.inference.prior import Prior
-from rovval.diagnose.inference.problem import pose
-from rovval.diagnose.residuals.normal_equations import Products
+from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
+from rovval.diagnose.inference.laplace import laplace_evidence
+from rovval.diagnose.inference.map_fit import healthy_fit
+from rovval.diagnose.problem.problem import pose
+from rovval.diagnose.residuals.normal_equations import NormalEquations
+from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.search.baseline import compared, healthy_baseline, reduction
 from rovval.diagnose.search.joint import sufficient
 from rovval.diagnose.search.onset import Onset, Stretch, evidence_with_onset, windows_from
-from rovval.diagnose.windows.shooting import Stretches, cut_all
+from rovval.diagnose.windows.multiple_shooting import cut
+from rovval.diagnose.windows.windows import Windows
 from rovval.report.diagnosis.json import document as written
 from rovval.report.diagnosis.sentence import since
 from rovval.storage.archive import open_run
@@ -70,7 +71,7 @@ def test_the_windows_before_deny_what_they_do_not_hold() -> None:
     rng = np.random.default_rng(0)
     x = rng.normal(size=(8, 30, 2))
     r = 0.1 * rng.normal(size=(8, 30)) + np.where(np.arange(8)[:, None] >= 4, 2.0, 0.0) * x[..., 0] + 0.03 * x[..., 1]
-    data = Products(np.einsum("wti,wtj->wij", x, x), np.einsum("wti,wt->wi", x, r), (r**2).sum(axis=1), (0, 1))
+    data = NormalEquations(np.einsum("wti,wtj->wij", x, x), np.einsum("wti,wt->wi", x, r), (r**2).sum(axis=1), (0, 1))
     slop, wide, at = Prior({1: 0.05}), Prior({0: 4.0}), np.array([0])
     late, early = (Stretch.of(data, windows, slop, 1.0) for windows in (slice(4, None), slice(4)))
     evidence, size = late.explained(at, wide, 1.0)
@@ -92,7 +93,7 @@ def test_a_part_that_cannot_be_simulated_leaves_the_answer_of_the_whole(monkeypa
     windows, whole = list[int](), finding(onset=Onset(40.0, 500.0))
     run = own((), 5, 100.0)
 
-    def analysed(some: tuple[Stretches, ...], *_: Any) -> Any:
+    def analysed(some: tuple[Windows, ...], *_: Any) -> Any:
         windows.append(some[0].count)
         if len(windows) > 1:
             raise BadInput("too few windows can be simulated", "")
@@ -101,7 +102,7 @@ def test_a_part_that_cannot_be_simulated_leaves_the_answer_of_the_whole(monkeypa
     monkeypatch.setattr(pipeline, "analyse", analysed)
     monkeypatch.setattr(pipeline, "assemble", lambda found, *_: found)
     assert pipeline.diagnose([run], merlin()) is whole  # type: ignore[comparison-overlap]
-    (part,), _ = cut_all([run], merlin(), "fossen", 10.0)
+    (part,), _ = cut([run], merlin(), "fossen", 10.0)
     assert windows == [part.count, int((part.start * part.run.dt >= 40.0).sum())]
 
 
@@ -127,43 +128,43 @@ def test_what_follows_a_change_has_to_outdo_what_the_whole_log_shows(
 
 def test_a_cause_that_never_begins_is_a_healthy_vehicle_with_its_own_tolerance(logs: tuple[Run, Run]) -> None:
     """A coefficient that the cause takes is as free before it as any other."""
-    parts, _ = cut_all([logs[0]], merlin(), "fossen", 10.0)
+    parts, _ = cut([logs[0]], merlin(), "fossen", 10.0)
     library, _ = hypotheses(parts)
     problem = pose(parts, columns_of(library), 0.05)
     drag = next(h for h in library if h.name == "linear_drag[surge]")
-    always, alone = confirm(problem, problem.origin, drag.slots), healthy_point(problem)
-    assert set(drag.slots) <= set(problem.slop.sd)
-    assert evidence_with_onset(problem, always, 1e6, alone) == pytest.approx(whole_evidence(problem, alone), abs=1.0)
+    always, alone = fit_hypothesis(problem, problem.origin, drag.slots), healthy_fit(problem)
+    assert set(drag.slots) <= set(problem.tolerance.sd)
+    assert evidence_with_onset(problem, always, 1e6, alone) == pytest.approx(laplace_evidence(problem, alone), abs=1.0)
     assert evidence_with_onset(problem, always, 0.0, alone) == pytest.approx(always.evidence, abs=5.0)  # slopes of slop made anew where it settled
 
 
 def test_a_cause_from_some_moment_on_is_weighed_on_every_window(logs: tuple[Run, Run]) -> None:
     """From before the log on it is the cause itself; from after its end on, a healthy vehicle; at its own beginning it is worth more than all through."""
-    parts, _ = cut_all([logs[0]], merlin(), "fossen", 10.0)
+    parts, _ = cut([logs[0]], merlin(), "fossen", 10.0)
     library, _ = hypotheses(parts)
     problem = pose(parts, columns_of(library), 0.05)
     slots = next(h.slots for h in library if h.name == "inflow_loss")
-    always = confirm(problem, problem.origin, slots)
-    alone = healthy_point(problem)
+    always = fit_hypothesis(problem, problem.origin, slots)
+    alone = healthy_fit(problem)
     assert evidence_with_onset(problem, always, 0.0, alone) == pytest.approx(always.evidence, rel=1e-3)
-    late = confirm(pose((windows_from(parts[0], BEGINS),), columns_of(library), 0.05), always.beta, slots)
+    late = fit_hypothesis(pose((windows_from(parts[0], BEGINS),), columns_of(library), 0.05), always.beta, slots)
     assert evidence_with_onset(problem, late, BEGINS, alone) > always.evidence + ONSET_CLEARER
-    assert evidence_with_onset(problem, always, 1e6, alone) == pytest.approx(whole_evidence(problem, alone), abs=1.0)
+    assert evidence_with_onset(problem, always, 1e6, alone) == pytest.approx(laplace_evidence(problem, alone), abs=1.0)
 
 
 def test_what_begins_late_is_asked_what_it_closes_from_there_on() -> None:
     """A fault of a thruster in the last third, in a log whose drag is wrong all through."""
     effects = ("quadratic_drag[surge]:scale=2.0", f"thruster_fault_onset[HFP]:loss=1.0,onset={BEGINS}")
-    parts, _ = cut_all([own(effects, 5, 200.0)], merlin(), "fossen", 10.0)
+    parts, _ = cut([own(effects, 5, 200.0)], merlin(), "fossen", 10.0)
     problem = pose(parts, columns_of(hypotheses(parts)[0]), 0.05)
     fault = next(h for h in hypotheses(parts)[0] if h.name == "thruster_fault_onset[HFP]")
     start = problem.origin.copy()
     start[list(fault.slots)] = [{"loss": 1.0, "onset": BEGINS}[problem.plant.slots[s].parameter.name] for s in fault.slots]
-    fitted, ground = confirm(problem, start, fault.slots), healthy_baseline(problem, healthy_point(problem))
+    fitted, ground = fit_hypothesis(problem, start, fault.slots), healthy_baseline(problem, healthy_fit(problem))
     one = compared(problem, fault, fitted, ground)
-    everywhere, _ = reduction(ground.losses, (fitted.loss, fitted.dynamic_loss))
-    acts = np.concatenate([(part.start + part.steps) * part.run.dt > fitted.beta[list(fault.slots)].max() for part in problem.parts])
-    there, _ = reduction((ground.losses[0][acts], ground.losses[1][acts]), (fitted.loss[acts], fitted.dynamic_loss[acts]))
+    everywhere, _ = reduction(ground.losses, (fitted.loss, fitted.dynamics_loss))
+    acts = np.concatenate([(part.start + part.steps) * part.run.dt > fitted.beta[list(fault.slots)].max() for part in problem.runs])
+    there, _ = reduction((ground.losses[0][acts], ground.losses[1][acts]), (fitted.loss[acts], fitted.dynamics_loss[acts]))
     assert one.gain_since == pytest.approx(there) and there > everywhere + 0.03 and one.gain == pytest.approx(everywhere)
     little = replace(one, gain=0.05, gain_beside=0.0, restores=False)
     assert sufficient(little, alone=True) and not sufficient(replace(little, gain_since=0.0), alone=True)

@@ -8,8 +8,8 @@ from diagnose_case import bare
 
 from rovval import vehicle
 from rovval.core.data import Run
-from rovval.diagnose.windows.closed_loop import discount, gains, loop_gain
-from rovval.diagnose.windows.shooting import cut
+from rovval.diagnose.windows.closed_loop import loop_gain, loop_gains, variance_factors
+from rovval.diagnose.windows.multiple_shooting import cut_run
 from rovval.vehicle.model import allocation
 
 
@@ -32,9 +32,9 @@ def steadied(gain: float) -> Run:
 
 @pytest.mark.parametrize("gain", [0.0, 2.0, 6.0])
 def test_the_gain_of_an_autopilot_is_read_off_the_thrusters(gain: float):
-    part = cut(steadied(gain), vehicle.load("bluerov2_heavy"), "fossen", 10.0)
+    part = cut_run(steadied(gain), vehicle.load("bluerov2_heavy"), "fossen", 10.0)
     assert loop_gain(part, "phi", "p", 3) == pytest.approx(gain, rel=0.05, abs=0.01)
     assert loop_gain(part, "theta", "q", 4) == 0.0
-    found = discount((part,), gains((part,)))
+    found = variance_factors((part,), loop_gains((part,)))
     assert found[part.channels.index("phi")] == pytest.approx((1 + gain) ** 2, rel=0.1)
     assert (np.delete(found, [part.channels.index(c) for c in ("phi", "p")]) == 1.0).all()

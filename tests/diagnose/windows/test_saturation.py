@@ -10,8 +10,8 @@ from diagnose_case import merlin, own
 
 from rovval.core.data import Array, Run
 from rovval.diagnose import diagnose
-from rovval.diagnose.windows.noise import cleaned, grain
-from rovval.diagnose.windows.saturation import at_stop, pings, sensed
+from rovval.diagnose.windows.conditioning import condition, ping_period, saturated
+from rovval.diagnose.windows.noise import clean_channels, quantisation_step
 from rovval.report.diagnosis.json import document as written
 
 
@@ -28,23 +28,23 @@ def held(run: Run, every: int, step: float = 0.0) -> Run:
 
 def test_a_healthy_log_is_left_as_it_is():
     run = own((), 5, 100.0)
-    assert sensed(run) == (run, ())
+    assert condition(run) == (run, ())
     coarse = with_values(run, **{c: np.round(run.get(c), 2) for c in "uvwpqr"})
-    assert sensed(coarse)[1] == (), "written in steps, and at rest now and then, is not held"
+    assert condition(coarse)[1] == (), "written in steps, and at rest now and then, is not held"
 
 
 @pytest.mark.parametrize("noise", [0.0, 1.0])
 def test_a_steady_speed_is_no_stop(noise: float):
     t = np.arange(3000) * 0.1
     speed = 0.8 * np.tanh(5.0 * np.sin(0.05 * t)) + noise * 0.004 * np.random.default_rng(0).normal(size=len(t))
-    assert not at_stop(np.round(speed, 4)).any()
+    assert not saturated(np.round(speed, 4)).any()
 
 
 def test_a_rate_that_clips_is_masked_where_it_does_and_said():
     run = own((), 5, 100.0)
     r, limit = run.get("r"), 0.6 * np.nanmax(run.get("r"))
     clipped = np.minimum(r, limit)
-    mended, (finding,) = sensed(with_values(run, r=clipped))
+    mended, (finding,) = condition(with_values(run, r=clipped))
     assert (np.isnan(mended.get("r")) == (clipped == limit)).all() and np.isnan(mended.get("r")).any()
     assert finding.code == "saturated" and finding.where == "r" and f"{limit:.4g}" in finding.detail
     assert np.array_equal(mended.get("u"), run.get("u"))
@@ -53,7 +53,7 @@ def test_a_rate_that_clips_is_masked_where_it_does_and_said():
 @pytest.mark.parametrize("every", [2, 5, 8])
 def test_held_velocities_are_drawn_between_pings(every: int):
     run = own((), 5, 100.0)
-    mended, (finding,) = sensed(held(run, every))
+    mended, (finding,) = condition(held(run, every))
     at = np.arange(0, len(run) - every, every)
     assert finding.code == "held" and finding.where == "u, v, w"
     assert np.array_equal(mended.get("u")[at], run.get("u")[at]), "a ping is what it was"
@@ -65,7 +65,7 @@ def test_held_velocities_are_drawn_between_pings(every: int):
 def test_commands_that_repeat_and_a_vehicle_at_rest_are_no_pings():
     rng = np.random.default_rng(1)
     resting = np.round(0.004 * rng.normal(size=(2000, 3)), 2)
-    assert pings(resting) == (1, 0)
+    assert ping_period(resting) == (1, 0)
 
 
 @pytest.mark.parametrize(("effects", "verdict"), [((), "no_gap"), (("thruster_degraded[HFP]:loss=0.5",), "explained")])
@@ -83,16 +83,16 @@ def test_a_channel_in_coarse_steps_is_no_better_than_its_rounding(step: float):
     slow = 0.4 * np.sin(0.03 * np.arange(3000) * 0.1 + 0.3)
     coarse = np.round(slow / step) * step
     run = with_values(own((), 5, 300.0), u=coarse)
-    _, _, (noise,), _ = cleaned(run, ("u",))
-    assert grain(coarse) == pytest.approx(step, rel=1e-6)
+    _, _, (noise,), _ = clean_channels(run, ("u",))
+    assert quantisation_step(coarse) == pytest.approx(step, rel=1e-6)
     assert noise == pytest.approx(np.sqrt(np.mean((coarse - slow) ** 2)), rel=0.2)
 
 
 def test_values_that_lie_on_no_grid_have_no_grain():
     rng = np.random.default_rng(0)
-    assert grain(rng.normal(size=2000)) == 0.0, "a fine channel"
-    assert grain(np.zeros(2000)) == 0.0, "one that never moves"
-    assert grain(np.repeat(rng.normal(size=200), 10)) == 0.0, "held, but on no grid"
+    assert quantisation_step(rng.normal(size=2000)) == 0.0, "a fine channel"
+    assert quantisation_step(np.zeros(2000)) == 0.0, "one that never moves"
+    assert quantisation_step(np.repeat(rng.normal(size=200), 10)) == 0.0, "held, but on no grid"
 
 
 def test_a_rate_that_contradicts_its_angle_is_said_and_no_coefficient_is_blamed():

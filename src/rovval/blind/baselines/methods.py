@@ -18,10 +18,11 @@ from rovval.core.data import Run
 from rovval.diagnose.criteria import PRIOR_WIDTH
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
-from rovval.diagnose.inference.prior import slop_prior
-from rovval.diagnose.inference.problem import pose
+from rovval.diagnose.problem.prior import tolerance_prior
+from rovval.diagnose.problem.problem import pose
 from rovval.diagnose.residuals.sensitivities import linearise
-from rovval.diagnose.windows.shooting import VELOCITY_CHANNELS, Stretches, cut
+from rovval.diagnose.windows.multiple_shooting import cut_run
+from rovval.diagnose.windows.windows import VELOCITY_CHANNELS, Windows
 from rovval.vehicle.model import Vehicle
 
 POINTS = 400  # instants of the pointwise methods, evenly over the log
@@ -35,10 +36,10 @@ def baseline_answers(run: Run, vehicle: Vehicle, without: Sequence[str], model: 
 
 
 def _pointwise(run: Run, vehicle: Vehicle, without: Sequence[str], model: str) -> dict[str, str]:
-    points = _thinned(cut(run, vehicle, model, PAIR_S))
+    points = _thinned(cut_run(run, vehicle, model, PAIR_S))
     library, _ = hypotheses((points,), without=without)
     asked = columns_of(library)
-    columns, directions = tuple(sorted({*asked.slots, *slop_prior(points.plant, 0.05).sd})), asked.directions
+    columns, directions = tuple(sorted({*asked.slots, *tolerance_prior(points.plant, 0.05).sd})), asked.displaced
     origin = np.array([slot.parameter.null for slot in points.plant.slots])
     linear = linearise(points, origin, columns, directions)
     motion = [i for i, c in enumerate(points.channels) if c in VELOCITY_CHANNELS]
@@ -64,10 +65,10 @@ def _by_bic(r: Array, S: Array, columns: tuple[int, ...], library: Sequence[Hypo
     return best if scores[best] > REAL else ""
 
 
-def _sparse(points: Stretches, r: Array, motion: list[int], fine: np.ndarray) -> str:
+def _sparse(points: Windows, r: Array, motion: list[int], fine: np.ndarray) -> str:
     run, at = points.run, points.start[fine]
     values = {c: np.nan_to_num(run.get(c)[at]) for c in (*VELOCITY_CHANNELS, "z", "psi")} | {"t": run.t[at]}
-    thrust = points.plant.thrust(points.driven.inputs.speed)[at]
+    thrust = points.plant.thrust(points.actuation.inputs.speed)[at]
     names = tuple(points.plant.vehicle.thrusters)
     axes = dict(zip(VELOCITY_CHANNELS, AXES, strict=True))
     residual = {axes[points.channels[i]]: r[:, j] for j, i in enumerate(motion)}
@@ -75,22 +76,22 @@ def _sparse(points: Stretches, r: Array, motion: list[int], fine: np.ndarray) ->
 
 
 def _ridge(run: Run, vehicle: Vehicle, without: Sequence[str], model: str, window_s: float) -> str:
-    parts = (cut(run, vehicle, model, window_s),)
+    parts = (cut_run(run, vehicle, model, window_s),)
     library, _ = hypotheses(parts, without=without)
     problem = pose(parts, columns_of(library), 0.05)
     sd = {c: s.parameter.typical for c, s in enumerate(problem.plant.slots)}
-    sd |= {c: s / PRIOR_WIDTH for h in library if h.directions for c, s in zip(h.columns, h.sd, strict=True)}
-    A, b = problem.data.A.sum(axis=0), problem.data.b.sum(axis=0)
-    prior = np.array([problem.inflation / sd[c] ** 2 for c in problem.data.columns])
+    sd |= {c: s / PRIOR_WIDTH for h in library if h.displaced for c, s in zip(h.columns, h.sd, strict=True)}
+    A, b = problem.likelihood.total.A.sum(axis=0), problem.likelihood.total.b.sum(axis=0)
+    prior = np.array([problem.design_effect / sd[c] ** 2 for c in problem.likelihood.total.columns])
     step = np.linalg.solve(A + np.diag(prior), b)
     part: dict[str, float] = {}
     for h in library:
-        i = problem.data.place(h.columns)
+        i = problem.likelihood.total.place(h.columns)
         part[h.name] = part.get(h.name, 0.0) + float(step[i] @ A[np.ix_(i, i)] @ step[i])
     return max(part, key=lambda k: part[k])
 
 
-def _thinned(points: Stretches) -> Stretches:
+def _thinned(points: Windows) -> Windows:
     every = max(1, points.count // POINTS)
     pick = slice(None, None, every)
     return replace(

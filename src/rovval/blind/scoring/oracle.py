@@ -18,14 +18,14 @@ from rovval.core.data import Run
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of
 from rovval.diagnose.hypotheses.library import hypotheses, initialised
 from rovval.diagnose.hypotheses.snag import placed
-from rovval.diagnose.inference.hypothesis_fit import confirm
-from rovval.diagnose.inference.laplace import Point
-from rovval.diagnose.inference.map_fit import healthy_point
-from rovval.diagnose.inference.problem import Problem, at, gap_at, pose
-from rovval.diagnose.residuals.normal_equations import Products
+from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
+from rovval.diagnose.inference.laplace import Posterior
+from rovval.diagnose.inference.map_fit import healthy_fit
+from rovval.diagnose.problem.problem import Problem, equations_at, gap_equations_at, pose
+from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.search.candidates import start_of
 from rovval.diagnose.search.onset import windows_from
-from rovval.diagnose.windows.shooting import cut
+from rovval.diagnose.windows.multiple_shooting import cut_run
 from rovval.vehicle.model import Vehicle
 
 Wanted = Sequence[Sequence[Hypothesis]]  # of each true effect its starting points
@@ -49,7 +49,7 @@ def oracle(
             return {}
         problem, healthy, wanted, beta = found
         left = _left(problem, wanted, beta)
-        shares = 1.0 - left / np.array([problem.gap.c.sum(), problem.gap_data.c.sum()])
+        shares = 1.0 - left / np.array([problem.gap.dynamics.c.sum(), problem.gap.total.c.sum()])
         alone = [_left(problem, others, _fitted(problem, healthy, others, onsets)) for others in _others(wanted)]
     except (RovvalError, ArithmeticError, ValueError):
         return {}
@@ -74,33 +74,33 @@ def _fit(
     model: str = "fossen",
     window_s: float = 10.0,
     calibration_slop: float = 0.05,
-) -> tuple[Problem, Point, Wanted, Array] | None:
+) -> tuple[Problem, Posterior, Wanted, Array] | None:
     """The problem, the healthy vehicle, the hypotheses that were free, and the fitted point."""
-    part = cut(run, vehicle, model, window_s)
+    part = cut_run(run, vehicle, model, window_s)
     begins = [onsets[name] for name in true if name in onsets and not effects.load(name.partition("[")[0]).begins]  # no onset of their own
     part = windows_from(part, max(begins)) if begins else part
     library, _ = hypotheses((part,))
     if not true or not set(true) <= {h.name for h in library}:
         return None
     problem = pose((part,), columns_of(library), calibration_slop)
-    healthy = healthy_point(problem)
+    healthy = healthy_fit(problem)
     wanted = [[h for h in initialised(problem, library, healthy) if h.name == name] for name in true]
     return problem, healthy, wanted, _fitted(problem, healthy, wanted, onsets)
 
 
-def _fitted(problem: Problem, healthy: Point, wanted: Wanted, onsets: Mapping[str, float]) -> Array:
+def _fitted(problem: Problem, healthy: Posterior, wanted: Wanted, onsets: Mapping[str, float]) -> Array:
     """The best of the fits from several starting points, kinematic checks counted."""
     free = [h for starts in wanted for h in starts]
-    columns = tuple(dict.fromkeys(c for h in free if not h.directions for c in h.columns))
-    data = at(problem, healthy.beta, columns, [d for h in free for d in h.directions])
+    columns = tuple(dict.fromkeys(c for h in free if not h.displaced for c in h.columns))
+    data = equations_at(problem, healthy.beta, columns, [d for h in free for d in h.displaced])
     ranks = range(min(STARTS, max(map(len, wanted))))
-    tried = [confirm(problem, _from(problem, healthy, data, wanted, rank, onsets), _slots(wanted)).beta for rank in ranks]
+    tried = [fit_hypothesis(problem, _from(problem, healthy, data, wanted, rank, onsets), _slots(wanted)).beta for rank in ranks]
     return min(tried, key=lambda beta: _left(problem, wanted, beta)[1])
 
 
 def _left(problem: Problem, wanted: Wanted, beta: Array) -> Array:
     """Losses (2,) of the dynamics, and of those with the kinematic checks."""
-    return np.array([float(products.c.sum()) for products in gap_at(problem, beta, _slots(wanted))])
+    return np.array([float(products.c.sum()) for products in gap_equations_at(problem, beta, _slots(wanted))])
 
 
 def _others(wanted: Wanted) -> list[Wanted]:
@@ -112,7 +112,7 @@ def _slots(wanted: Wanted) -> tuple[int, ...]:
     return tuple(dict.fromkeys(s for starts in wanted for h in starts for s in h.slots))
 
 
-def _from(problem: Problem, healthy: Point, data: Products, wanted: Wanted, rank: int, onsets: Mapping[str, float]) -> Array:
+def _from(problem: Problem, healthy: Posterior, data: NormalEquations, wanted: Wanted, rank: int, onsets: Mapping[str, float]) -> Array:
     """Each hypothesis's start of that rank by linear gain (its last, where it has fewer), where slop settles by itself; the true onset where
     there is one."""
     beta = healthy.beta.copy()
@@ -124,13 +124,13 @@ def _from(problem: Problem, healthy: Point, data: Products, wanted: Wanted, rank
         moves[data.place(best.columns)] = _step(problem, data, best)[0]
         beta = start_of(problem, data, best, moves, beta, best.slots)
         if best.name in onsets:
-            place = placed(problem.parts, problem.plant, best.slots, onsets[best.name])
+            place = placed(problem.runs, problem.plant, best.slots, onsets[best.name])
             beta[list(place)] = list(place.values())
     return beta
 
 
-def _step(problem: Problem, data: Products, h: Hypothesis) -> tuple[Array, float]:
+def _step(problem: Problem, data: NormalEquations, h: Hypothesis) -> tuple[Array, float]:
     i = data.place(h.columns)
     A, b = data.A.sum(axis=0)[np.ix_(i, i)], data.b.sum(axis=0)[i]
-    step = np.linalg.solve(A + np.diag(problem.inflation / np.array(h.sd) ** 2), b)
+    step = np.linalg.solve(A + np.diag(problem.design_effect / np.array(h.sd) ** 2), b)
     return step, float(b @ step)

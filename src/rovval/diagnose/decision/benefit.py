@@ -29,11 +29,11 @@ from rovval.diagnose.criteria import (
     SURE_REDUCTION,
     UNEXPLAINED_NOTHING,
 )  # fmt: skip
-from rovval.diagnose.inference.gap import axis_weight
-from rovval.diagnose.inference.hypothesis_fit import Confirmed
-from rovval.diagnose.inference.laplace import Point
-from rovval.diagnose.inference.problem import Problem, corrected_residuals
+from rovval.diagnose.inference.gap import weighted_errors
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
+from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.inference.shrinkage import shrinkage
+from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.search.baseline import healthy_without, reduction_beside
 
 
@@ -71,22 +71,22 @@ class Benefit:
         return max(worse.values()) > max(HARMFUL * (before - after), ROUNDING_SHARE * before) or any(worse[axis] > OWN_AXIS_WORSE * before for axis in own)
 
 
-def benefit_as_filed(problem: Problem, fit: Confirmed, residuals: list[Array]) -> Benefit:
+def benefit_as_filed(problem: Problem, fit: HypothesisFit, residuals: list[Array]) -> Benefit:
     """With every other coefficient as the file has it; ``residuals`` are the nominal vehicle's."""
-    before, after = axis_weight(problem, residuals), axis_weight(problem, corrected_residuals(problem, fit.beta))
+    before, after = weighted_errors(problem, residuals), weighted_errors(problem, corrected_residuals(problem, fit.beta))
     shrunk = shrinkage(problem, fit, residuals, 0)
     return Benefit(before, after, shrunk["low"] > 0, followed(problem, before, after))
 
 
-def benefit_beside(problem: Problem, fit: Confirmed, healthy: Point, residuals: list[Array]) -> Benefit:
+def benefit_beside(problem: Problem, fit: HypothesisFit, healthy: Posterior, residuals: list[Array]) -> Benefit:
     """Beside coefficients within tolerance, which by themselves are fitted at ``healthy``.
 
     It is sure where the causes reduce what those that are not their own leave of the gap by a share that counts, and by some of it surely, or where
     they bring a coefficient back towards its tolerance by much.
     """
-    before, after = axis_weight(problem, residuals), axis_weight(problem, corrected_residuals(problem, fit.point.beta))
+    before, after = weighted_errors(problem, residuals), weighted_errors(problem, corrected_residuals(problem, fit.posterior.beta))
     value, low, _ = reduction_beside(problem, fit, healthy_without(problem, healthy, fit.slots), 0)
-    sure = (value > COUNTED_REDUCTION and low > SURE_REDUCTION) or healthy.strain() - fit.point.strain() > RELIEVED_DEPARTURE
+    sure = (value > COUNTED_REDUCTION and low > SURE_REDUCTION) or healthy.largest_departure() - fit.posterior.largest_departure() > RELIEVED_DEPARTURE
     return Benefit(before, after, sure, followed(problem, before, after))
 
 
@@ -98,8 +98,8 @@ def acting_axes(reduced: Mapping[str, float], share: float = ACTING_SHARE) -> tu
 def followed(problem: Problem, before: Mapping[str, float], after: Mapping[str, float]) -> bool:
     """Whether on the axes where the causes reduce much the simulator with them errs well less than the vehicle moves, or hardly errs any more.
     Where it does neither, it replays an autopilot's answers to disturbances that nobody logged, which says nothing about the vehicle."""
-    moved = [np.where(part.ok, part.y - (part.y * part.ok).sum((0, 1)) / np.maximum(part.ok.sum((0, 1)), 1), 0.0) for part in problem.parts]
-    motion = axis_weight(problem, moved)
+    moved = [np.where(part.ok, part.y - (part.y * part.ok).sum((0, 1)) / np.maximum(part.ok.sum((0, 1)), 1), 0.0) for part in problem.runs]
+    motion = weighted_errors(problem, moved)
     reduced = _reduced(before, after)
     asked = {max(reduced, key=lambda axis: reduced[axis]), *acting_axes(reduced, FOLLOWED_AXES)}
     return all(after[axis] <= max(FOLLOWED_ANYWAY * before[axis], FOLLOWED_MOTION * motion[axis]) for axis in asked)
@@ -114,22 +114,22 @@ def beneficial(ways: Sequence[Benefit], seen: bool, own: Sequence[str] = ()) -> 
     return any(not way.harms(own) and (seen or (way.sure and way.followed)) for way in ways)
 
 
-def parity_supports(problem: Problem, fit: Confirmed) -> bool:
+def parity_supports(problem: Problem, fit: HypothesisFit) -> bool:
     """Whether the parity residuals see faults of sensors: there are none to ask, or they fall with evidence."""
     return not _parity_losses(problem).any() or float(_parity_evidence(problem, fit)) > LEAST_EVIDENCE
 
 
-def parity_isolates(problem: Problem, fit: Confirmed) -> bool:
+def parity_isolates(problem: Problem, fit: HypothesisFit) -> bool:
     """Whether the parity residuals by themselves isolate faults of sensors: no error of the dynamics leaves a trace in them."""
     evidence = _parity_evidence(problem, fit)
-    return evidence * problem.inflation > PARITY_ISOLATES_SHARE * float(_parity_losses(problem).sum()) and evidence > PARITY_ISOLATES_EVIDENCE
+    return evidence * problem.design_effect > PARITY_ISOLATES_SHARE * float(_parity_losses(problem).sum()) and evidence > PARITY_ISOLATES_EVIDENCE
 
 
-def _parity_evidence(problem: Problem, fit: Confirmed) -> float:
+def _parity_evidence(problem: Problem, fit: HypothesisFit) -> float:
     """By how much the weighted squared parity residuals fall on held-out windows: twice a log-likelihood ratio, divided by the design effect."""
-    return float((_parity_losses(problem) - (fit.loss - fit.dynamic_loss)).sum()) / problem.inflation
+    return float((_parity_losses(problem) - (fit.loss - fit.dynamics_loss)).sum()) / problem.design_effect
 
 
 def _parity_losses(problem: Problem) -> Array:
     """Weighted squared parity residuals (m,) of each window at the nominal vehicle."""
-    return np.asarray(problem.gap_data.c - problem.gap.c)
+    return np.asarray(problem.gap.total.c - problem.gap.dynamics.c)

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.diagnose.criteria import INCONSISTENT_DRIFT, INCONSISTENT_SHARE
-from rovval.diagnose.inference.problem import Problem
-from rovval.diagnose.residuals.parity import Parity
-from rovval.diagnose.windows.shooting import Stretches
+from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.residuals.parity import ParityResiduals
+from rovval.diagnose.windows.windows import Windows
 
 RATES = {"roll": ("phi", "p"), "pitch": ("theta", "q"), "yaw": ("psi", "r")}
 
@@ -35,24 +35,24 @@ def inconsistencies(problem: Problem, weight: Mapping[str, float]) -> list[Incon
     ``weight`` by axis, in the weighting of the gap."""
     found = list[Inconsistency]()
     for axis, (angle, rate) in RATES.items():
-        off = sum(_rate_error(problem, part, check, angle, rate) for part, check in zip(problem.parts, problem.parity, strict=True))
+        off = sum(_rate_error(problem, part, check, angle, rate) for part, check in zip(problem.runs, problem.parity, strict=True))
         if axis in weight and off > INCONSISTENT_SHARE * weight[axis]:
-            for part, check in zip(problem.parts, problem.parity, strict=True):
+            for part, check in zip(problem.runs, problem.parity, strict=True):
                 if (drift := _drift(check, angle)) > INCONSISTENT_DRIFT:
                     found.append(Inconsistency(part.run.id, angle, rate, drift))
     return found
 
 
-def _drift(check: Parity, angle: str) -> float:
+def _drift(check: ParityResiduals, angle: str) -> float:
     """What all faults of sensors leave of the drift, rms in rad; 0 where the log does not check it."""
     return check.sigma[check.used.index(angle)] if angle in check.used else 0.0
 
 
-def _rate_error(problem: Problem, windows: Stretches, check: Parity, angle: str, rate: str) -> float:
+def _rate_error(problem: Problem, windows: Windows, check: ParityResiduals, angle: str, rate: str) -> float:
     """Weighted squared error of a rate that is off by as much: a steady one drifts, the mean taken out, by the square root of 12 less than to the
     window's end."""
     if rate not in windows.channels:
         return 0.0
     at = windows.channels.index(rate)
     off = np.sqrt(12.0) * _drift(check, angle) / (windows.steps * windows.run.dt)
-    return float(off**2 * np.where(windows.ok[..., at], 1.0 / problem.variance[:, at], 0.0).sum())
+    return float(off**2 * np.where(windows.ok[..., at], 1.0 / problem.gap.variance[:, at], 0.0).sum())

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from rovval.core.data import Array
 from rovval.diagnose.criteria import ONSET_CLEARER, ONSET_SEARCHED
 from rovval.diagnose.decision.verdict import Decision
-from rovval.diagnose.inference.laplace import whole_evidence
-from rovval.diagnose.inference.problem import Problem
+from rovval.diagnose.inference.laplace import laplace_evidence
+from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.search.onset import Onset, evidence_with_onset
 
@@ -58,5 +58,5 @@ def clearer(late: Finding, whole: Finding, onset: Onset) -> bool:
     if not late.decision.causes or not late.decision.fit or late.is_event:
         return False
     healthy = whole.selection.healthy
-    beyond = evidence_with_onset(whole.problem, late.decision.fit, onset.time, healthy) - whole_evidence(whole.problem, healthy)
+    beyond = evidence_with_onset(whole.problem, late.decision.fit, onset.time, healthy) - laplace_evidence(whole.problem, healthy)
     return beyond > whole.best_evidence + ONSET_CLEARER

@@ -41,10 +41,10 @@ from rovval.diagnose.decision.benefit import (
 )
 from rovval.diagnose.decision.consistency import inconsistencies
 from rovval.diagnose.decision.constancy import drifting, variation
-from rovval.diagnose.inference.hypothesis_fit import Confirmed
-from rovval.diagnose.inference.laplace import Point, whole_evidence
-from rovval.diagnose.inference.prior import STRAINED, WITHIN
-from rovval.diagnose.inference.problem import Problem
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
+from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
+from rovval.diagnose.problem.prior import STRAINED, WITHIN
+from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.search.baseline import SelectedCause
 from rovval.diagnose.search.confusion import form_share
 from rovval.diagnose.search.discrepancy import GenericForces, generic_forces
@@ -72,7 +72,7 @@ class Case:
 
     problem: Problem
     causes: tuple[SelectedCause, ...]
-    fit: Confirmed
+    fit: HypothesisFit
     evidence: float
     instead_forces: GenericForces
     beside_forces: GenericForces
@@ -87,12 +87,12 @@ class Case:
     @property
     def many(self) -> bool:
         """Whether there are windows enough to weigh evidence."""
-        return self.problem.blocks >= FEW_WINDOWS
+        return self.problem.window_count >= FEW_WINDOWS
 
     @property
     def departure(self) -> float:
         """Largest standardised departure of a coefficient beside the causes, in standard deviations of its prior."""
-        return self.fit.point.strain()
+        return self.fit.posterior.largest_departure()
 
     @property
     def best_evidence(self) -> float:
@@ -151,8 +151,8 @@ def of_an_inconsistent_log(case: Case) -> bool:
 
 def incomplete(case: Case) -> bool:
     """Would a generic force still gain, or do coefficients leave their tolerance, by more than model-form error may cost?"""
-    beyond = _prior_cost(case.problem, case.fit.point, case.axes)
-    return max(case.generic_beside, beyond) > max(form_share(case.problem.blocks) * case.evidence, INCOMPLETE_EVIDENCE)
+    beyond = _prior_cost(case.problem, case.fit.posterior, case.axes)
+    return max(case.generic_beside, beyond) > max(form_share(case.problem.window_count) * case.evidence, INCOMPLETE_EVIDENCE)
 
 
 REASONS = (generic_better, without_benefit, straining, varying, single_force_left, three_of_a_kind, of_an_inconsistent_log, incomplete)
@@ -187,7 +187,9 @@ class Assessment:
     forces: GenericForces
 
 
-def assess(problem: Problem, causes: tuple[SelectedCause, ...], fit: Confirmed, healthy: Point, general: GenericForces, residuals: list[Array]) -> Assessment:
+def assess(
+    problem: Problem, causes: tuple[SelectedCause, ...], fit: HypothesisFit, healthy: Posterior, general: GenericForces, residuals: list[Array]
+) -> Assessment:
     """Weigh what speaks for and against causes.
 
     Args:
@@ -214,21 +216,21 @@ def assess(problem: Problem, causes: tuple[SelectedCause, ...], fit: Confirmed, 
     )
 
 
-def _case(problem: Problem, causes: tuple[SelectedCause, ...], fit: Confirmed, healthy: Point, general: GenericForces, residuals: list[Array]) -> Case:
+def _case(problem: Problem, causes: tuple[SelectedCause, ...], fit: HypothesisFit, healthy: Posterior, general: GenericForces, residuals: list[Array]) -> Case:
     """What speaks for the causes and against them."""
-    evidence = whole_evidence(problem, fit.point) - whole_evidence(problem, healthy)
+    evidence = laplace_evidence(problem, fit.posterior) - laplace_evidence(problem, healthy)
     filed = benefit_as_filed(problem, fit, residuals)
-    beside = [benefit_beside(problem, fit, healthy, residuals)] if fit.point.strain() <= STRAINED else []
+    beside = [benefit_beside(problem, fit, healthy, residuals)] if fit.posterior.largest_departure() <= STRAINED else []
     sensors = all(of_sensor(n) for n in causes) and parity_supports(problem, fit)
-    varies = variation(problem, fit, causes) if problem.blocks >= FEW_WINDOWS else {}
-    rest = generic_forces(problem, fit.point)
-    held_out = problem.blocks >= FEW_WINDOWS and rest.held_out_gain(problem.folds) > BY_CHANCE
+    varies = variation(problem, fit, causes) if problem.window_count >= FEW_WINDOWS else {}
+    rest = generic_forces(problem, fit.posterior)
+    held_out = problem.window_count >= FEW_WINDOWS and rest.held_out_gain(problem.folds) > BY_CHANCE
     axes = acting_axes(filed.reduced)
     generic_instead, generic_beside = general.evidence(axes), rest.evidence(axes) if held_out else 0.0
     return Case(problem, causes, fit, evidence, general, rest, held_out, axes, generic_instead, generic_beside, (filed, *beside), varies, sensors)
 
 
-def _inconstant(problem: Problem, causes: tuple[SelectedCause, ...], fit: Confirmed, varies: Mapping[str, float]) -> tuple[str, ...]:
+def _inconstant(problem: Problem, causes: tuple[SelectedCause, ...], fit: HypothesisFit, varies: Mapping[str, float]) -> tuple[str, ...]:
     """Causes whose value varies more surely than a share of their own evidence, the worst first, and those that drift."""
     own = {n.hypothesis.name: max(VARYING_EVIDENCE * n.evidence, LEAST_EVIDENCE) for n in causes}
     worst = sorted((name for name, most in varies.items() if most > own[name]), key=lambda name: own[name] / varies[name])
@@ -247,12 +249,12 @@ def _given_up(cause: SelectedCause) -> float:
     return max(evidence.values()) - evidence[cause.hypothesis.name] if cause.hypothesis.name in evidence else 0.0
 
 
-def _prior_cost(problem: Problem, point: Point, axes: tuple[str, ...]) -> float:
+def _prior_cost(problem: Problem, point: Posterior, axes: tuple[str, ...]) -> float:
     """What coefficients beyond tolerance cost, in twice the log of their prior density, each as far as it moves the motion on ``axes``."""
     moves = np.zeros((2, len(point.columns)))
-    for part, one in zip(problem.parts, point.linear, strict=True):
-        by_channel = np.einsum("wtck,tc->ck", np.where(part.ok[..., None], one.S, 0.0) ** 2, 1.0 / problem.white)
+    for part, one in zip(problem.runs, point.linear, strict=True):
+        by_channel = np.einsum("wtck,tc->ck", np.where(part.ok[..., None], one.S, 0.0) ** 2, 1.0 / problem.likelihood.variance)
         here = np.array([axis in axes for axis in part.axes], dtype=bool)
         moves += by_channel[here].sum(axis=0), by_channel.sum(axis=0)
     share = moves[0] / np.maximum(moves[1], 1e-300)
-    return float((np.maximum(point.sigmas() ** 2 - WITHIN**2, 0.0) * share[point.own :]).sum())
+    return float((np.maximum(point.standardised_departures() ** 2 - WITHIN**2, 0.0) * share[point.effect_count :]).sum())

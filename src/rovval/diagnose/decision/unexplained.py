@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from rovval.core.channels import AXES
 from rovval.core.data import Array
 from rovval.diagnose.criteria import ACTING_FORCE, MOST_ACTING, MOST_VARYING, OPEN_GAP, VARYING_FORCE
-from rovval.diagnose.inference.gap import axis_weight, noise_loss
-from rovval.diagnose.inference.laplace import Point
-from rovval.diagnose.inference.prior import STRAINED
-from rovval.diagnose.inference.problem import Problem
+from rovval.diagnose.inference.gap import noise_floor_loss, weighted_errors
+from rovval.diagnose.inference.laplace import Posterior
+from rovval.diagnose.problem.prior import STRAINED
+from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.search.discrepancy import GenericForces
-from rovval.diagnose.windows.shooting import axis_channels
+from rovval.diagnose.windows.windows import axis_channels
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,19 +58,20 @@ class Unexplained:
     accounted: float | None = None
 
 
-def accounted(problem: Problem, healthy: Point) -> Accounted:
+def accounted(problem: Problem, healthy: Posterior) -> Accounted:
     """What of the gap needs no cause; ``healthy`` is the vehicle with its coefficients fitted within their tolerances."""
-    noise = min(float(noise_loss(problem).sum()) / float(problem.gap.c.sum()), 1.0)
-    return Accounted(noise, 1.0 - float(healthy.left().sum()) / float(problem.dynamic.c.sum()), healthy.strain())
+    noise = min(float(noise_floor_loss(problem).sum()) / float(problem.gap.dynamics.c.sum()), 1.0)
+    return Accounted(noise, 1.0 - float(healthy.dynamics_loss().sum()) / float(problem.likelihood.dynamics.c.sum()), healthy.largest_departure())
 
 
-def unexplained(problem: Problem, forces: GenericForces, point: Point, inconstant: Sequence[str] = ()) -> Unexplained:
+def unexplained(problem: Problem, forces: GenericForces, point: Posterior, inconstant: Sequence[str] = ()) -> Unexplained:
     """On which axes generic forces would close most of what is left at ``point``, and what that resembles."""
     by_axis = sorted(((axis, forces.evidence([axis])) for axis in AXES), key=lambda item: -item[1])
     axes = [axis for axis, gain in by_axis if gain > ACTING_FORCE * by_axis[0][1]][:MOST_ACTING] or [by_axis[0][0]]
     by_feature = sorted(((f, forces.evidence([axes[0]], f)) for f in forces.features), key=lambda item: -item[1])
     depends = [f for f, gain in by_feature if gain > VARYING_FORCE * by_feature[0][1] and gain > 0][:MOST_VARYING]
-    beyond = [(problem.plant.slots[c].key, float(z)) for c, z in zip(point.columns[point.own :], point.sigmas(), strict=True) if abs(z) > STRAINED]
+    departures = zip(point.columns[point.effect_count :], point.standardised_departures(), strict=True)
+    beyond = [(problem.plant.slots[c].key, float(z)) for c, z in departures if abs(z) > STRAINED]
     strained = max(beyond, key=lambda one: abs(one[1]), default=None)
     return Unexplained(tuple(axes), tuple(depends), forces.held_out_gain(problem.folds), strained, tuple(inconstant))
 
@@ -80,5 +81,5 @@ def open_gap(problem: Problem, known: Accounted, residuals: list[Array]) -> Unex
     where they account for enough. ``residuals`` are the nominal vehicle's residuals."""
     if 1.0 - known.share <= OPEN_GAP:
         return None
-    weight = axis_weight(problem, residuals)
-    return Unexplained((max(axis_channels(problem.parts[0]), key=lambda axis: weight[axis]),), accounted=known.share)
+    weight = weighted_errors(problem, residuals)
+    return Unexplained((max(axis_channels(problem.runs[0]), key=lambda axis: weight[axis]),), accounted=known.share)

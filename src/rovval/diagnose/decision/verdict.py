@@ -22,9 +22,9 @@ from rovval.diagnose.criteria import (
 )
 from rovval.diagnose.decision.rejection import Assessment, assess, of_sensor
 from rovval.diagnose.decision.unexplained import Accounted, Unexplained, accounted, open_gap, unexplained
-from rovval.diagnose.inference.hypothesis_fit import Confirmed
-from rovval.diagnose.inference.prior import STRAINED
-from rovval.diagnose.inference.problem import Problem
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
+from rovval.diagnose.problem.prior import STRAINED
+from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.search.baseline import SelectedCause
 from rovval.diagnose.search.discrepancy import GenericForces, generic_forces, nominal_forces
 from rovval.diagnose.search.forward import Selection
@@ -53,7 +53,7 @@ class Decision:
 
     verdict: Verdict
     causes: tuple[SelectedCause, ...]
-    fit: Confirmed | None
+    fit: HypothesisFit | None
     groups: Mapping[str, tuple[tuple[str, float], ...]]
     probability: Mapping[str, float]
     evidence: float
@@ -83,11 +83,11 @@ def _assessed(problem: Problem, selection: Selection, general: GenericForces, re
     return assess(problem, selection.causes, selection.fit, selection.healthy, general, residuals) if selection.fit else None
 
 
-def _isolated(problem: Problem, selection: Selection, fit: Confirmed, assessed: Assessment) -> Decision:
+def _isolated(problem: Problem, selection: Selection, fit: HypothesisFit, assessed: Assessment) -> Decision:
     """The causes are named."""
     groups = {n.hypothesis.name: n.group for n in selection.causes}
     gone = [name for name in assessed.inconstant if name not in groups]
-    rest = unexplained(problem, assessed.forces, fit.point, gone) if assessed.remainder else None
+    rest = unexplained(problem, assessed.forces, fit.posterior, gone) if assessed.remainder else None
     surest = max(selection.causes, key=lambda n: n.evidence)
     probability = {n.hypothesis.name: _probability(n) * (1.0 if n is surest or of_sensor(n) else FURTHER_CAUSE_BELIEF) for n in selection.causes}
     verdict: Verdict = "partly_explained" if assessed.remainder else "explained"
@@ -99,7 +99,7 @@ def _not_isolated(problem: Problem, selection: Selection, assessed: Assessment |
     """An unknown cause where something is surely at work (a force, a coefficient far beyond tolerance, an effect that nearly fits) or where the gap stays
     open; else no gap."""
     evidence, followed, inconstant = (assessed.evidence, assessed.followed, assessed.inconstant) if assessed else (0.0, True, ())
-    anything, departure = general.evidence(), selection.healthy.strain()
+    anything, departure = general.evidence(), selection.healthy.largest_departure()
     first = selection.steps[0] if selection.steps else ()
     tried = max((worth if gain > NEAR_GAIN else worth / NEAR_LITTLE for _, worth, gain in first), default=0.0)
     nearly = followed and (max(evidence, tried) > GENERIC_EVIDENCE or bool(inconstant))

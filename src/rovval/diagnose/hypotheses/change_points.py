@@ -13,14 +13,14 @@ import numpy as np
 
 from rovval.core.data import Array
 from rovval.diagnose.criteria import CHANGE_FALSE_ALARM, CHANGE_LEAST_TESTED, CHANGE_LEAST_WINDOWS, GAP_CHANGE_SPLITS
-from rovval.diagnose.inference.problem import Problem
-from rovval.diagnose.windows.shooting import Stretches
+from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.windows.windows import Windows
 
 PERMUTATIONS = 200  # resolve a false-alarm rate of 0.01
 OUTLIER = 6.0  # robust standard deviations at which a window's score is clipped: one event is no change of level
 
 
-def change_points(windows: Stretches, score: Array, seed: int, level: float = CHANGE_FALSE_ALARM) -> list[float]:
+def change_points(windows: Windows, score: Array, seed: int, level: float = CHANGE_FALSE_ALARM) -> list[float]:
     """Times (s since the run's start), in order, at which the residual force changes level.
 
     Args:
@@ -54,8 +54,8 @@ def gap_change_points(problem: Problem) -> tuple[float, ...]:
     It is the logarithm of the nominal vehicle's gap that is split: coefficients that are free to fit the part after a change would spread it
     over the whole log.
     """
-    windows = problem.parts[0]
-    found = largest_changes(np.log(np.maximum(problem.gap.c[: windows.count], 1e-12)), GAP_CHANGE_SPLITS)
+    windows = problem.runs[0]
+    found = largest_changes(np.log(np.maximum(problem.gap.dynamics.c[: windows.count], 1e-12)), GAP_CHANGE_SPLITS)
     return tuple(float(windows.start[i] * windows.run.dt) for _, i in sorted(found, reverse=True))
 
 

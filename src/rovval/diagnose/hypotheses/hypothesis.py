@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rovval.diagnose.criteria import PRIOR_WIDTH
-from rovval.diagnose.inference.prior import Prior
-from rovval.diagnose.inference.problem import Problem
-from rovval.diagnose.residuals.perturbations import Columns, Direction
+from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.residuals.perturbations import Columns, DisplacedColumn
+from rovval.diagnose.residuals.ridge import Prior
 from rovval.effects import Effect, load
 from rovval.plant import Plant
 
@@ -37,7 +37,7 @@ class Hypothesis:
     columns: tuple[int, ...]
     sd: tuple[float, ...]
     at: tuple[tuple[int, float], ...] = ()
-    directions: tuple[Direction, ...] = ()
+    displaced: tuple[DisplacedColumn, ...] = ()
     evident: bool = False
 
     @property
@@ -58,13 +58,13 @@ class Hypothesis:
     @property
     def whole(self) -> bool:
         """Whether it begins with its full size, well away from no effect, and not with a slope."""
-        return any(d.slot == WHOLE for d in self.directions)
+        return any(d.slot == WHOLE for d in self.displaced)
 
 
 def columns_of(library: Sequence[Hypothesis]) -> Columns:
     """What a linearisation has to hold for every hypothesis of a library."""
-    plain = {c for h in library if not h.directions for c in h.columns}
-    return Columns(tuple(sorted(plain)), tuple(d for h in library for d in h.directions))
+    plain = {c for h in library if not h.displaced for c in h.columns}
+    return Columns(tuple(sorted(plain)), tuple(d for h in library for d in h.displaced))
 
 
 def from_nothing(plant: Plant, name: str, label: str, slots: tuple[int, ...]) -> Hypothesis:
@@ -75,7 +75,7 @@ def from_nothing(plant: Plant, name: str, label: str, slots: tuple[int, ...]) ->
 def displaced(plant: Plant, label: str, slots: tuple[int, ...], free: tuple[int, ...], at: tuple[tuple[int, float], ...], next_id: int) -> Hypothesis:
     """A hypothesis that begins where ``at`` sets some of its ``slots``, with the others that are ``free``, or with `WHOLE`; its columns are numbered
     from ``next_id`` on."""
-    directions = tuple(Direction(next_id + i, at, slot) for i, slot in enumerate(free))
+    directions = tuple(DisplacedColumn(next_id + i, at, slot) for i, slot in enumerate(free))
     sd = tuple(PRIOR_WIDTH * (plant.slots[s].parameter.typical if s != WHOLE else WHOLE_SIZE) for s in free)
     return Hypothesis(label.partition("@")[0], label, slots, tuple(d.id for d in directions), sd, at, directions)
 
@@ -87,5 +87,5 @@ def wide_prior(problem: Problem, slots: Sequence[int]) -> Prior:
 
 def prior_of(problem: Problem, h: Hypothesis) -> Prior:
     """The wide prior of a hypothesis: of its columns, and of those of its parameters that have a tolerance, wherever it begins."""
-    within = wide_prior(problem, [s for s in h.slots if s in problem.slop.sd])
+    within = wide_prior(problem, [s for s in h.slots if s in problem.tolerance.sd])
     return Prior(dict(within.sd) | dict(zip(h.columns, h.sd, strict=True)))

@@ -24,7 +24,7 @@ from rovval.diagnose.criteria import (
 )
 from rovval.diagnose.hypotheses.hypothesis import WHOLE, Hypothesis, displaced, from_nothing
 from rovval.diagnose.hypotheses.snag import held_from, mid_log_spring
-from rovval.diagnose.windows.shooting import Stretches
+from rovval.diagnose.windows.windows import Windows
 from rovval.plant import Plant
 
 
@@ -58,7 +58,7 @@ class Target:
         return self.plant.slots[slot].parameter
 
 
-def initial_points(target: Target, windows: Sequence[Stretches], hints: Hints, next_id: int) -> list[Hypothesis]:
+def initial_points(target: Target, windows: Sequence[Windows], hints: Hints, next_id: int) -> list[Hypothesis]:
     """One hypothesis, or one for each initial point of the parameters that a linearisation at no effect cannot see; their columns are numbered from
     ``next_id`` on."""
     plant, name, effect, slots = target.plant, target.name, target.effect, target.slots
@@ -122,13 +122,13 @@ def _levers(target: Target, next_id: int) -> list[Hypothesis]:
     return [displaced(target.plant, f"{target.name}@lever{i}", target.slots, free, at, next_id + i * len(free)) for i, at in enumerate(ends)]
 
 
-def _depths(windows: Sequence[Stretches]) -> tuple[float, ...]:
+def _depths(windows: Sequence[Windows]) -> tuple[float, ...]:
     """Depths (m, down) high, in the middle and low in what the logs went through: a datum far outside makes a change with depth look like a constant."""
     z = np.concatenate([part.eta0[:, 2] for part in windows])
     return tuple(dict.fromkeys(float(d) for d in np.quantile(z, DATUM_QUANTILES)))
 
 
-def _onsets(windows: Sequence[Stretches], changes_s: Sequence[float]) -> tuple[float, ...]:
+def _onsets(windows: Sequence[Windows], changes_s: Sequence[float]) -> tuple[float, ...]:
     """Onsets (s since the first run's start) at its first changes, and others spread over it, `MOST_STARTS` in all."""
     first, last = float(windows[0].start[0]), float(windows[0].start[-1])
     near = [t for t in changes_s[:CHANGE_STARTS] if t > first * windows[0].run.dt]
@@ -137,7 +137,7 @@ def _onsets(windows: Sequence[Stretches], changes_s: Sequence[float]) -> tuple[f
     return (*near, *(float((first + (last - first) * s) * windows[0].run.dt) for s in share))
 
 
-def _grids(target: Target, windows: Sequence[Stretches], hints: Hints) -> dict[int, tuple[float, ...]]:
+def _grids(target: Target, windows: Sequence[Windows], hints: Hints) -> dict[int, tuple[float, ...]]:
     """Initial values by slot: onsets over the log and at its changes, depths within those of the log, the best periods as far as `MOST_STARTS` lets them,
     and other grids as the effect states them, held within the bounds."""
     found, periods = {}, hints.periods.get(None, ())

@@ -13,14 +13,14 @@ from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.hypotheses.initial_points import Hints, Target, initial_points
 from rovval.diagnose.hypotheses.snag import springs
 from rovval.diagnose.hypotheses.spectrum import spectral_lines, wave_periods
-from rovval.diagnose.inference.laplace import Point
-from rovval.diagnose.inference.problem import Problem
-from rovval.diagnose.windows.shooting import Stretches
+from rovval.diagnose.inference.laplace import Posterior
+from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.windows.windows import Windows
 
 NO_HINTS = Hints()
 
 
-def hypotheses(windows: Sequence[Stretches], without: Sequence[str] = (), hints: Hints = NO_HINTS) -> tuple[list[Hypothesis], dict[str, str]]:
+def hypotheses(windows: Sequence[Windows], without: Sequence[str] = (), hints: Hints = NO_HINTS) -> tuple[list[Hypothesis], dict[str, str]]:
     """(The competing hypotheses, reason by name of effects and parameters that these logs cannot test).
 
     Args:
@@ -41,12 +41,12 @@ def hypotheses(windows: Sequence[Stretches], without: Sequence[str] = (), hints:
                 untestable[slot.key] = f"needs {c}, which this log does not hold"
         own = tuple(s for s in slots if plant.slots[s].key not in untestable)
         if own:
-            next_id = len(plant.slots) + sum(len(h.directions) for h in found)
+            next_id = len(plant.slots) + sum(len(h.displaced) for h in found)
             found.extend(initial_points(Target(plant, name, effect, own), windows, hints, next_id))
     return found, untestable
 
 
-def _untestable(effect: effects.Effect, windows: Sequence[Stretches]) -> str:
+def _untestable(effect: effects.Effect, windows: Sequence[Windows]) -> str:
     """Why the logs cannot test an effect: a channel that it needs is missing, or never near enough; "" where they can."""
     if missing := [c for c in effect.needs if not _logged(windows, c)]:
         return f"needs {', '.join(missing)}, which this log does not hold"
@@ -54,26 +54,26 @@ def _untestable(effect: effects.Effect, windows: Sequence[Stretches]) -> str:
     return f"{', '.join(far)} in this log" if far else ""
 
 
-def _logged(windows: Sequence[Stretches], name: str) -> bool:
+def _logged(windows: Sequence[Windows], name: str) -> bool:
     return all(part.run.measured(name) for part in windows)
 
 
-def _least(windows: Sequence[Stretches], name: str) -> float:
+def _least(windows: Sequence[Windows], name: str) -> float:
     return min(float(np.nanmin(part.run.get(name))) for part in windows)
 
 
-def initialised(problem: Problem, library: Sequence[Hypothesis], healthy: Point) -> list[Hypothesis]:
+def initialised(problem: Problem, library: Sequence[Hypothesis], healthy: Posterior) -> list[Hypothesis]:
     """The hypotheses of a library with the initial points that the log suggests: what oscillates at the periods of the residual about ``healthy``, the
     vehicle with its coefficients within tolerance; what begins during the log where that begins to err; what holds the vehicle where the missing
     forces lead."""
     names = {h.name for h in library}
     held = springs(problem) if any(h.effect.has("anchor") for h in library) else []
     hints = Hints(_periods(problem, names, healthy), gap_change_points(problem), held)
-    fresh, _ = hypotheses(problem.parts, hints=hints)
+    fresh, _ = hypotheses(problem.runs, hints=hints)
     return [h for h in fresh if h.name in names]
 
 
-def _periods(problem: Problem, names: set[str], healthy: Point) -> dict[float | None, Sequence[float]]:
+def _periods(problem: Problem, names: set[str], healthy: Posterior) -> dict[float | None, Sequence[float]]:
     """Periods of the residual (s); those of waves by the direction towards which they run."""
     met = [period for period, _ in spectral_lines(problem, healthy)]
     periods: dict[float | None, Sequence[float]] = {None: met}

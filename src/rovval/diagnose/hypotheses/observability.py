@@ -7,7 +7,7 @@ import numpy as np
 
 from rovval.diagnose.criteria import FEW_WINDOWS, LARGE_SIZE, OBSERVABLE_SIGMA, PRIOR_WIDTH
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
-from rovval.diagnose.inference.problem import Problem
+from rovval.diagnose.problem.problem import Problem
 
 
 def observable(problem: Problem, library: list[Hypothesis]) -> tuple[list[Hypothesis], dict[str, str]]:
@@ -16,8 +16,8 @@ def observable(problem: Problem, library: list[Hypothesis]) -> tuple[list[Hypoth
     An effect's signal-to-noise ratio is the square root of the Fisher information that the log holds on a typical size of its parameters, one at a
     time, divided by the design effect; of several initial points the best counts.
     """
-    information = np.einsum("wii->i", problem.data.A) / problem.inflation
-    place = {column: i for i, column in enumerate(problem.data.columns)}
+    information = np.einsum("wii->i", problem.likelihood.total.A) / problem.design_effect
+    place = {column: i for i, column in enumerate(problem.likelihood.total.columns)}
     sigmas: dict[str, float] = {}
     for h in library:
         typical = [sd / PRIOR_WIDTH for sd in h.sd]
@@ -28,5 +28,5 @@ def observable(problem: Problem, library: list[Hypothesis]) -> tuple[list[Hypoth
         for name, sigma in sigmas.items()
         if sigma < OBSERVABLE_SIGMA
     }
-    largest = LARGE_SIZE if problem.blocks >= FEW_WINDOWS else 1.0
+    largest = LARGE_SIZE if problem.window_count >= FEW_WINDOWS else 1.0
     return [h for h in library if largest * sigmas[h.name] >= OBSERVABLE_SIGMA], unseen

@@ -20,12 +20,12 @@ from rovval.core.frames import rotation_from_euler
 from rovval.diagnose.criteria import SPRING_APART_S, SPRING_EVIDENT_SHARE, SPRING_LEAST_STIFFNESS, SPRING_STARTS
 from rovval.diagnose.hypotheses.hypothesis import WHOLE, Hypothesis, displaced
 from rovval.diagnose.hypotheses.spectrum import interpolated
-from rovval.diagnose.inference.disturbance import pieces
-from rovval.diagnose.inference.problem import Problem
-from rovval.diagnose.residuals.external_forces import forced, typical_wrench
-from rovval.diagnose.residuals.normal_equations import products
-from rovval.diagnose.residuals.sensitivities import Linear, state_spread
-from rovval.diagnose.windows.shooting import Stretches
+from rovval.diagnose.problem.disturbance import segment_indicators
+from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.residuals.external_forces import force_sensitivities, typical_wrench
+from rovval.diagnose.residuals.normal_equations import Linearisation, normal_equations
+from rovval.diagnose.residuals.nuisances import initial_state_sd
+from rovval.diagnose.windows.windows import Windows
 from rovval.plant import Plant
 
 HALVES = 2  # of a window, in each of which what is missing is one constant force and moment
@@ -80,24 +80,25 @@ def springs(problem: Problem) -> list[Spring]:
     Each has the parameters of `tether_snag` (north, east, down, radius, x, z in m, stiffness in N/m, onset in s since the run's start) and the ``share``
     of the gap that it takes by its stretch: 0 for one so soft that it might as well pull evenly (`SPRING_LEAST_STIFFNESS`).
     """
-    windows = problem.parts[0]
-    lack = missing_wrench(windows, problem.at_null[0], problem.origin, problem.variance)
+    windows = problem.runs[0]
+    lack = missing_wrench(windows, problem.nominal[0], problem.origin, problem.gap.variance)
     onsets, places = lack.t[:, :, 0].reshape(-1), np.asarray(lack.place[:, :, 0].reshape(-1, 3))
     first = [max(((lack.explained(t, p, r)[0], r) for r in _radii(lack, t, p)), default=(0.0, 0.0)) for t, p in zip(onsets, places, strict=True)]
     found = list[tuple[float, Spring]]()
     for i in np.argsort([-reduction for reduction, _ in first]):
         if len(found) < SPRING_STARTS and first[i][0] > 0 and all(abs(onsets[i] - spring["onset"]) >= SPRING_APART_S for _, spring in found):
             found.append(fitted_spring(lack, float(onsets[i]), places[i], first[i][1]))
-    gap = float(problem.gap.c.sum())
+    gap = float(problem.gap.dynamics.c.sum())
     shares = [(reduction / gap, spring) for reduction, spring in sorted(found, key=lambda one: -one[0]) if reduction > 0]
     return [spring | {"share": share if spring["stiffness"] >= SPRING_LEAST_STIFFNESS else 0.0} for share, spring in shares]
 
 
-def missing_wrench(windows: Stretches, linear: Linear, beta: Array, variance: Array) -> MissingWrench:
+def missing_wrench(windows: Windows, linear: Linearisation, beta: Array, variance: Array) -> MissingWrench:
     """What the halves of a run's windows lack of parameters ``beta``, by the residuals ``linear`` there, weighted by ``variance`` (samples, channels)."""
     wrench = typical_wrench([windows])
-    answers = forced(windows, beta, [(axis, on * size) for on in pieces(windows, HALVES) for axis, size in zip(AXES, wrench, strict=True)])
-    seen = products(replace(linear, S=answers, columns=tuple(range(answers.shape[-1]))), windows.ok, variance, state_spread(windows))
+    forces = [(axis, on * size) for on in segment_indicators(windows, HALVES) for axis, size in zip(AXES, wrench, strict=True)]
+    answers = force_sensitivities(windows, beta, forces)
+    seen = normal_equations(replace(linear, S=answers, columns=tuple(range(answers.shape[-1]))), windows.ok, variance, initial_state_sd(windows))
     unit = np.tile(1.0 / wrench, HALVES)
     edges = np.linspace(0, windows.steps + 1, HALVES + 1)
     samples = max(round((windows.steps + 1) / HALVES * windows.run.dt / EVERY_S), 1)
@@ -145,14 +146,14 @@ def held_from(plant: Plant, name: str, slots: tuple[int, ...], found: Sequence[M
     return [replace(h, evident=spring.get("share", 0.0) >= SPRING_EVIDENT_SHARE) for h, spring in zip(begun, found, strict=True)]
 
 
-def mid_log_spring(windows: Sequence[Stretches], plant: Plant, slots: tuple[int, ...]) -> Spring:
+def mid_log_spring(windows: Sequence[Windows], plant: Plant, slots: tuple[int, ...]) -> Spring:
     """A spring of typical stiffness towards where the vehicle was in the middle of the first log: what competes until `springs` are known."""
     first = plant.slots[slots[0]].parameter
     at = placed(windows, plant, slots, float(windows[0].start[len(windows[0].start) // 2]) * windows[0].run.dt)
     return {first.name: first.typical} | {plant.slots[slot].parameter.name: value for slot, value in at.items()}
 
 
-def placed(windows: Sequence[Stretches], plant: Plant, slots: tuple[int, ...], t: float) -> dict[int, float]:
+def placed(windows: Sequence[Windows], plant: Plant, slots: tuple[int, ...], t: float) -> dict[int, float]:
     """Values of the slots that an onset at ``t`` (s since the first run's start) fixes: the onset, and where the vehicle was then."""
     run, found = windows[0].run, dict[int, float]()
     for slot in slots:

@@ -16,10 +16,10 @@ import numpy as np
 
 from rovval.core.data import Array, Flags
 from rovval.diagnose.criteria import SHORTEST_PERIOD_S, WAVE_DOPPLER, WAVE_LINES
-from rovval.diagnose.inference.laplace import Point
-from rovval.diagnose.inference.problem import Problem
-from rovval.diagnose.residuals.sensitivities import Linear
-from rovval.diagnose.windows.shooting import Stretches
+from rovval.diagnose.inference.laplace import Posterior
+from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.residuals.normal_equations import Linearisation
+from rovval.diagnose.windows.windows import Windows
 
 VELOCITY = ("u", "v", "w")
 TIME_CONSTANT_S = 3.0  # s, of the body: a third of a window of 10 s (`windows`)
@@ -44,7 +44,7 @@ class _Velocities:
     place: Array
 
 
-def spectral_lines(problem: Problem, point: Point) -> tuple[tuple[float, float], ...]:
+def spectral_lines(problem: Problem, point: Posterior) -> tuple[tuple[float, float], ...]:
     """(Period in s, share of the squared residual velocities that it explains) of every local maximum, the largest share first; ``point`` is the fit that
     leaves the residual. Empty where a log lacks a velocity."""
     runs = _velocities(problem, point)
@@ -58,7 +58,7 @@ def spectral_lines(problem: Problem, point: Point) -> tuple[tuple[float, float],
 
 
 def wave_periods(
-    problem: Problem, point: Point, met: Sequence[float], bounds: tuple[float, float], directions: Iterable[float]
+    problem: Problem, point: Posterior, met: Sequence[float], bounds: tuple[float, float], directions: Iterable[float]
 ) -> dict[float | None, Sequence[float]]:
     """Periods of the waves that explain most of the residual at ``point``, by the direction towards which they run.
 
@@ -70,7 +70,7 @@ def wave_periods(
     Returns:
         One period (s) for each direction; nothing where a log does not say where the vehicle was.
     """
-    runs, placed = _velocities(problem, point), all(part.run.measured(c) for part in problem.parts for c in ("x", "y", "z"))
+    runs, placed = _velocities(problem, point), all(part.run.measured(c) for part in problem.runs for c in ("x", "y", "z"))
     met = [period for period in met if bounds[0] <= period <= bounds[1]][:WAVE_LINES]
     if not runs or not placed or not met:
         return {}
@@ -85,18 +85,18 @@ def wave_periods(
     return found
 
 
-def _velocities(problem: Problem, point: Point) -> list[_Velocities]:
+def _velocities(problem: Problem, point: Posterior) -> list[_Velocities]:
     """Every run's residual velocities; none where a velocity is missing."""
-    if not all(set(VELOCITY) <= set(part.channels) for part in problem.parts):
+    if not all(set(VELOCITY) <= set(part.channels) for part in problem.runs):
         return []
-    return [_of_run(part, one) for part, one in zip(problem.parts, point.linear, strict=True)]
+    return [_of_run(part, one) for part, one in zip(problem.runs, point.linear, strict=True)]
 
 
 def _duration(runs: Sequence[_Velocities]) -> float:
     return max(float(one.t.max() - one.t.min()) for one in runs)
 
 
-def _of_run(windows: Stretches, linear: Linear) -> _Velocities:
+def _of_run(windows: Windows, linear: Linearisation) -> _Velocities:
     at, every = [windows.channels.index(c) for c in VELOCITY], max(round(SHORTEST_PERIOD_S / PER_PERIOD / windows.run.dt), 1)
     ok: Flags = np.asarray(windows.ok[:, ::every, at].all(axis=-1) & linear.valid[:, None])
     t = windows.time()[:, ::every]
@@ -106,7 +106,7 @@ def _of_run(windows: Stretches, linear: Linear) -> _Velocities:
     return _Velocities(t, _start_eliminated(t, ok, world), ok, np.stack([x, y, z], axis=-1))
 
 
-def interpolated(windows: Stretches, channel: str, t: Array) -> Array:
+def interpolated(windows: Windows, channel: str, t: Array) -> Array:
     """A channel of the windows' run at times ``t`` (s since its start), gaps bridged; zeros where it was not measured."""
     good = np.flatnonzero(windows.run.ok(channel)) if windows.run.measured(channel) else np.zeros(0, dtype=int)
     if not len(good):

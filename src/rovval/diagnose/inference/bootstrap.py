@@ -9,15 +9,15 @@ from rovval.core.data import Array
 RESAMPLES = 500
 
 
-def interval(before: Array, after: Array, seed: int, block: int = 2) -> tuple[float, float, float]:
+def shrinkage_interval(before: Array, after: Array, seed: int, block: int = 2) -> tuple[float, float, float]:
     """Shrinkage 1 - after / before with its 90 % block-bootstrap interval over windows: (value, low, high)."""
-    draws = _blocks(len(before), block, np.random.default_rng(seed))
+    draws = block_resamples(len(before), block, np.random.default_rng(seed))
     value = 1.0 - after.sum() / before.sum()
     low, high = np.quantile(1.0 - after[draws].sum(axis=1) / before[draws].sum(axis=1), [0.05, 0.95])
     return float(value), float(low), float(high)
 
 
-def _blocks(m: int, block: int, rng: np.random.Generator) -> np.ndarray:
+def block_resamples(m: int, block: int, rng: np.random.Generator) -> np.ndarray:
     """Circular block bootstrap: indices (resamples, m) of windows in runs of ``block``."""
     starts = rng.integers(0, m, (RESAMPLES, m // block + 1))
     return np.asarray(((starts[..., None] + np.arange(block)) % m).reshape(RESAMPLES, -1)[:, :m])

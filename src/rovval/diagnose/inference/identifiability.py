@@ -9,9 +9,15 @@ import numpy as np
 
 from rovval.core.data import Array
 from rovval.diagnose.criteria import PRIOR_WIDTH
-from rovval.diagnose.inference.hypothesis_fit import Confirmed, confirm, errors, interval, roughly
-from rovval.diagnose.inference.laplace import Point
-from rovval.diagnose.inference.problem import Problem
+from rovval.diagnose.inference.hypothesis_fit import (
+    HypothesisFit,
+    confidence_interval,
+    fit_hypothesis,
+    fit_quickly,
+    standard_errors,
+)
+from rovval.diagnose.inference.laplace import Posterior
+from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.coherence import coherence
 
 EXCITED = 3.0  # a typical size shows with this many standard errors while nothing else moves (research E.6)
@@ -19,20 +25,20 @@ TOLD_APART = 1.5  # the same while everything else that is tuned, and slop, move
 WIDEST = 2.0  # typical sizes: a half interval beyond it, at the fitted point, is no answer
 
 
-def determinable(problem: Problem, wanted: Sequence[int]) -> tuple[tuple[int, ...], dict[int, dict[str, Any]]]:
+def identifiable(problem: Problem, wanted: Sequence[int]) -> tuple[tuple[int, ...], dict[int, dict[str, Any]]]:
     """Which slots these logs can determine, and why not the others; the least determined leaves first."""
     out, left = dict[int, dict[str, Any]](), list(wanted)
-    information = problem.data.A.sum(axis=0) / problem.inflation
-    typical = {s: problem.plant.slots[s].parameter.typical for s in (*wanted, *problem.slop.sd)}
+    information = problem.likelihood.total.A.sum(axis=0) / problem.design_effect
+    typical = {s: problem.plant.slots[s].parameter.typical for s in (*wanted, *problem.tolerance.sd)}
     for slot in wanted:
-        at = int(problem.data.place((slot,))[0])
+        at = int(problem.likelihood.total.place((slot,))[0])
         if (seen := float(np.sqrt(information[at, at])) * typical[slot]) < EXCITED:
             left.remove(slot)
-            out[slot] = undetermined(f"not excited: a typical size would show with {seen:.1f} standard errors in these logs, {EXCITED:g} are needed")
+            out[slot] = unidentified_row(f"not excited: a typical size would show with {seen:.1f} standard errors in these logs, {EXCITED:g} are needed")
     while left:
-        slop = [c for c in problem.slop.sd if c not in left]
-        free = problem.data.place((*left, *slop))
-        prior = [PRIOR_WIDTH * typical[s] for s in left] + [problem.slop.sd[c] for c in slop]
+        slop = [c for c in problem.tolerance.sd if c not in left]
+        free = problem.likelihood.total.place((*left, *slop))
+        prior = [PRIOR_WIDTH * typical[s] for s in left] + [problem.tolerance.sd[c] for c in slop]
         covariance = np.linalg.inv(information[np.ix_(free, free)] + np.diag(1.0 / np.array(prior) ** 2))
         shown = np.array([typical[s] for s in left]) / np.sqrt(np.diag(covariance)[: len(left)])
         if shown.min() >= TOLD_APART:
@@ -46,23 +52,24 @@ def determinable(problem: Problem, wanted: Sequence[int]) -> tuple[tuple[int, ..
 def _confused(problem: Problem, slot: int, others: Sequence[int], why: str) -> dict[str, Any]:
     """What a slot that is excited is confused with: tuned ones and coefficients within slop, by coherence; what only a start elsewhere shows (an
     onset, a period) has no signature of its own."""
-    others = [s for s in others if s != slot and s in problem.data.columns]
-    beside = sorted(((problem.plant.slots[s].key, coherence(problem.data, (slot,), (s,))) for s in others), key=lambda x: -x[1])
+    others = [s for s in others if s != slot and s in problem.likelihood.total.columns]
+    beside = sorted(((problem.plant.slots[s].key, coherence(problem.likelihood.total, (slot,), (s,))) for s in others), key=lambda x: -x[1])
     named = " and ".join(f"{name} ({value:.2f})" for name, value in beside[:2])
-    return undetermined(f"{why}; most like {named}" if named else why, beside[:2])
+    return unidentified_row(f"{why}; most like {named}" if named else why, beside[:2])
 
 
-def tuned(
-    problem: Problem, slots: tuple[int, ...], near: Point | None = None, kept: Sequence[int] = ()
-) -> tuple[Confirmed | None, Array, Array, dict[int, dict[str, Any]]]:
+def fit_identifiable(
+    problem: Problem, slots: tuple[int, ...], near: Posterior | None = None, kept: Sequence[int] = ()
+) -> tuple[HypothesisFit | None, Array, Array, dict[int, dict[str, Any]]]:
     """The joint fit with its 90 % intervals; slots whose interval says nothing at the fitted point are put back and the rest refitted.
 
     With ``near``, quickly, from there and with slop's slopes there; ``kept`` are fitted whatever their interval.
     """
     out = dict[int, dict[str, Any]]()
     while slots:
-        fitted = confirm(problem, problem.origin, slots) if near is None else roughly(problem, near.beta, slots, near.scaled)
-        bounds = [interval(float(fitted.beta[s]), float(e), problem.blocks) for s, e in zip(slots, errors(problem, fitted), strict=True)]
+        fitted = fit_hypothesis(problem, problem.origin, slots) if near is None else fit_quickly(problem, near.beta, slots, near.whitened)
+        errors = standard_errors(problem, fitted)
+        bounds = [confidence_interval(float(fitted.beta[s]), float(e), problem.window_count) for s, e in zip(slots, errors, strict=True)]
         low, high = np.array(bounds).T
         half = 0.5 * (high - low) / [problem.plant.slots[s].parameter.typical for s in slots]
         half[[s in kept for s in slots]] = 0.0
@@ -70,11 +77,11 @@ def tuned(
             return fitted, low, high, out
         worst = slots[int(half.argmax())]
         why = f"not told apart: its 90 % interval with slop of the others is +-{half.max():.1f} typical sizes"
-        out[worst] = _confused(problem, worst, tuple(dict.fromkeys((*slots, *problem.slop.sd))), why)
+        out[worst] = _confused(problem, worst, tuple(dict.fromkeys((*slots, *problem.tolerance.sd))), why)
         slots = tuple(s for s in slots if s != worst)
     return None, np.zeros(0), np.zeros(0), out
 
 
-def undetermined(why: str, beside: Sequence[tuple[str, float]] = ()) -> dict[str, Any]:
+def unidentified_row(why: str, beside: Sequence[tuple[str, float]] = ()) -> dict[str, Any]:
     """The row of a parameter that is left where it was: why, and what it is confused with."""
     return {"why": why, "with": [{"parameter": name, "coherence": value} for name, value in beside]}

@@ -6,39 +6,48 @@ losses of `confirm` are; intervals are 90 % block bootstraps over windows.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.inference.bootstrap import interval
-from rovval.diagnose.inference.gap import axis_squares, noise_loss
-from rovval.diagnose.inference.hypothesis_fit import Confirmed, held_steps
-from rovval.diagnose.inference.problem import Problem
-from rovval.diagnose.residuals.normal_equations import start_corrected
-from rovval.diagnose.residuals.sensitivities import Linear, linearise, state_spread
+from rovval.diagnose.inference.bootstrap import shrinkage_interval
+from rovval.diagnose.inference.gap import noise_floor_loss, squared_errors
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, held_out_steps
+from rovval.diagnose.inference.map_fit import map_fit
+from rovval.diagnose.problem.cross_validation import Fold, make_folds
+from rovval.diagnose.problem.problem import Problem, corrected_residuals, gap_equations_at, pose, whitened
+from rovval.diagnose.residuals.normal_equations import Linearisation, nuisance_corrected
+from rovval.diagnose.residuals.nuisances import initial_state_sd
+from rovval.diagnose.residuals.perturbations import Columns
+from rovval.diagnose.residuals.sensitivities import linearise
+from rovval.diagnose.windows.windows import Windows
+
+T = TypeVar("T")
+MOST = 5  # refits: of more logs than that, a fifth is left out at a time
 
 HARM = 0.05  # an axis that gets this much worse is named (research E.7)
-NONE = {"total": 0.0, "low": 0.0, "high": 0.0, "of_explainable": 0.0, "axes": {}, "axes_interval": {}, "held_out": True}
+NO_SHRINKAGE = {"total": 0.0, "low": 0.0, "high": 0.0, "of_explainable": 0.0, "axes": {}, "axes_interval": {}, "held_out": True}
 
 
-def shrinkage(problem: Problem, fitted: Confirmed | None, before: list[Array], seed: int) -> dict[str, Any]:
+def shrinkage(problem: Problem, fitted: HypothesisFit | None, before: list[Array], seed: int) -> dict[str, Any]:
     """1 - gap(with effects) / gap(nominal), with the share of what lies above the noise floor and the same for each measured axis.
 
     ``before`` are the nominal vehicle's residuals, as `problem.corrected_residuals` gives them.
     """
     if fitted is None:
-        return dict(NONE)
-    return told(problem, fitted.dynamic_loss, held_out(problem, fitted), before, seed)
+        return dict(NO_SHRINKAGE)
+    return shrinkage_of(problem, fitted.dynamics_loss, held_out_residuals(problem, fitted), before, seed)
 
 
-def told(problem: Problem, loss: Array, after: list[Array], before: list[Array], seed: int) -> dict[str, Any]:
+def shrinkage_of(problem: Problem, loss: Array, after: list[Array], before: list[Array], seed: int) -> dict[str, Any]:
     """The shrinkage of held-out losses (m,) and residuals ``after`` over the nominal vehicle's ``before``."""
-    value, low, high = interval(problem.gap.c, loss, seed)
-    nominal, now = axis_squares(problem, before), axis_squares(problem, after)
+    value, low, high = shrinkage_interval(problem.gap.dynamics.c, loss, seed)
+    nominal, now = squared_errors(problem, before), squared_errors(problem, after)
     measured = {axis: square > 0 for axis, square in nominal.items() if square.sum() > 0}
-    axes = {axis: interval(nominal[axis][seen], now[axis][seen], seed) for axis, seen in measured.items()}
+    axes = {axis: shrinkage_interval(nominal[axis][seen], now[axis][seen], seed) for axis, seen in measured.items()}
     return {
         "total": value,
         "low": low,
@@ -50,25 +59,25 @@ def told(problem: Problem, loss: Array, after: list[Array], before: list[Array],
     }
 
 
-def harm(shrunk: dict[str, Any]) -> list[dict[str, Any]]:
+def worsened_axes(shrunk: dict[str, Any]) -> list[dict[str, Any]]:
     """Axes that get more than `HARM` worse with the effects added."""
     return [{"axis": axis, "change": -share} for axis, share in shrunk["axes"].items() if share < -HARM]
 
 
-def held_out(problem: Problem, fitted: Confirmed) -> list[Array]:
+def held_out_residuals(problem: Problem, fitted: HypothesisFit) -> list[Array]:
     """Residual (m, n, c) of each run's windows with the parameters that the other folds give, best initial states taken out."""
-    moved = held_linear(problem, fitted)
-    return [start_corrected(one, part.ok, problem.variance, state_spread(part)) for part, one in zip(problem.parts, moved, strict=True)]
+    moved = held_out_linearisations(problem, fitted)
+    return [nuisance_corrected(one, part.ok, problem.gap.variance, initial_state_sd(part)) for part, one in zip(problem.runs, moved, strict=True)]
 
 
-def held_linear(problem: Problem, fitted: Confirmed) -> list[Linear]:
+def held_out_linearisations(problem: Problem, fitted: HypothesisFit) -> list[Linearisation]:
     """Each run linearised about the fitted point, its residual moved to what the folds without the window give."""
-    step = np.zeros((problem.blocks, len(fitted.slots)))
-    for fold, own in held_steps(problem, fitted):
+    step = np.zeros((problem.window_count, len(fitted.slots)))
+    for fold, own in held_out_steps(problem, fitted):
         step[fold.test] = own
-    ends = np.cumsum([part.count for part in problem.parts])[:-1]
+    ends = np.cumsum([part.count for part in problem.runs])[:-1]
     found = []
-    for part, own in zip(problem.parts, np.split(step, ends), strict=True):
+    for part, own in zip(problem.runs, np.split(step, ends), strict=True):
         one = linearise(part, fitted.beta, fitted.slots)
         found.append(replace(one, r=np.where(part.ok, one.r - np.einsum("wtck,wk->wtc", one.S, own), 0.0)))
     return found
@@ -76,5 +85,46 @@ def held_linear(problem: Problem, fitted: Confirmed) -> list[Linear]:
 
 def _explainable(problem: Problem, loss: Array) -> float:
     """Share of the gap above the noise floor that is closed, on held-out windows."""
-    gap, floor = float(problem.gap.c.sum()), float(noise_loss(problem).sum())
+    gap, floor = float(problem.gap.dynamics.c.sum()), float(noise_floor_loss(problem).sum())
     return float(min((gap - float(loss.sum())) / max(gap - floor, 1e-12), 1.0))
+
+
+def refitted_shrinkage(problem: Problem, fitted: HypothesisFit, before: Sequence[Array], slop: float, seed: int) -> dict[str, Any]:
+    """As `shrinkage.shrinkage`, each fold scored with the parameters that a fit without its windows gives; the gap is told in ``problem``'s
+    metric, as every other shrinkage is."""
+    loss, now = np.zeros(problem.window_count), [residual.copy() for residual in before]
+    for fold in _folds(problem):
+        beta = _without(problem, fitted, fold, slop)
+        loss[fold.test] = gap_equations_at(problem, beta, ())[0].c[fold.test]
+        for own, (new, test) in zip(now, _by_run(problem, corrected_residuals(problem, beta), fold.test), strict=True):
+            own[test] = new[test]
+    return shrinkage_of(problem, loss, now, list(before), seed)
+
+
+def _folds(problem: Problem) -> tuple[Fold, ...]:
+    """The problem's own folds, or of many logs as many groups as may be refitted."""
+    return problem.folds if len(problem.folds) <= MOST else make_folds(problem.run_of_window * MOST // len(problem.runs))
+
+
+def _without(problem: Problem, fitted: HypothesisFit, fold: Fold, slop: float) -> Array:
+    """Parameters (k,) of the fitted slots that the other windows give, from where all of them stood; slop's slopes stay."""
+    parts = [_some(part, which) for part, which in _by_run(problem, problem.runs, fold.train) if which.any()]
+    slopes = [(one.S[which], one.columns) for one, which in _by_run(problem, fitted.posterior.linear, fold.train) if which.any()]
+    less = pose(tuple(parts), Columns(), slop)
+    near = [replace(one, S=S, columns=columns) for one, (S, columns) in zip(less.nominal, slopes, strict=True)]
+    point = map_fit(less, fitted.posterior.beta, fitted.slots, whitened(less, near))
+    beta = problem.origin.copy()
+    beta[list(fitted.slots)] = point.beta[list(fitted.slots)]
+    return beta
+
+
+def _some(part: Windows, which: np.ndarray) -> Windows:
+    """The windows ``which`` (m,) of a run, the disturbances of which nobody knows yet."""
+    kept = {name: getattr(part, name)[which] for name in ("start", "nu0", "eta0", "y", "ok")}
+    return replace(part, disturbance_response=None, **kept)
+
+
+def _by_run(problem: Problem, items: Sequence[T], which: np.ndarray) -> Iterator[tuple[T, np.ndarray]]:
+    """What belongs to each run, with which (m,) of its windows are meant."""
+    ends = np.cumsum([part.count for part in problem.runs])[:-1]
+    return zip(items, np.split(which, ends), strict=True)

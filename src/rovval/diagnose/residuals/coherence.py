@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.residuals.normal_equations import Products
+from rovval.diagnose.residuals.normal_equations import NormalEquations
 
 
-def coherence(data: Products, a: tuple[int, ...], b: tuple[int, ...]) -> float:
+def coherence(data: NormalEquations, a: tuple[int, ...], b: tuple[int, ...]) -> float:
     """Largest canonical correlation between the signatures of two hypotheses (0: orthogonal, 1: the same to this log)."""
     both, k = np.concatenate([data.place(a), data.place(b)]), len(a)
     A = data.A[:, both[:, None], both].sum(axis=0)

@@ -6,14 +6,14 @@ import numpy as np
 
 from rovval.core.data import Array, Flags
 from rovval.core.frames import euler_rates, rotation_from_euler, wrap
-from rovval.diagnose.windows.shooting import Stretches
+from rovval.diagnose.windows.windows import Windows
 
 ROW_EVERY = 10  # samples between rows of a window: poses 1 s apart, whose errors are nearly independent
 RELATIONS = ("x", "y", "z", "phi", "theta", "psi")
 MARGIN = 15  # samples before and after a window that a sensor's memory needs: the longest delay of the library, 1.5 s
 
 
-def measured(stretches: Stretches) -> tuple[Array, Array, Flags]:
+def measured_motion(stretches: Windows) -> tuple[Array, Array, Flags]:
     """Velocities and poses of the windows and the `MARGIN` before and after them (m, MARGIN + n + MARGIN, 6), gaps bridged linearly, and which relations
     the log can serve (6,). Beyond the log's ends the vehicle moves on as it does there."""
     run = stretches.run
@@ -28,12 +28,12 @@ def measured(stretches: Stretches) -> tuple[Array, Array, Flags]:
     return nu, eta, np.array([(linear if i < 3 else angular) and run.measured(c) for i, c in enumerate(RELATIONS)])
 
 
-def inside(samples: Array) -> Array:
+def without_margin(samples: Array) -> Array:
     """The windows themselves of `measured` samples."""
     return samples[:, MARGIN:-MARGIN]
 
 
-def complete(stretches: Stretches) -> Flags:
+def fully_measured(stretches: Windows) -> Flags:
     """Windows (m,) in which velocity and attitude were measured nearly throughout (bridged gaps would look like faults)."""
     run = stretches.run
     at = stretches.start[:, None] + np.arange(stretches.steps + 1)[None, :]
@@ -41,7 +41,7 @@ def complete(stretches: Stretches) -> Flags:
     return np.asarray(np.all([run.ok(c)[at].mean(axis=1) > 0.9 for c in needed], axis=0))
 
 
-def drift(nu: Array, eta: Array, dt: float) -> Array:
+def pose_drift(nu: Array, eta: Array, dt: float) -> Array:
     """Dead-reckoned less measured pose (m, rows, 6) at every row, mean of the window taken out. Trapezoidal rule."""
     world = np.einsum("mnij,mnj->mni", rotation_from_euler(eta[..., 3:]), nu[..., :3])
     rates = np.concatenate([world, euler_rates(eta[..., 3:], nu[..., 3:])], axis=-1)

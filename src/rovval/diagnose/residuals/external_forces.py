@@ -10,7 +10,7 @@ import numpy as np
 from rovval.core.channels import AXES
 from rovval.core.data import Array
 from rovval.diagnose.residuals.sensitivities import LANES, simulate_windows
-from rovval.diagnose.windows.shooting import Stretches, difference, predicted
+from rovval.diagnose.windows.windows import Windows, channel_difference, predicted_channels
 from rovval.vehicle.model import allocation
 
 STEP = 0.05  # of a force, for its finite difference
@@ -18,15 +18,15 @@ SLOW = 0.1  # of a velocity's rms: more has a side that it goes to (chosen)
 LEAST = 0.01  # of the largest force, that an axis is held to have at least, so that none is mute
 
 
-def generic(parts: Sequence[Stretches], beta: Array, features: Sequence[str] = ()) -> tuple[tuple[tuple[str, str], ...], list[Array]]:
+def generic_force_responses(parts: Sequence[Windows], beta: Array, features: Sequence[str] = ()) -> tuple[tuple[tuple[str, str], ...], list[Array]]:
     """Forces on every axis with every feature that all runs have (of ``features``, where given): (axis, feature) of each, and each run's
     answers (m, n, c, f) to forces as large as the thrusters' on that axis."""
-    banks, wrench = [features_of(part) for part in parts], typical_wrench(parts)
+    banks, wrench = [force_features(part) for part in parts], typical_wrench(parts)
     names = tuple((axis, f) for axis in AXES for f in banks[0] if all(f in bank for bank in banks) and (not features or f in features))
-    return names, [forced(part, beta, [(a, bank[f] * wrench[AXES.index(a)]) for a, f in names]) for part, bank in zip(parts, banks, strict=True)]
+    return names, [force_sensitivities(part, beta, [(a, bank[f] * wrench[AXES.index(a)]) for a, f in names]) for part, bank in zip(parts, banks, strict=True)]
 
 
-def features_of(stretches: Stretches) -> dict[str, Array]:
+def force_features(stretches: Windows) -> dict[str, Array]:
     """What a generic force may depend on, on the run's grid (n,), each of unit rms."""
     run = stretches.run
     got = {c: np.nan_to_num(run.get(c)) for c in ("u", "v", "w", "p", "q", "r", "z", "phi", "theta", "psi") if run.measured(c)}
@@ -49,24 +49,24 @@ def features_of(stretches: Stretches) -> dict[str, Array]:
     found["time"] = run.t - run.t.mean()
     if run.measured("altitude"):
         found["closeness to the bottom"] = np.exp(-np.maximum(np.nan_to_num(run.get("altitude"), nan=1e3), 0.0))
-    thrust = stretches.plant.thrust(stretches.driven.inputs.speed)
+    thrust = stretches.plant.thrust(stretches.actuation.inputs.speed)
     for i, name in enumerate(stretches.plant.vehicle.thrusters):
         found[f"thrust of {name}"], found[f"|thrust of {name}|"] = thrust[:, i], np.abs(thrust[:, i])
     scaled = {n: f / np.sqrt(np.mean(f**2)) for n, f in found.items() if np.mean(f**2) > 1e-12}
     return {n: f for n, f in scaled.items() if n == "constant" or np.std(f) > 1e-3}
 
 
-def forced(part: Stretches, beta: Array, forces: Sequence[tuple[str, Array]]) -> Array:
+def force_sensitivities(part: Windows, beta: Array, forces: Sequence[tuple[str, Array]]) -> Array:
     """Sensitivity (m, n, c, f) to additional body forces given as an axis and a sequence on the run's grid."""
     bank = np.zeros((len(forces), len(part.run), 6))
     for i, (axis, sequence) in enumerate(forces):
         bank[i, :, AXES.index(axis)] = sequence
-    return answered(part, beta, bank)
+    return wrench_sensitivities(part, beta, bank)
 
 
-def answered(part: Stretches, beta: Array, bank: Array) -> Array:
+def wrench_sensitivities(part: Windows, beta: Array, bank: Array) -> Array:
     """Sensitivity (m, n, c, f) to additional body forces and moments (f, run, 6), N and N m."""
-    pushed = replace(part, driven=replace(part.driven, inputs=replace(part.driven.inputs, extra=bank)))
+    pushed = replace(part, actuation=replace(part.actuation, inputs=replace(part.actuation.inputs, extra=bank)))
     m, which = part.count, np.arange(part.count)
     base, _ = simulate_windows(part, np.tile(beta, (m, 1)), part.nu0, part.eta0, which)
     S = np.zeros((*base.shape, len(bank)))
@@ -75,19 +75,19 @@ def answered(part: Stretches, beta: Array, bank: Array) -> Array:
         chosen = np.arange(begin, min(begin + each, len(bank)))
         lanes = len(chosen) * m
         motion = pushed.plant.simulate(
-            pushed.driven.inputs, np.tile(part.start, len(chosen)), part.steps, np.tile(part.nu0, (len(chosen), 1)),
+            pushed.actuation.inputs, np.tile(part.start, len(chosen)), part.steps, np.tile(part.nu0, (len(chosen), 1)),
             np.tile(part.eta0, (len(chosen), 1)), np.tile(beta, (lanes, 1)), np.repeat(chosen, m), np.full(lanes, STEP),
         )  # fmt: skip
-        out = predicted(part, motion.nu, motion.eta).reshape(len(chosen), *base.shape)
-        S[..., chosen] = np.moveaxis(difference(part, out, base[None]) / STEP, 0, -1)
+        out = predicted_channels(part, motion.nu, motion.eta).reshape(len(chosen), *base.shape)
+        S[..., chosen] = np.moveaxis(channel_difference(part, out, base[None]) / STEP, 0, -1)
     return S
 
 
-def typical_wrench(parts: Sequence[Stretches]) -> Array:
+def typical_wrench(parts: Sequence[Windows]) -> Array:
     """Rms force of the thrusters on each axis (6,), N and N m; at least `LEAST` of the largest."""
     total = np.zeros(6)
     for part in parts:
-        wrench = part.plant.thrust(part.driven.inputs.speed) @ allocation(part.plant.vehicle).T
+        wrench = part.plant.thrust(part.actuation.inputs.speed) @ allocation(part.plant.vehicle).T
         total += np.mean(wrench**2, axis=0) / len(parts)
     weight = part.plant.vehicle.weight
     return np.asarray(np.maximum(np.sqrt(total), LEAST * max(float(np.sqrt(total.max())), LEAST * weight)))

@@ -13,11 +13,10 @@ import numpy as np
 from scipy.linalg import solve_triangular
 
 from rovval.core.data import Array
-from rovval.diagnose.residuals.sensitivities import Linear
 
 
 @dataclass(frozen=True, slots=True)
-class Products:
+class NormalEquations:
     """Per window: ``A`` (m, k, k), ``b`` (m, k), ``c`` (m,); ``columns`` are the plant's slot numbers of the k parameters; ``offset`` (k,)
     how far each is from where its prior stands (None: all at it)."""
 
@@ -32,15 +31,15 @@ class Products:
         where = {column: i for i, column in enumerate(self.columns)}
         return np.array([where[s] for s in slots], dtype=int)
 
-    def __add__(self, other: Products) -> Products:
-        return Products(self.A + other.A, self.b + other.b, self.c + other.c, self.columns, self.offset)
+    def __add__(self, other: NormalEquations) -> NormalEquations:
+        return NormalEquations(self.A + other.A, self.b + other.b, self.c + other.c, self.columns, self.offset)
 
 
-def joined(parts: list[Products]) -> Products:
+def concatenated(parts: list[NormalEquations]) -> NormalEquations:
     """Windows of several runs behind one another."""
     if len(parts) == 1:
         return replace(parts[0], offset=None)
-    return Products(
+    return NormalEquations(
         np.concatenate([p.A for p in parts]),
         np.concatenate([p.b for p in parts]),
         np.concatenate([p.c for p in parts]),
@@ -49,7 +48,7 @@ def joined(parts: list[Products]) -> Products:
 
 
 @dataclass(frozen=True, slots=True)
-class Scaled:
+class Whitened:
     """A linearisation in the metric: residual ``r``, nuisances ``J``, ``columns`` and ``valid`` as in `Linear`; slopes ``x`` (m, n c, k) over the
     standard errors, of which ``root`` (m, n c) is the inverse (0: no measurement); nuisances ``q`` (m, n c, s) turned so that
     S^T V^-1 S = x^T x - y^T y =: ``A`` (m, k, k) with ``y`` = q^T x (m, s, k)."""
@@ -65,19 +64,19 @@ class Scaled:
     A: Array
 
     @property
-    def linear(self) -> Linear:
+    def linear(self) -> Linearisation:
         """The linearisation itself; slopes are 0 where nothing was measured."""
         S = self.x / np.where(self.root > 0, self.root, 1.0)[..., None]
-        return Linear(self.r, S.reshape(*self.r.shape, len(self.columns)), self.J, self.columns, self.valid)
+        return Linearisation(self.r, S.reshape(*self.r.shape, len(self.columns)), self.J, self.columns, self.valid)
 
-    def products(self, r: Array) -> Products:
+    def normal_equations(self, r: Array) -> NormalEquations:
         """Products of a residual ``r`` (m, n, c) with these slopes."""
-        scaled = r.reshape(self.root.shape) * self.root
-        z = _onto(self.q, scaled)
-        return Products(self.A, _onto(self.x, scaled) - _onto(self.y, z), (scaled**2).sum(axis=1) - (z**2).sum(axis=1), self.columns)
+        whiten = r.reshape(self.root.shape) * self.root
+        z = _onto(self.q, whiten)
+        return NormalEquations(self.A, _onto(self.x, whiten) - _onto(self.y, z), (whiten**2).sum(axis=1) - (z**2).sum(axis=1), self.columns)
 
 
-def products(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> Products:
+def normal_equations(linear: Linearisation, ok: np.ndarray, variance: Array, spread: Array) -> NormalEquations:
     """Products of every window; ``variance`` (n, c), ``spread`` (s,) standard error of its first nuisances, which are marginalised."""
     m, k = len(linear.r), linear.S.shape[-1]
     A, b, c = np.zeros((m, k, k)), np.zeros((m, k)), np.zeros(m)
@@ -86,19 +85,19 @@ def products(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> 
         r = linear.r[w].reshape(-1) * root
         z = q.T @ r
         A[w], b[w], c[w] = x.T @ x - y.T @ y, x.T @ r - y.T @ z, r @ r - z @ z
-    return Products(A, b, c, linear.columns)
+    return NormalEquations(A, b, c, linear.columns)
 
 
-def scaled(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> Scaled:
+def whiten(linear: Linearisation, ok: np.ndarray, variance: Array, spread: Array) -> Whitened:
     """A linearisation in the metric, kept for products with many residuals; arguments as for `products`."""
     m, n, k = len(linear.r), linear.r[0].size, linear.S.shape[-1]
     root, q, x, y = np.empty((m, n)), np.empty((m, n, len(spread))), _columns_first(m, n, k), np.empty((m, len(spread), k))
     for w in range(m):
         root[w], q[w], x[w], y[w] = _window(linear, w, ok, variance, spread)
-    return Scaled(linear.r, linear.J, linear.columns, linear.valid, root, q, x, y, _gram(x, x) - _gram(y, y))
+    return Whitened(linear.r, linear.J, linear.columns, linear.valid, root, q, x, y, _gram(x, x) - _gram(y, y))
 
 
-def beside(own: Linear, other: Scaled, columns: tuple[int, ...]) -> Scaled:
+def with_frozen_columns(own: Linearisation, other: Whitened, columns: tuple[int, ...]) -> Whitened:
     """A linearisation with further ``columns``, whose slopes are taken from another one nearby, and its nuisances with them."""
     place, k, m = [other.columns.index(c) for c in columns], len(own.columns), len(own.r)
     x = _columns_first(m, other.root.shape[1], k + len(place))
@@ -112,10 +111,10 @@ def beside(own: Linear, other: Scaled, columns: tuple[int, ...]) -> Scaled:
     J, q = other.J, other.q
     if not own.valid.all():  # the other's slopes there are of a window that ran
         J, q, x, y, A = (np.where(own.valid.reshape(-1, *[1] * (a.ndim - 1)), a, 0.0) for a in (J, q, x, y, A))
-    return Scaled(own.r, J, (*own.columns, *columns), own.valid, other.root, q, x, y, A)
+    return Whitened(own.r, J, (*own.columns, *columns), own.valid, other.root, q, x, y, A)
 
 
-def _window(linear: Linear, w: int, ok: np.ndarray, variance: Array, spread: Array) -> tuple[Array, Array, Array, Array]:
+def _window(linear: Linearisation, w: int, ok: np.ndarray, variance: Array, spread: Array) -> tuple[Array, Array, Array, Array]:
     """Of one window: inverse standard errors (n c,), turned nuisances (n c, s), scaled slopes (n c, k), and the product of the latter two."""
     root = np.where(ok[w], 1.0 / np.sqrt(variance), 0.0).reshape(-1)
     x = linear.S[w].reshape(len(root), -1) * root[:, None]
@@ -139,7 +138,7 @@ def _columns_first(m: int, n: int, k: int) -> Array:
     return np.empty((m, k, n)).swapaxes(1, 2)
 
 
-def start_corrected(linear: Linear, ok: np.ndarray, variance: Array, spread: Array) -> Array:
+def nuisance_corrected(linear: Linearisation, ok: np.ndarray, variance: Array, spread: Array) -> Array:
     """Residual (m, n, c) with the best of the first nuisances of each window, as many as ``spread`` has, taken out."""
     out = np.array(linear.r)
     root = 1.0 / np.sqrt(variance)
@@ -150,3 +149,17 @@ def start_corrected(linear: Linear, ok: np.ndarray, variance: Array, spread: Arr
         x0 = np.linalg.solve(np.eye(jw.shape[1]) + jw.T @ jw, jw.T @ (linear.r[w].reshape(-1, 1) * weight))
         out[w] = (linear.r[w].reshape(-1, 1) - (j * spread) @ x0).reshape(out[w].shape)
     return np.where(ok, out, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Linearisation:
+    """At one parameter point: residual measured - simulated ``r`` (m, n, c), sensitivities of the prediction to parameters ``S`` (m, n, c, k)
+    of ``columns`` and to nuisances ``J`` (m, n, c, s): initial states, then disturbances once these are known. A simulation that stops
+    (`plant`) holds its last state: a window where that happens at the point itself has ``valid`` (m,) False and no slopes, so that it costs what it
+    errs; where it happens a step away, that slope is nothing in that window."""
+
+    r: Array
+    S: Array
+    J: Array
+    columns: tuple[int, ...]
+    valid: np.ndarray

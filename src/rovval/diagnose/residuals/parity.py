@@ -14,10 +14,10 @@ import numpy as np
 from scipy import signal
 
 from rovval.core.data import Array, Flags
-from rovval.diagnose.residuals.dead_reckoning import RELATIONS, complete, drift, inside, measured
-from rovval.diagnose.residuals.delays import Traces, traced
-from rovval.diagnose.residuals.normal_equations import Products
-from rovval.diagnose.windows.shooting import Stretches
+from rovval.diagnose.residuals.dead_reckoning import RELATIONS, fully_measured, measured_motion, pose_drift, without_margin
+from rovval.diagnose.residuals.fault_signatures import FaultSignatures, fault_signatures
+from rovval.diagnose.residuals.normal_equations import NormalEquations
+from rovval.diagnose.windows.windows import Windows
 from rovval.effects import load
 
 LEAST_SIGMA = (0.005, 0.005, 0.002, 0.001, 0.001, 0.001)  # m, rad: no sensor is believed below these (chosen)
@@ -26,26 +26,22 @@ DEAD_RECKONED = 0.5  # a position that follows the integrated velocity closer th
 
 
 @dataclass(frozen=True, slots=True)
-class Parity:
+class ParityResiduals:
     """Rows (m, q) in standard errors and their change (m, q, k) per parameter of ``columns``; ``gram`` their products of those columns
     that leave a trace, ``factor`` which of them multiply what they measure, ``late`` which are delays; ``used`` relations, ``sigma`` of each, and
-    ``inflation`` of its score; ``of`` the motion that the traces are of. Zero rows where a window lacks pose or velocity."""
+    ``design_effect`` of its score; ``of`` the motion that the traces are of. Zero rows where a window lacks pose or velocity."""
 
     rows: Array
     traces: Array
-    gram: Products
+    gram: NormalEquations
     factor: Flags
     late: Flags
     columns: tuple[int, ...]
     used: tuple[str, ...]
     sigma: tuple[float, ...]
-    inflation: float
+    design_effect: float
     notes: tuple[str, ...]
-    of: Traces | None
-
-    def moved(self, beta: Array, columns: tuple[int, ...]) -> Moved:
-        """The same rows about another parameter point, for other columns."""
-        return Moved(self, beta, columns)
+    of: FaultSignatures | None
 
     @property
     def delays(self) -> tuple[int, ...]:
@@ -63,53 +59,44 @@ class Parity:
             traces[..., self.columns.index(column)] = self._scaled(slope[..., keep])
         return self.rows - self._scaled(made[..., keep]), traces
 
-    def _scaled(self, relations: Array) -> Array:
-        return np.asarray((relations / np.array(self.sigma)).reshape(self.rows.shape))
-
-
-@dataclass(frozen=True, slots=True)
-class Moved:
-    """Parity about the parameters ``beta`` (k,) for ``columns``."""
-
-    parity: Parity
-    beta: Array
-    columns: tuple[int, ...]
-
-    def products(self, inflation: float) -> Products:
-        """Products of the rows, discounted so that one common ``inflation`` suits them and the dynamics. But for delays, rows are linear in the sensors'
+    def normal_equations(self, beta: Array, columns: tuple[int, ...], design_effect: float) -> NormalEquations:
+        """Products of the rows, discounted so that one common ``design_effect`` suits them and the dynamics. But for delays, rows are linear in the sensors'
         parameters, r(beta) = r - T beta, so that with A = T'T, b = T'r and c = r'r at the null value b(beta) = b - A beta and
         c(beta) = c - beta'(b + b(beta)); columns without a trace have zeros. Of a measured velocity that is 1 + s times the true one, s is not
         s of it but s / (1 + s), with slope 1 / (1 + s)^2."""
-        null, m, k = self._about_delays(), len(self.parity.gram.c), len(self.columns)
-        given = np.where(self.parity.late, 0.0, self.beta[list(null.columns)])
-        beta = np.where(self.parity.factor, given / (1.0 + given), given)
-        slope = np.where(self.parity.factor, (1.0 + given) ** -2, 1.0)
-        b = null.b - null.A @ beta
-        c = null.c - (null.b + b) @ beta
+        null, m, k = self._about_delays(beta), len(self.gram.c), len(columns)
+        given = np.where(self.late, 0.0, beta[list(null.columns)])
+        taken = np.where(self.factor, given / (1.0 + given), given)
+        slope = np.where(self.factor, (1.0 + given) ** -2, 1.0)
+        b = null.b - null.A @ taken
+        c = null.c - (null.b + b) @ taken
         place = {column: i for i, column in enumerate(null.columns)}
-        to = [i for i, column in enumerate(self.columns) if column in place]
-        of = [place[self.columns[i]] for i in to]
-        scale = inflation / self.parity.inflation
-        out = Products(np.zeros((m, k, k)), np.zeros((m, k)), scale * c, self.columns)
+        to = [i for i, column in enumerate(columns) if column in place]
+        of = [place[columns[i]] for i in to]
+        scale = design_effect / self.design_effect
+        out = NormalEquations(np.zeros((m, k, k)), np.zeros((m, k)), scale * c, columns)
         out.A[np.ix_(range(m), to, to)] = scale * null.A[np.ix_(range(m), of, of)] * np.outer(slope[of], slope[of])
         out.b[:, to] = scale * b[:, of] * slope[of]
         return out
 
-    def _about_delays(self) -> Products:
+    def _about_delays(self, beta: Array) -> NormalEquations:
         """Products of the columns that leave a trace about the delays of ``beta``, all else at its null value."""
-        columns = self.parity.gram.columns
-        if not self.beta[list(self.parity.delays)].any():
-            return self.parity.gram
-        rows, traces = self.parity.undone(self.beta)
-        return _gram(rows, traces[..., [self.parity.columns.index(c) for c in columns]], columns)
+        columns = self.gram.columns
+        if not beta[list(self.delays)].any():
+            return self.gram
+        rows, traces = self.undone(beta)
+        return _gram(rows, traces[..., [self.columns.index(c) for c in columns]], columns)
+
+    def _scaled(self, relations: Array) -> Array:
+        return np.asarray((relations / np.array(self.sigma)).reshape(self.rows.shape))
 
 
-def parity(stretches: Stretches, columns: tuple[int, ...]) -> Parity:
+def parity_residuals(stretches: Windows, columns: tuple[int, ...]) -> ParityResiduals:
     """Parity rows of every window and the trace that each sensor parameter among ``columns`` leaves in them."""
-    nu, eta, whole = measured(stretches)
-    nominal, usable = drift(inside(nu), inside(eta), stretches.run.dt), complete(stretches)
+    nu, eta, whole = measured_motion(stretches)
+    nominal, usable = pose_drift(without_margin(nu), without_margin(eta), stretches.run.dt), fully_measured(stretches)
     nu, eta = (signal.savgol_filter(a, SMOOTH, 2, axis=1) for a in (nu, eta))
-    of = traced(stretches, nu, eta, usable)
+    of = fault_signatures(stretches, nu, eta, usable)
     traces = np.zeros((*nominal.shape, len(columns)))
     for i, column in enumerate(columns):
         if load(stretches.plant.slots[column].effect).place == "sensor":
@@ -119,7 +106,7 @@ def parity(stretches: Stretches, columns: tuple[int, ...]) -> Parity:
     return _weighted(of, nominal, traces, columns, keep)
 
 
-def _weighted(of: Traces, nominal: Array, traces: Array, columns: tuple[int, ...], keep: list[int]) -> Parity:
+def _weighted(of: FaultSignatures, nominal: Array, traces: Array, columns: tuple[int, ...], keep: list[int]) -> ParityResiduals:
     """Rows and traces in standard errors: what all sensor faults together leave is the noise of each relation."""
     stretches, m, k = of.stretches, len(nominal), len(columns)
     if not keep:
@@ -143,26 +130,26 @@ def _weighted(of: Traces, nominal: Array, traces: Array, columns: tuple[int, ...
         return _none(m, columns, tuple(notes))
     rows = (nominal[..., keep] / sigma).reshape(m, -1)
     scaled = (traces[..., keep, :] / sigma[:, None]).reshape(m, rows.shape[1], k)
-    inflation = _inflation(rows, scaled, free)
+    design_effect = _inflation(rows, scaled, free)
     gram = _gram(rows, scaled[..., seen], tuple(columns[i] for i in seen))
     factor = np.array([slots[i].parameter.error == "factor" for i in seen], dtype=bool)
     late = np.array([slots[i].parameter.error == "delay" for i in seen], dtype=bool)
-    return Parity(rows, scaled, gram, factor, late, columns, tuple(RELATIONS[i] for i in keep), tuple(sigma.tolist()), inflation, tuple(notes), of)
+    return ParityResiduals(rows, scaled, gram, factor, late, columns, tuple(RELATIONS[i] for i in keep), tuple(sigma.tolist()), design_effect, tuple(notes), of)
 
 
-def _none(m: int, columns: tuple[int, ...], notes: tuple[str, ...]) -> Parity:
+def _none(m: int, columns: tuple[int, ...], notes: tuple[str, ...]) -> ParityResiduals:
     """No rows at all."""
     rows, traces = np.zeros((m, 0)), np.zeros((m, 0, len(columns)))
     nothing = np.zeros(0, dtype=bool)
-    return Parity(rows, traces, _gram(rows, traces[..., :0], ()), nothing, nothing, columns, (), (), 1.0, notes, None)
+    return ParityResiduals(rows, traces, _gram(rows, traces[..., :0], ()), nothing, nothing, columns, (), (), 1.0, notes, None)
 
 
-def _gram(rows: Array, traces: Array, columns: tuple[int, ...]) -> Products:
+def _gram(rows: Array, traces: Array, columns: tuple[int, ...]) -> NormalEquations:
     turned = traces.swapaxes(1, 2)
-    return Products(turned @ traces, (turned @ rows[..., None])[..., 0], (rows**2).sum(axis=1), columns)
+    return NormalEquations(turned @ traces, (turned @ rows[..., None])[..., 0], (rows**2).sum(axis=1), columns)
 
 
-def _independent(stretches: Stretches, keep: list[int], sigma: Array, notes: list[str]) -> tuple[list[int], Array]:
+def _independent(stretches: Windows, keep: list[int], sigma: Array, notes: list[str]) -> tuple[list[int], Array]:
     """Leave out horizontal positions that were integrated from the velocities they would check."""
     noise = dict(zip(stretches.channels, stretches.noise, strict=True))
     seconds = stretches.steps * stretches.run.dt

@@ -11,15 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.windows.shooting import Stretches
+from rovval.diagnose.residuals.nuisances import POSE_INDEX
+from rovval.diagnose.windows.windows import Windows
 
-POSE_INDEX = {6: 3, 7: 4, 8: 2, 9: 5}  # start states after the six velocities: roll, pitch, depth, heading
 STEP = 0.25  # finite-difference step as a share of a parameter's typical size
-STATE_STEP = (0.02, 0.02, 0.02, 0.01, 0.01, 0.01, 0.01, 0.01, 0.02)  # m/s, rad/s, rad, m: about twice the noise of good sensors
 
 
 @dataclass(frozen=True, slots=True)
-class Direction:
+class DisplacedColumn:
     """A column that does not start at the point reached but where the slots ``at`` are moved to (an onset, a period): the sensitivity
     there to ``slot``, or, where ``slot`` is -1, the change from the point reached to there. ``id`` is past the plant's slots."""
 
@@ -30,14 +29,14 @@ class Direction:
 
 @dataclass(frozen=True, slots=True)
 class Columns:
-    """What a linearisation is asked for: plant ``slots`` that move by themselves, and ``directions`` from starting points of their own."""
+    """What a linearisation is asked for: plant ``slots`` that move by themselves, and ``displaced`` from starting points of their own."""
 
     slots: tuple[int, ...] = ()
-    directions: tuple[Direction, ...] = ()
+    displaced: tuple[DisplacedColumn, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
-class Lane:
+class Perturbation:
     """One simulation of every window: parameters, offset of the start states, and which derivative it serves: (its output less that
     of lane ``against``) / ``step`` for a state or a column; a step of 0 serves none."""
 
@@ -50,35 +49,35 @@ class Lane:
     against: int = 0
 
 
-def lanes_of(
-    stretches: Stretches, beta: Array, states: list[tuple[int, float]], columns: tuple[int, ...], directions: Sequence[Direction]
-) -> list[Lane]:
+def perturbations(
+    stretches: Windows, beta: Array, states: list[tuple[int, float]], columns: tuple[int, ...], directions: Sequence[DisplacedColumn]
+) -> list[Perturbation]:
     """Nominal first, then start states, then parameters (central differences inside the bounds), then directions."""
     still = np.zeros(6)
-    lanes = [Lane(beta, still, still)]
+    lanes = [Perturbation(beta, still, still)]
     for i, (index, step) in enumerate(states):
         unit = np.zeros(6)
         unit[index if index < 6 else POSE_INDEX[index]] = step
-        lanes.append(Lane(beta, unit if index < 6 else still, still if index < 6 else unit, state=i, step=step))
+        lanes.append(Perturbation(beta, unit if index < 6 else still, still if index < 6 else unit, state=i, step=step))
     for column in columns:
         up, down = _both_ways(stretches, beta, column)
-        lanes.append(Lane(_moved(beta, [(column, beta[column] + down)]), still, still) if down else lanes[0])
-        lanes.append(Lane(_moved(beta, [(column, beta[column] + up)]), still, still, column=column, step=up - down, against=len(lanes) - 1))
+        lanes.append(Perturbation(_moved(beta, [(column, beta[column] + down)]), still, still) if down else lanes[0])
+        lanes.append(Perturbation(_moved(beta, [(column, beta[column] + up)]), still, still, column=column, step=up - down, against=len(lanes) - 1))
     bases = dict.fromkeys(_idle(stretches, beta, directions), 0)
     for d in directions:
         there = _moved(beta, list(d.at))
         if d.slot < 0:
-            lanes.append(Lane(there, still, still, column=d.id, step=1.0))
+            lanes.append(Perturbation(there, still, still, column=d.id, step=1.0))
             continue
         if d.at not in bases:
             bases[d.at] = len(lanes)
-            lanes.append(Lane(there, still, still))
+            lanes.append(Perturbation(there, still, still))
         up, _ = _both_ways(stretches, there, d.slot)
-        lanes.append(Lane(_moved(there, [(d.slot, there[d.slot] + up)]), still, still, column=d.id, step=up, against=bases[d.at]))
+        lanes.append(Perturbation(_moved(there, [(d.slot, there[d.slot] + up)]), still, still, column=d.id, step=up, against=bases[d.at]))
     return lanes
 
 
-def _idle(stretches: Stretches, beta: Array, directions: Sequence[Direction]) -> set[tuple[tuple[int, float], ...]]:
+def _idle(stretches: Windows, beta: Array, directions: Sequence[DisplacedColumn]) -> set[tuple[tuple[int, float], ...]]:
     """Points at which nothing is there yet: what stands elsewhere only places an effect of no size, and the simulation is the nominal one."""
     sized: dict[tuple[tuple[int, float], ...], list[int]] = {}
     for d in directions:
@@ -87,16 +86,16 @@ def _idle(stretches: Stretches, beta: Array, directions: Sequence[Direction]) ->
     return {at for at, own in sized.items() if all(s >= 0 and beta[s] == slots[s].parameter.null for s in own)}
 
 
-def one_sided(stretches: Stretches, beta: Array, columns: tuple[int, ...]) -> list[Lane]:
+def forward_differences(stretches: Windows, beta: Array, columns: tuple[int, ...]) -> list[Perturbation]:
     """One lane a parameter, the way that its bounds leave open."""
     still, lanes = np.zeros(6), []
     for column in columns:
         up, down = _both_ways(stretches, beta, column)
-        lanes.append(Lane(_moved(beta, [(column, beta[column] + (up or down))]), still, still, column=column, step=up or down))
+        lanes.append(Perturbation(_moved(beta, [(column, beta[column] + (up or down))]), still, still, column=column, step=up or down))
     return lanes
 
 
-def _both_ways(stretches: Stretches, beta: Array, column: int) -> tuple[float, float]:
+def _both_ways(stretches: Windows, beta: Array, column: int) -> tuple[float, float]:
     """Steps up and down of a parameter that stay within its bounds; 0 for the way that is barred."""
     parameter = stretches.plant.slots[column].parameter
     step = STEP * parameter.typical
@@ -112,11 +111,3 @@ def _moved(beta: Array, to: Sequence[tuple[int, float]]) -> Array:
     return there
 
 
-def state_steps(stretches: Stretches) -> list[tuple[int, float]]:
-    """Initial states that are marginalised: six velocities, roll, pitch, and depth where it is a residual channel."""
-    chosen = list(enumerate(STATE_STEP[:8]))
-    if "z" in stretches.channels:
-        chosen.append((8, STATE_STEP[8]))
-    if "psi" in stretches.channels:
-        chosen.append((9, STATE_STEP[7]))
-    return chosen

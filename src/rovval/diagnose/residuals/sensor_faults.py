@@ -6,8 +6,8 @@ import numpy as np
 from scipy import stats
 
 from rovval.core.data import Array
-from rovval.diagnose.residuals.parity import Parity
-from rovval.diagnose.windows.shooting import Stretches
+from rovval.diagnose.residuals.parity import ParityResiduals
+from rovval.diagnose.windows.windows import Windows
 from rovval.effects import load
 from rovval.plant.slots import Slot
 
@@ -15,7 +15,7 @@ STEPS, SETTLED = 6, 1e-9  # Gauss-Newton steps at most, and the share of the los
 FREEDOM = 5  # windows more than parameters, from which their scatter says how sure a fault is: six for one (as `separate.FEW`)
 
 
-def faults(parity_rows: Parity, stretches: Stretches, origin: Array) -> list[dict[str, object]]:
+def sensor_faults(parity_rows: ParityResiduals, stretches: Windows, origin: Array) -> list[dict[str, object]]:
     """Each sensor effect, and the factor of each axis, fitted to the parity rows alone: value with 90 % interval, and whether it differs from
     ``origin`` (k,), what the vehicle's file says of the sensors (``was``), significantly on its own. One that has hardly fewer parameters than
     there are windows to check it fits whatever it likes, and is not told."""
@@ -54,7 +54,7 @@ def faults(parity_rows: Parity, stretches: Stretches, origin: Array) -> list[dic
     return found
 
 
-def _fitted(check: Parity, origin: Array, places: list[int]) -> tuple[Array, Array, Array, float]:
+def _fitted(check: ParityResiduals, origin: Array, places: list[int]) -> tuple[Array, Array, Array, float]:
     """Departure from ``origin`` (p,) at which faults fit the rows best, the score of every window there (m, p), their curvature (p, p) and the loss. Rows
     bend with a delay: Gauss-Newton steps, as long as they fit better."""
     beta, columns = origin.copy(), [check.columns[i] for i in places]
@@ -75,7 +75,7 @@ def _normal(rows: Array, G: Array) -> tuple[Array, Array]:
     return np.einsum("wqi,wq->wi", G, rows), np.einsum("wqi,wqj->ij", G, G) + 1e-12 * np.eye(G.shape[-1])
 
 
-def _about(check: Parity, beta: Array) -> tuple[Array, Array]:
+def _about(check: ParityResiduals, beta: Array) -> tuple[Array, Array]:
     """Rows and traces about ``beta`` (k,); of its columns only sensors leave a trace, delays one that bends."""
     rows, traces = check.undone(beta)
     straight = np.array([0.0 if c in check.delays else beta[c] for c in check.columns])

@@ -15,10 +15,10 @@ from rovval.diagnose.decision.finding import Finding
 from rovval.diagnose.decision.unexplained import Unexplained as Rest
 from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.hypotheses.change_points import change_points
-from rovval.diagnose.inference.gap import axis_rows, axis_weight
-from rovval.diagnose.inference.problem import Problem
-from rovval.diagnose.inference.shrinkage import harm, shrinkage
-from rovval.diagnose.residuals.sensor_faults import faults
+from rovval.diagnose.inference.gap import axis_table, weighted_errors
+from rovval.diagnose.inference.shrinkage import shrinkage, worsened_axes
+from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.residuals.sensor_faults import sensor_faults
 from rovval.diagnose.result.attribution import slices, worst
 from rovval.diagnose.result.causes import causes, settings
 from rovval.diagnose.result.diagnosis import (
@@ -44,7 +44,7 @@ from rovval.diagnose.result.figures import coherence_matrix, heat_map, traces
 from rovval.diagnose.result.recalibration import recalibration
 from rovval.diagnose.search.baseline import healthy_without, reduction_beside
 from rovval.diagnose.search.forward import Selection
-from rovval.diagnose.windows.saturation import NO_MEASUREMENT
+from rovval.diagnose.windows.conditioning import NO_MEASUREMENT
 from rovval.vehicle.write import with_effects
 
 MOST_SLICES = 5  # named of where the gap lies
@@ -86,17 +86,17 @@ def assemble(
         disturbance=_disturbance(problem),
         left=_unexplained(decision.unexplained),
         calibration=recalibration(problem, selection, decision, before, tolerance, seed, progress),
-        harm=tuple(AxisHarm(**row) for row in harm(shrunk)),
+        harm=tuple(AxisHarm(**row) for row in worsened_axes(shrunk)),
         parity=_parity(problem),
-        heatmap=heat_map(problem.parts[0], before[0], seed),
+        heatmap=heat_map(problem.runs[0], before[0], seed),
         traces=traces(problem, decision.fit, before),
         coherence=coherence_matrix(problem, selection, decision),
-        inputs=problem.parts[0].driven.source,
+        inputs=problem.runs[0].actuation.source,
         log=_remarks(problem, before),
         runs_left_out=left_out,
-        left_out_s=sum(part.contact_s for part in problem.parts),
-        windows_stopped=sum(part.stopped for part in problem.parts),
-        outliers=sum(part.outliers for part in problem.parts),
+        left_out_s=sum(part.contact_s for part in problem.runs),
+        windows_stopped=sum(part.stopped for part in problem.runs),
+        outliers=sum(part.outliers for part in problem.runs),
         settings=found,
         vehicle_fixed=with_effects(problem.plant.vehicle, found) if found else "",
     )
@@ -104,7 +104,7 @@ def assemble(
 
 def _settings(problem: Problem, tolerance: float) -> dict[str, Any]:
     """What was diagnosed, and with which settings."""
-    runs = [part.run for part in problem.parts]
+    runs = [part.run for part in problem.runs]
     return {
         "rovval": __version__,
         "run": ", ".join(run.id for run in runs),
@@ -112,8 +112,8 @@ def _settings(problem: Problem, tolerance: float) -> dict[str, Any]:
         "vehicle": problem.plant.vehicle.name,
         "vehicle_hash": problem.plant.vehicle.hash,
         "model": problem.plant.model,
-        "window_s": round((problem.parts[0].steps + 1) * runs[0].dt, 6),
-        "windows": problem.blocks,
+        "window_s": round((problem.runs[0].steps + 1) * runs[0].dt, 6),
+        "windows": problem.window_count,
         "calibration_slop": tolerance,
         "synthetic": next((run.properties["synthetic"] for run in runs if "synthetic" in run.properties), ""),
     }
@@ -121,9 +121,9 @@ def _settings(problem: Problem, tolerance: float) -> dict[str, Any]:
 
 def _gap(problem: Problem, before: list[Array], seed: int) -> Gap:
     """How large the gap is, in which regimes it lies and when it changes; ``before`` are the nominal simulator's residuals."""
-    axes = {axis: AxisGap.model_validate(row) for axis, row in axis_rows(problem, before).items()}
+    axes = {axis: AxisGap.model_validate(row) for axis, row in axis_table(problem, before).items()}
     changes = list[float]()
-    for part, error in zip(problem.parts, before, strict=True):
+    for part, error in zip(problem.runs, before, strict=True):
         mean = np.where(part.ok, error, 0.0).sum(axis=1) / np.maximum(part.ok.sum(axis=1), 1)
         changes.extend(change_points(part, mean, seed))
     return Gap(axes=axes, where=_where(problem, before, axes, seed), change_points_s=tuple(changes))
@@ -132,7 +132,7 @@ def _gap(problem: Problem, before: list[Array], seed: int) -> Gap:
 def _where(problem: Problem, before: list[Array], axes: Mapping[str, AxisGap], seed: int) -> tuple[GapSlice, ...]:
     """The regimes of axes that hold more of the gap than their time would."""
     shares = {axis: row.share for axis, row in axes.items()}
-    found = [s for part, error in zip(problem.parts, before, strict=True) for s in worst(slices(part, error, part.ok, seed), shares)]
+    found = [s for part, error in zip(problem.runs, before, strict=True) for s in worst(slices(part, error, part.ok, seed), shares)]
     return tuple(
         GapSlice(axis=s.axis, regime=s.regime, share=s.share, time_share=s.time_share, lift=s.lift, low=s.low, high=s.high)
         for s in found[:MOST_SLICES]
@@ -181,15 +181,15 @@ def _unexplained(rest: Rest | None) -> Unexplained | None:
 
 def _parity(problem: Problem) -> tuple[SensorFault, ...]:
     """Every fault of a sensor that kinematics can show, of each run."""
-    found = [row for check, part in zip(problem.parity, problem.parts, strict=True) for row in faults(check, part, problem.origin)]
+    found = [row for check, part in zip(problem.parity, problem.runs, strict=True) for row in sensor_faults(check, part, problem.origin)]
     return tuple(SensorFault.model_validate(row) for row in found)
 
 
 def _remarks(problem: Problem, before: list[Array]) -> tuple[LogRemark, ...]:
     """What of the logs is no plain measurement: saturated, held or repeated channels, and angles that contradict their rates."""
-    found = [(part.run.id, f) for part in problem.parts for f in part.run.findings if f.code in NO_MEASUREMENT]
+    found = [(part.run.id, f) for part in problem.runs for f in part.run.findings if f.code in NO_MEASUREMENT]
     rows = [LogRemark(run=run, channel=f.where, finding=f.code, detail=f.detail) for run, f in found]
     text = "and {} contradict each other by {:.2g} degrees within a window, whatever fault of a sensor is assumed"
-    opposed = inconsistencies(problem, axis_weight(problem, before))
+    opposed = inconsistencies(problem, weighted_errors(problem, before))
     own = [LogRemark(run=i.run, channel=i.angle, finding="contradicted", detail=text.format(i.rate, np.degrees(i.drift))) for i in opposed]
     return (*rows, *own)

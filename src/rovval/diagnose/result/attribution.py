@@ -12,7 +12,7 @@ import numpy as np
 
 from rovval.core.data import Array, Flags
 from rovval.core.units import DEGREES
-from rovval.diagnose.windows.shooting import Stretches, axis_channels
+from rovval.diagnose.windows.windows import Windows, axis_channels
 
 RESAMPLES = 200
 FEWEST_WINDOWS = 4  # a slice that touches fewer windows carries no interval
@@ -36,7 +36,7 @@ class Slice:
 
 
 
-def regimes(stretches: Stretches) -> dict[str, Flags]:
+def regimes(stretches: Windows) -> dict[str, Flags]:
     """Name in words -> where it holds (m, n), from what was measured and commanded."""
     run, found = stretches.run, dict[str, Flags]()
     at = stretches.start[:, None] + np.arange(stretches.steps + 1)[None, :]
@@ -66,7 +66,7 @@ def regimes(stretches: Stretches) -> dict[str, Flags]:
     return {name: flags for name, flags in found.items() if 0.02 < flags.mean() < 0.98}
 
 
-def slices(stretches: Stretches, error: Array, ok: Flags, seed: int) -> list[Slice]:
+def slices(stretches: Windows, error: Array, ok: Flags, seed: int) -> list[Slice]:
     """Every axis in every regime, with a bootstrap over windows. ``error`` (m, n, c)."""
     rng = np.random.default_rng(seed)
     draws = rng.integers(0, len(error), (RESAMPLES, len(error)))
@@ -132,8 +132,8 @@ def _headings(psi: Array) -> dict[str, Flags]:
     }
 
 
-def _thrusters(stretches: Stretches, at: np.ndarray) -> dict[str, Flags]:
-    speed, found = stretches.driven.inputs.speed[at], dict[str, Flags]()
+def _thrusters(stretches: Windows, at: np.ndarray) -> dict[str, Flags]:
+    speed, found = stretches.actuation.inputs.speed[at], dict[str, Flags]()
     for i, name in enumerate(stretches.plant.vehicle.thrusters):
         limit = 0.3 * float(np.quantile(np.abs(speed[..., i]), 0.95))
         if limit > 0:

@@ -8,9 +8,9 @@ from rovval import effects
 from rovval.core.data import Array
 from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
-from rovval.diagnose.inference.hypothesis_fit import Confirmed, errors, interval, roughly
-from rovval.diagnose.inference.problem import Problem
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, confidence_interval, fit_quickly, standard_errors
 from rovval.diagnose.inference.shrinkage import shrinkage
+from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.result.diagnosis import Cause, Parameter, Shrinkage
 from rovval.diagnose.search.baseline import SelectedCause
 
@@ -31,14 +31,14 @@ def members(decision: Decision, h: Hypothesis) -> tuple[str, ...]:
     return tuple(name for name, _ in decision.groups[h.name][:MOST_GROUP])
 
 
-def alone(problem: Problem, fitted: Confirmed, h: Hypothesis) -> Array:
+def alone(problem: Problem, fitted: HypothesisFit, h: Hypothesis) -> Array:
     """Parameters (k,) of the joint fit with every other cause put back to the vehicle's file."""
     beta = problem.origin.copy()
     beta[list(h.slots)] = fitted.beta[list(h.slots)]
     return beta
 
 
-def settings(problem: Problem, fitted: Confirmed | None) -> tuple[str, ...]:
+def settings(problem: Problem, fitted: HypothesisFit | None) -> tuple[str, ...]:
     """The causes as the command line's ``--effect`` takes them, numbers in full."""
     if fitted is None:
         return ()
@@ -52,7 +52,7 @@ def settings(problem: Problem, fitted: Confirmed | None) -> tuple[str, ...]:
 def _cause(problem: Problem, decision: Decision, one: SelectedCause, before: list[Array], since: float | None, seed: int) -> Cause:
     assert decision.fit is not None
     h, joint = one.hypothesis, decision.fit
-    single = joint if len(decision.causes) == 1 else roughly(problem, alone(problem, joint, h), h.slots, joint.point.scaled)
+    single = joint if len(decision.causes) == 1 else fit_quickly(problem, alone(problem, joint, h), h.slots, joint.posterior.whitened)
     return Cause(
         effect=h.name,
         title=effects.load(h.name.partition("[")[0]).title,
@@ -66,13 +66,13 @@ def _cause(problem: Problem, decision: Decision, one: SelectedCause, before: lis
     )
 
 
-def _parameters(problem: Problem, fitted: Confirmed, h: Hypothesis) -> dict[str, Parameter]:
+def _parameters(problem: Problem, fitted: HypothesisFit, h: Hypothesis) -> dict[str, Parameter]:
     """Values of the joint fit; their intervals add the form error of the equations and stay within the parameters' bounds."""
-    found, error = dict[str, Parameter](), errors(problem, fitted)
+    found, error = dict[str, Parameter](), standard_errors(problem, fitted)
     for slot in h.slots:
         p, value = problem.plant.slots[slot].parameter, float(fitted.beta[slot])
         form = FORM * abs(value - float(problem.origin[slot]))
-        low, high = interval(value, float(np.hypot(error[fitted.slots.index(slot)], form)), problem.blocks)
+        low, high = confidence_interval(value, float(np.hypot(error[fitted.slots.index(slot)], form)), problem.window_count)
         found[p.name] = Parameter(
             value=value, low=max(low, p.low), high=min(high, p.high), unit=p.unit, null=p.null, at_bound=slot in fitted.at_bound
         )

@@ -15,15 +15,16 @@ from rovval.core.channels import VELOCITIES
 from rovval.core.data import Array, ClockReport, Reason, Run
 from rovval.diagnose.criteria import PRIOR_WIDTH
 from rovval.diagnose.decision.verdict import Decision
-from rovval.diagnose.inference.cross_validation import Ring, fit, folds_of
-from rovval.diagnose.inference.prior import Prior
-from rovval.diagnose.inference.problem import Problem
-from rovval.diagnose.residuals.normal_equations import products
-from rovval.diagnose.residuals.sensitivities import linearise, state_spread
+from rovval.diagnose.problem.cross_validation import FoldSums, cross_validate, make_folds
+from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.residuals.normal_equations import normal_equations
+from rovval.diagnose.residuals.nuisances import initial_state_sd
+from rovval.diagnose.residuals.ridge import Prior
+from rovval.diagnose.residuals.sensitivities import linearise
 from rovval.diagnose.result.causes import alone, members
 from rovval.diagnose.result.diagnosis import NextExperiment, ScheduleLeg, ThrusterSchedule
 from rovval.diagnose.result.manoeuvres import Manoeuvre, bank
-from rovval.diagnose.windows.shooting import cut
+from rovval.diagnose.windows.multiple_shooting import cut_run
 
 BUSY, LEAST_BUSY = 0.98, 0.2  # chosen: quantile of a thruster's speed in the log that counts as its most, and least share of its peak
 DT = 0.1
@@ -66,7 +67,7 @@ def next_experiment(problem: Problem, decision: Decision) -> Experiment | None:
         assert decision.fit is not None
         group = members(decision, one.hypothesis)
         if len(group) > 1:
-            speed = np.concatenate([np.abs(p.driven.inputs.speed) for p in problem.parts])
+            speed = np.concatenate([np.abs(p.actuation.inputs.speed) for p in problem.runs])
             most = np.maximum(np.quantile(speed, BUSY, axis=0), LEAST_BUSY * speed.max())
             return best(problem, alone(problem, decision.fit, one.hypothesis), group, most)
     return None
@@ -91,21 +92,21 @@ def _misfit(problem: Problem, beta: Array, members: tuple[str, ...], manoeuvre: 
     if run is None:
         return None
     plant = problem.plant
-    stretches = cut(run, plant.vehicle, plant.model, WINDOW_S)
+    stretches = cut_run(run, plant.vehicle, plant.model, WINDOW_S)
     base = plant.null.copy()
     free = {name: plant.hypotheses[name] for name in members}
     columns = tuple(sorted({s for slots in free.values() for s in slots}))
-    keep = [problem.parts[0].channels.index(c) for c in stretches.channels if c in problem.parts[0].channels]
-    if len(keep) != len(stretches.channels) or stretches.steps + 1 > len(problem.variance):
+    keep = [problem.runs[0].channels.index(c) for c in stretches.channels if c in problem.runs[0].channels]
+    if len(keep) != len(stretches.channels) or stretches.steps + 1 > len(problem.gap.variance):
         return None
-    variance = problem.variance[: stretches.steps + 1][:, keep]
-    data = products(linearise(stretches, base, columns), stretches.ok, variance, state_spread(stretches))
-    ring = Ring.of(data, folds_of(np.zeros(len(data.c), dtype=int)))
+    variance = problem.gap.variance[: stretches.steps + 1][:, keep]
+    data = normal_equations(linearise(stretches, base, columns), stretches.ok, variance, initial_state_sd(stretches))
+    ring = FoldSums.of(data, make_folds(np.zeros(len(data.c), dtype=int)))
     left = [
-        fit(ring, Prior({s: PRIOR_WIDTH * plant.slots[s].parameter.typical for s in slots}), problem.inflation).loss
+        cross_validate(ring, Prior({s: PRIOR_WIDTH * plant.slots[s].parameter.typical for s in slots}), problem.design_effect).loss
         for name, slots in free.items()
     ]
-    return (min(left[1:]) - left[0]) / (problem.inflation * len(data.c))
+    return (min(left[1:]) - left[0]) / (problem.design_effect * len(data.c))
 
 
 def _flown(problem: Problem, beta: Array, manoeuvre: Manoeuvre) -> Run | None:
@@ -117,9 +118,9 @@ def _flown(problem: Problem, beta: Array, manoeuvre: Manoeuvre) -> Run | None:
     n = len(speed)
     t = np.arange(n, dtype=np.float64) * DT
     side = {
-        name: np.full(n, float(np.nanmedian(problem.parts[0].run.get(name))))
+        name: np.full(n, float(np.nanmedian(problem.runs[0].run.get(name))))
         for name in ("altitude", "wall_distance", "voltage", "tether_length")
-        if problem.parts[0].run.measured(name)
+        if problem.runs[0].run.measured(name)
     }
     inputs = Inputs(dt=DT, speed=speed, hold=False, t=t, altitude=side.get("altitude"), wall_distance=side.get("wall_distance"),
                     voltage=side.get("voltage"), tether_length=side.get("tether_length"))  # fmt: skip
@@ -129,7 +130,7 @@ def _flown(problem: Problem, beta: Array, manoeuvre: Manoeuvre) -> Run | None:
         return None
     values = dict(zip(VELOCITIES, motion.nu[0].T, strict=True)) | dict(zip(("x", "y", "z", "phi", "theta", "psi"), motion.eta[0].T, strict=True))
     values |= {f"n:{name}": speed[:, i] for i, name in enumerate(vehicle.thrusters)} | side
-    logged = {c for part in problem.parts for c in (*VELOCITIES, "x", "y", "z", "phi", "theta", "psi") if part.run.measured(c)}
+    logged = {c for part in problem.runs for c in (*VELOCITIES, "x", "y", "z", "phi", "theta", "psi") if part.run.measured(c)}
     values = {name: v for name, v in values.items() if name in logged or ":" in name or name in side}
     reasons = {name: np.full(n, Reason.OK, dtype=np.uint8) for name in values}
     clock = ClockReport("simulated", n, n, DT, None, None)

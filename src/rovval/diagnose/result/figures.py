@@ -7,20 +7,20 @@ import numpy as np
 from rovval.core.data import Array
 from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.inference.gap import ANGULAR
-from rovval.diagnose.inference.hypothesis_fit import Confirmed
-from rovval.diagnose.inference.problem import Problem
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
+from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.coherence import coherence
 from rovval.diagnose.residuals.sensitivities import residual
 from rovval.diagnose.result.attribution import slices
 from rovval.diagnose.result.diagnosis import Coherence, HeatMap, Trace
 from rovval.diagnose.search.forward import Selection
-from rovval.diagnose.windows.shooting import Stretches, axis_channels
+from rovval.diagnose.windows.windows import Windows, axis_channels
 
 MOST_TRACES = 4
 MOST_COHERENCE = 10
 
 
-def heat_map(part: Stretches, error: Array, seed: int) -> HeatMap:
+def heat_map(part: Windows, error: Array, seed: int) -> HeatMap:
     """Share of each axis's gap in each regime, and the lift."""
     found = slices(part, error, part.ok, seed)
     axes = list(dict.fromkeys(s.axis for s in found))
@@ -32,21 +32,21 @@ def heat_map(part: Stretches, error: Array, seed: int) -> HeatMap:
     return HeatMap(axes=tuple(axes), regimes=tuple(regimes), share=_rows(share, 4), lift=_rows(lift, 3))
 
 
-def traces(problem: Problem, final: Confirmed | None, before: list[Array]) -> tuple[Trace, ...]:
+def traces(problem: Problem, final: HypothesisFit | None, before: list[Array]) -> tuple[Trace, ...]:
     """Measured, nominal and corrected curves of the windows with the largest gap, at most one an axis."""
     found = []
     beta = problem.origin if final is None else final.beta
-    for number, part in enumerate(problem.parts):
+    for number, part in enumerate(problem.runs):
         nominal, corrected = residual(part, problem.origin)[0], residual(part, beta)[0]
         for axis, channel in axis_channels(part).items():
-            weight = (np.where(part.ok[..., channel], before[number][..., channel] ** 2, 0.0) / problem.variance[:, channel]).sum(axis=1)
+            weight = (np.where(part.ok[..., channel], before[number][..., channel] ** 2, 0.0) / problem.gap.variance[:, channel]).sum(axis=1)
             w = int(weight.argmax())
             found.append((float(weight[w]), number, axis, channel, w, nominal, corrected))
     found.sort(key=lambda item: -item[0])
-    return tuple(_trace(problem.parts[number], axis, channel, w, *pair) for _, number, axis, channel, w, *pair in found[:MOST_TRACES])
+    return tuple(_trace(problem.runs[number], axis, channel, w, *pair) for _, number, axis, channel, w, *pair in found[:MOST_TRACES])
 
 
-def _trace(part: Stretches, axis: str, channel: int, w: int, nominal: Array, corrected: Array) -> Trace:
+def _trace(part: Windows, axis: str, channel: int, w: int, nominal: Array, corrected: Array) -> Trace:
     ok, y = part.ok[w, :, channel], part.y[w, :, channel]
     t = part.time()[w]
     name = part.channels[channel]
@@ -64,11 +64,11 @@ def _trace(part: Stretches, axis: str, channel: int, w: int, nominal: Array, cor
 
 def coherence_matrix(problem: Problem, selection: Selection, decision: Decision) -> Coherence:
     """Canonical correlation of the best-ranked hypotheses' signatures in this log."""
-    columns = set(problem.data.columns)
+    columns = set(problem.likelihood.total.columns)
     wanted = [name for n in decision.causes for name, _ in decision.groups[n.hypothesis.name]] + [name for name, _ in selection.ranking]
     names = [n for n in dict.fromkeys(wanted) if set(problem.plant.hypotheses[n]) <= columns][:MOST_COHERENCE]
     slots = [problem.plant.hypotheses[n] for n in names]
-    matrix = [[coherence(problem.data, a, b) if a != b else 1.0 for b in slots] for a in slots]
+    matrix = [[coherence(problem.likelihood.total, a, b) if a != b else 1.0 for b in slots] for a in slots]
     return Coherence(effects=tuple(names), matrix=_rows(np.array(matrix), 3) if names else ())
 
 

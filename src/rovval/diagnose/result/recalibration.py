@@ -15,13 +15,18 @@ from rovval import effects
 from rovval.core.data import Array
 from rovval.diagnose.criteria import FEW_WINDOWS, FURTHER_GAIN
 from rovval.diagnose.decision.verdict import Decision
-from rovval.diagnose.inference.hypothesis_fit import Confirmed, confirm, errors, interval, roughly
-from rovval.diagnose.inference.identifiability import determinable, tuned
-from rovval.diagnose.inference.laplace import Point
-from rovval.diagnose.inference.prior import STRAINED, WITHIN
-from rovval.diagnose.inference.problem import Problem
-from rovval.diagnose.inference.refit import shrinkage_refitted
-from rovval.diagnose.inference.shrinkage import harm, shrinkage
+from rovval.diagnose.inference.hypothesis_fit import (
+    HypothesisFit,
+    confidence_interval,
+    fit_hypothesis,
+    fit_quickly,
+    standard_errors,
+)
+from rovval.diagnose.inference.identifiability import fit_identifiable, identifiable
+from rovval.diagnose.inference.laplace import Posterior
+from rovval.diagnose.inference.shrinkage import refitted_shrinkage, shrinkage, worsened_axes
+from rovval.diagnose.problem.prior import STRAINED, WITHIN
+from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.result.causes import FORM
 from rovval.diagnose.result.diagnosis import AxisHarm, Coefficient, Recalibration, Shrinkage
 from rovval.diagnose.search.forward import Selection
@@ -58,7 +63,7 @@ def recalibration(
     if len(beyond) < LEAST:
         return None
     progress("fitting them anew without the windows that they are scored on", 0.95)
-    shrunk = shrinkage_refitted(problem, fitted, before, tolerance, seed)
+    shrunk = refitted_shrinkage(problem, fitted, before, tolerance, seed)
     by_causes = max(shrinkage(problem, decision.fit, before, seed)["total"], 0.0)
     if shrunk["low"] <= by_causes + FURTHER_GAIN * (1.0 - by_causes):
         return None
@@ -68,53 +73,53 @@ def recalibration(
         parameters=rows,
         beyond=beyond,
         shrinkage=Shrinkage.model_validate(shrunk),
-        held_out="runs" if len(problem.parts) > 1 and len(problem.folds) == len(problem.parts) else "windows",
-        harm=tuple(AxisHarm(**row) for row in harm(shrunk)),
+        held_out="runs" if len(problem.runs) > 1 and len(problem.folds) == len(problem.runs) else "windows",
+        harm=tuple(AxisHarm(**row) for row in worsened_axes(shrunk)),
         fitted=tuple(s.key for s in slots if s.hypothesis not in searched),
         diagnosed=tuple(sorted(searched)),
     )
 
 
-def departing(problem: Problem, point: Point, limit: float) -> list[int]:
+def departing(problem: Problem, point: Posterior, limit: float) -> list[int]:
     """Slots of the vehicle's own coefficients whose standardised departure at ``point`` exceeds ``limit``."""
-    off = zip(point.columns[point.own :], point.sigmas(), strict=True)
+    off = zip(point.columns[point.effect_count :], point.standardised_departures(), strict=True)
     return [slot for slot, z in off if abs(z) > limit and _effect(problem, slot).place != "sensor"]
 
 
 def _asked(problem: Problem, selection: Selection, decision: Decision) -> bool:
     """Whether something is surely at work that the causes leave unexplained, and enough coefficients depart."""
-    rest, point = decision.unexplained, decision.fit.point if decision.fit else selection.healthy
-    if rest is None or rest.accounted is not None or problem.blocks < FEW_WINDOWS:
+    rest, point = decision.unexplained, decision.fit.posterior if decision.fit else selection.healthy
+    if rest is None or rest.accounted is not None or problem.window_count < FEW_WINDOWS:
         return False
     return len(departing(problem, point, STRAINED)) >= LEAST
 
 
-def _fitted(problem: Problem, selection: Selection, decision: Decision) -> Confirmed | None:
+def _fitted(problem: Problem, selection: Selection, decision: Decision) -> HypothesisFit | None:
     """The joint fit of the named causes and of the coefficients beyond tolerance, until no other that these logs determine is."""
     final = decision.fit
     causes = final.slots if final else ()
-    point, beta = final.point if final else selection.healthy, selection.healthy.beta.copy()
+    point, beta = final.posterior if final else selection.healthy, selection.healthy.beta.copy()
     beta[list(causes)] = point.beta[list(causes)]
     near, free, refused = replace(selection.healthy, beta=beta), tuple[int, ...](), set[int]()
     for _ in range(ROUNDS):
         more = [s for s in departing(problem, point, WITHIN) if s not in refused and not _effect(problem, s).searched]
-        able, out = determinable(problem, (*free, *more))
+        able, out = identifiable(problem, (*free, *more))
         refused |= out.keys()
         if set(able) == set(free):
             break
         free = able
-        point = roughly(problem, near.beta, (*causes, *free), near.scaled).point
-    rough, *_ = tuned(problem, (*causes, *free), near, causes)
-    return confirm(problem, rough.point.beta, rough.slots) if rough else None
+        point = fit_quickly(problem, near.beta, (*causes, *free), near.whitened).posterior
+    rough, *_ = fit_identifiable(problem, (*causes, *free), near, causes)
+    return fit_hypothesis(problem, rough.posterior.beta, rough.slots) if rough else None
 
 
-def _coefficients(problem: Problem, fitted: Confirmed, causes: Sequence[int]) -> dict[str, Coefficient]:
+def _coefficients(problem: Problem, fitted: HypothesisFit, causes: Sequence[int]) -> dict[str, Coefficient]:
     """Every tuned parameter, the largest departure first; those of the named causes, which are no matter of the file, last."""
-    rows, error = dict[str, Coefficient](), errors(problem, fitted)
+    rows, error = dict[str, Coefficient](), standard_errors(problem, fitted)
     for slot, se in zip(fitted.slots, error, strict=True):
         p, value, was = problem.plant.slots[slot].parameter, float(fitted.beta[slot]), float(problem.origin[slot])
-        low, high = interval(value, float(np.hypot(se, FORM * abs(value - was))), problem.blocks)
-        low, high, tolerance = max(low, p.low), min(high, p.high), problem.slop.sd.get(slot)
+        low, high = confidence_interval(value, float(np.hypot(se, FORM * abs(value - was))), problem.window_count)
+        low, high, tolerance = max(low, p.low), min(high, p.high), problem.tolerance.sd.get(slot)
         rows[problem.plant.slots[slot].key] = Coefficient(
             value=value, low=low, high=high, unit=p.unit, was=was, tolerance=tolerance,
             departure=None if tolerance is None else (value - was) / tolerance,

@@ -13,8 +13,8 @@ from rovval.diagnose.criteria import (
     SERIOUS_EVIDENCE,
     SIMPLER_GAIN,
 )  # fmt: skip
-from rovval.diagnose.inference.hypothesis_fit import places, significance
-from rovval.diagnose.inference.problem import Problem
+from rovval.diagnose.inference.hypothesis_fit import only_places, significance
+from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.search.baseline import Candidate
 from rovval.diagnose.search.confusion import form_share, gains_alike
 
@@ -39,7 +39,7 @@ def simplest(problem: Problem, candidates: list[Candidate]) -> Candidate:
     """Of the candidates that only model-form error may set apart, the one with the fewest parameters, if it reduces the gap nearly as much as the best;
     one that rests on a bound comes last."""
     best = candidates[0]
-    most, least = _parameters(problem, best), (1.0 - form_share(problem.blocks)) * best.evidence
+    most, least = _parameters(problem, best), (1.0 - form_share(problem.window_count)) * best.evidence
     tied = [
         c for c in candidates if not _is_onset_of(best, c)
         if c is best
@@ -74,9 +74,9 @@ def _beyond_tolerance(problem: Problem, one: Candidate) -> bool:
     A loss of thrust that begins, or that a stream causes, is held against what thrust may be off by all the time.
     """
     beta, origin, slots = one.fit.beta, problem.origin, problem.plant.slots
-    limits = {s: ADMISSIBLE_TOLERANCES * problem.slop.sd[s] for s in one.hypothesis.slots if s in problem.slop.sd}
+    limits = {s: ADMISSIBLE_TOLERANCES * problem.tolerance.sd[s] for s in one.hypothesis.slots if s in problem.tolerance.sd}
     likened = {s: slots[s].parameter.compared_with for s in one.hypothesis.slots if s not in limits and slots[s].parameter.compared_with}
-    widest = {name: max((sd for s, sd in problem.slop.sd.items() if slots[s].effect == name), default=0.0) for name in likened.values()}
+    widest = {name: max((sd for s, sd in problem.tolerance.sd.items() if slots[s].effect == name), default=0.0) for name in likened.values()}
     limits |= {s: ADMISSIBLE_LOSS * widest[name] for s, name in likened.items()}
     return not limits or any(abs(beta[s] - origin[s]) >= limit for s, limit in limits.items())
 
@@ -84,13 +84,13 @@ def _beyond_tolerance(problem: Problem, one: Candidate) -> bool:
 def beyond_bounds(problem: Problem, one: Candidate) -> bool:
     """Whether a size rests at a bound: the fit would go on, to where no vehicle is. A coefficient may well vanish, thrust too, and what a
     log does not show rests where nothing is at work."""
-    slots = {s: problem.plant.slots[s].parameter for s in one.hypothesis.slots if not places(problem, s)}
+    slots = {s: problem.plant.slots[s].parameter for s in one.hypothesis.slots if not only_places(problem, s)}
     sized = [(slots[s], float(one.fit.beta[s])) for s in one.fit.at_bound if s in slots and slots[s].role != "lever"]
     return any(x != p.null and not (p.vanishes_at == "low" and x <= p.low) and not (p.vanishes_at == "high" and x >= p.high) for p, x in sized)
 
 
 def _from_the_start(problem: Problem, one: Candidate) -> bool:
-    first = min(float(part.start[0] + part.steps) * part.run.dt for part in problem.parts)
+    first = min(float(part.start[0] + part.steps) * part.run.dt for part in problem.runs)
     slots = problem.plant.slots
     return any(slots[s].parameter.role == "onset" and one.fit.beta[s] < first for s in one.hypothesis.slots)
 

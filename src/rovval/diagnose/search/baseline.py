@@ -18,12 +18,13 @@ import numpy as np
 from rovval.core.data import Array
 from rovval.diagnose.criteria import COUNTED_REDUCTION, ONSET_LEAST_WINDOWS, PARITY_CONTRADICTED, STRONG_EVIDENCE
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
-from rovval.diagnose.inference.bootstrap import interval
-from rovval.diagnose.inference.hypothesis_fit import Confirmed
-from rovval.diagnose.inference.laplace import Point, whole_evidence
-from rovval.diagnose.inference.map_fit import FEW, settle
-from rovval.diagnose.inference.prior import STRAINED, WITHIN, Prior
-from rovval.diagnose.inference.problem import Problem, gap_at
+from rovval.diagnose.inference.bootstrap import shrinkage_interval
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
+from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
+from rovval.diagnose.inference.map_fit import QUICK_STEPS, map_fit
+from rovval.diagnose.problem.prior import STRAINED, WITHIN
+from rovval.diagnose.problem.problem import Problem, gap_equations_at
+from rovval.diagnose.residuals.ridge import Prior
 
 Losses = tuple[Array, Array]  # (m,) held-out weighted squared error of every window, with and without the parity residuals
 
@@ -38,7 +39,7 @@ class Baseline:
         losses: its held-out losses.
     """
 
-    point: Point
+    posterior: Posterior
     evidence: float
     losses: Losses
 
@@ -60,7 +61,7 @@ class Candidate:
     """
 
     hypothesis: Hypothesis
-    fit: Confirmed
+    fit: HypothesisFit
     evidence: float
     gain: float
     parity_gain: float
@@ -94,32 +95,32 @@ class SelectedCause:
 
     hypothesis: Hypothesis
     group: tuple[tuple[str, float], ...]
-    fit: Confirmed
+    fit: HypothesisFit
     p_value: float
     evidence: float
     candidates: tuple[Candidate, ...]
 
 
-def healthy_baseline(problem: Problem, healthy: Point) -> Baseline:
+def healthy_baseline(problem: Problem, healthy: Posterior) -> Baseline:
     """No cause: coefficients within tolerance alone, fitted at ``healthy``."""
-    return Baseline(healthy, whole_evidence(problem, healthy), (problem.gap_data.c, problem.gap.c))
+    return Baseline(healthy, laplace_evidence(problem, healthy), (problem.gap.total.c, problem.gap.dynamics.c))
 
 
-def baseline_of(fit: Confirmed) -> Baseline:
+def baseline_of(fit: HypothesisFit) -> Baseline:
     """The causes that were fitted, beside coefficients within tolerance."""
-    return Baseline(fit.point, fit.evidence, (fit.loss, fit.dynamic_loss))
+    return Baseline(fit.posterior, fit.evidence, (fit.loss, fit.dynamics_loss))
 
 
-def compared(problem: Problem, h: Hypothesis, fit: Confirmed, baseline: Baseline) -> Candidate:
+def compared(problem: Problem, h: Hypothesis, fit: HypothesisFit, baseline: Baseline) -> Candidate:
     """A fitted hypothesis as a candidate: what it adds to a baseline; beside coefficients within tolerance only where its evidence is strong."""
     evidence = fit.evidence - baseline.evidence
-    gain, parity_gain = reduction(baseline.losses, (fit.loss, fit.dynamic_loss))
+    gain, parity_gain = reduction(baseline.losses, (fit.loss, fit.dynamics_loss))
     since = _gain_since(problem, h, fit, baseline) if evidence >= STRONG_EVIDENCE else 0.0
     beside = 0.0
     if evidence >= STRONG_EVIDENCE and gain < COUNTED_REDUCTION:
-        others = healthy_without(problem, baseline.point, h.slots)
-        beside = reduction(_losses(problem, others), _losses(problem, fit.point))[0]
-    restores = evidence >= STRONG_EVIDENCE and gain > 0.0 and baseline.point.strain() > STRAINED and fit.point.strain() <= WITHIN
+        others = healthy_without(problem, baseline.posterior, h.slots)
+        beside = reduction(_losses(problem, others), _losses(problem, fit.posterior))[0]
+    restores = evidence >= STRONG_EVIDENCE and gain > 0.0 and baseline.posterior.largest_departure() > STRAINED and fit.posterior.largest_departure() <= WITHIN
     return Candidate(h, fit, evidence, gain, parity_gain, beside, restores, since)
 
 
@@ -130,39 +131,39 @@ def reduction(before: Losses, after: Losses) -> tuple[float, float]:
     return max(float((a - b).sum() / a.sum()) for a, b in zip(before, after, strict=True)), parity
 
 
-def _gain_since(problem: Problem, h: Hypothesis, fit: Confirmed, baseline: Baseline) -> float:
+def _gain_since(problem: Problem, h: Hypothesis, fit: HypothesisFit, baseline: Baseline) -> float:
     """Reduction by what begins in mid-log in the windows in which it acts: those before say nothing of it. 0 for another hypothesis."""
     onset = [float(fit.beta[s]) for s in h.slots if problem.plant.slots[s].parameter.role == "onset"]
     if not onset:
         return 0.0
-    ends = np.concatenate([(part.start + part.steps) * part.run.dt for part in problem.parts])
+    ends = np.concatenate([(part.start + part.steps) * part.run.dt for part in problem.runs])
     acts = np.flatnonzero(ends > onset[0])
-    (before, moved), (after, still) = baseline.losses, (fit.loss, fit.dynamic_loss)
+    (before, moved), (after, still) = baseline.losses, (fit.loss, fit.dynamics_loss)
     return reduction((before[acts], moved[acts]), (after[acts], still[acts]))[0] if len(acts) >= ONSET_LEAST_WINDOWS else 0.0
 
 
-def healthy_without(problem: Problem, healthy: Point, slots: Sequence[int]) -> Point:
+def healthy_without(problem: Problem, healthy: Posterior, slots: Sequence[int]) -> Posterior:
     """The fit ``healthy`` again with the coefficients ``slots`` as the file has them: no tolerance is to imitate the departure that a cause is."""
-    own = [s for s in slots if s in problem.slop.sd]
+    own = [s for s in slots if s in problem.tolerance.sd]
     if not own:
         return healthy
     start = healthy.beta.copy()
     start[own] = problem.origin[own]
-    others = replace(problem, slop=Prior({s: sd for s, sd in problem.slop.sd.items() if s not in own}))
-    return settle(others, start, healthy.columns[: healthy.own], healthy.scaled, FEW)
+    others = replace(problem, tolerance=Prior({s: sd for s, sd in problem.tolerance.sd.items() if s not in own}))
+    return map_fit(others, start, healthy.columns[: healthy.effect_count], healthy.whitened, QUICK_STEPS)
 
 
-def reduction_beside(problem: Problem, fit: Confirmed, others: Point, seed: int) -> tuple[float, float, float]:
+def reduction_beside(problem: Problem, fit: HypothesisFit, others: Posterior, seed: int) -> tuple[float, float, float]:
     """Share by which causes, beside coefficients within tolerance, reduce what these leave of the gap by themselves: (value, low, high) of the 90 % block
     bootstrap over windows.
 
     ``others`` is the fit of the coefficients that are not the causes' own. All windows were fitted: a step of the causes that a fold would take
     goes with one of the coefficients, and evidence has paid for the causes' freedom.
     """
-    return interval(_losses(problem, others)[1], _losses(problem, fit.point)[1], seed)
+    return shrinkage_interval(_losses(problem, others)[1], _losses(problem, fit.posterior)[1], seed)
 
 
-def _losses(problem: Problem, point: Point) -> Losses:
+def _losses(problem: Problem, point: Posterior) -> Losses:
     """Losses of every window at a point, its coefficients within tolerance where they were fitted."""
-    dynamic, data = gap_at(problem, point.beta, ())
+    dynamic, data = gap_equations_at(problem, point.beta, ())
     return data.c, dynamic.c

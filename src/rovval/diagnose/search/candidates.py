@@ -23,20 +23,20 @@ from rovval.diagnose.criteria import (
     TANGENT_KEPT,
 )  # fmt: skip
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of, wide_prior
-from rovval.diagnose.inference.cross_validation import step
-from rovval.diagnose.inference.hypothesis_fit import Confirmed, confirm, roughly
-from rovval.diagnose.inference.map_fit import early, stays
-from rovval.diagnose.inference.problem import Problem
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, fit_hypothesis, fit_quickly
+from rovval.diagnose.inference.map_fit import progressive_start, tangent_slots
+from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.coherence import coherence
-from rovval.diagnose.residuals.normal_equations import Products
+from rovval.diagnose.residuals.normal_equations import NormalEquations
+from rovval.diagnose.residuals.ridge import ridge_step
 from rovval.diagnose.search.baseline import Baseline, Candidate, compared
 
-Fits = dict[str, tuple[Hypothesis, Confirmed]]  # by name: the best initial point of each hypothesis and its fit
+Fits = dict[str, tuple[Hypothesis, HypothesisFit]]  # by name: the best initial point of each hypothesis and its fit
 Start = Callable[[Hypothesis, tuple[int, ...]], Array]
 
 
 def candidates(
-    problem: Problem, data: Products, library: list[Hypothesis], promised: Mapping[str, float], baseline: Baseline, chosen: tuple[int, ...]
+    problem: Problem, data: NormalEquations, library: list[Hypothesis], promised: Mapping[str, float], baseline: Baseline, chosen: tuple[int, ...]
 ) -> list[Candidate]:
     """The best initial point of each of the best hypotheses, fitted jointly with what was chosen before; best evidence first.
 
@@ -48,14 +48,14 @@ def candidates(
         baseline: the model that they are added to.
         chosen: slots of the causes of the baseline.
     """
-    base = baseline.point
+    base = baseline.posterior
     ordered = sorted(library, key=lambda h: (not h.evident, -promised[h.label]))
     least = SCREENED_EVIDENCE * max(0.0, *(promised[h.label] for h in library))
-    prior = problem.slop.widened(wide_prior(problem, chosen))
+    prior = problem.tolerance.widened(wide_prior(problem, chosen))
     fits: Fits = {}
 
     def steps(h: Hypothesis) -> Array:
-        return step(data, prior.widened(prior_of(problem, h)), problem.inflation)
+        return ridge_step(data, prior.widened(prior_of(problem, h)), problem.design_effect)
 
     def alone(h: Hypothesis, slots: tuple[int, ...]) -> Array:
         """The start where all else stays as in the baseline: a step of everything may lead away what was found before."""
@@ -67,8 +67,8 @@ def candidates(
         if h.effect.continues:
             start = _beyond(problem, h, start)
         if h.evident:
-            start = early(problem, alone(h, slots), slots)
-        quick = roughly(problem, start, slots, base.scaled).light()
+            start = progressive_start(problem, alone(h, slots), slots)
+        quick = fit_quickly(problem, start, slots, base.whitened).without_sensitivities()
         if h.name not in fits or quick.evidence > fits[h.name][1].evidence:
             fits[h.name] = h, quick
 
@@ -85,7 +85,7 @@ def candidates(
     return _compared(problem, list(carefully.values()), baseline)
 
 
-def _like_the_best(data: Products, ordered: list[Hypothesis], fits: Fits) -> list[Hypothesis]:
+def _like_the_best(data: NormalEquations, ordered: list[Hypothesis], fits: Fits) -> list[Hypothesis]:
     """Hypotheses whose sensitivities are coherent with the best fit's, and those that one of the fits may imitate: fitted whatever the screen said."""
     if not fits:
         return []
@@ -111,8 +111,8 @@ def _refitted(problem: Problem, promised: Mapping[str, float], fits: Fits, alone
     found = dict(fits)
     for name in short[:MOST_REFITTED]:
         h, quick = fits[name]
-        starts = [quick.point.beta, *([alone(h, quick.slots)] if alone else [])]
-        careful = [confirm(problem, start, quick.slots).light() for start in starts]
+        starts = [quick.posterior.beta, *([alone(h, quick.slots)] if alone else [])]
+        careful = [fit_hypothesis(problem, start, quick.slots).without_sensitivities() for start in starts]
         found[name] = h, max((quick, *careful), key=lambda one: one.evidence)
     return found
 
@@ -120,11 +120,11 @@ def _refitted(problem: Problem, promised: Mapping[str, float], fits: Fits, alone
 def relinearised(problem: Problem, some: list[Candidate], baseline: Baseline) -> list[Candidate]:
     """The best of the candidates fitted with sensitivities made at their own point, the others as they are; best evidence first."""
     serious = [c for c in some if c.evidence > SERIOUS_EVIDENCE * some[0].evidence][:MOST_RELINEARISED]
-    again = [(c.hypothesis, confirm(problem, c.fit.point.beta, c.fit.slots)) for c in serious]
+    again = [(c.hypothesis, fit_hypothesis(problem, c.fit.posterior.beta, c.fit.slots)) for c in serious]
     return _compared(problem, again + [(c.hypothesis, c.fit) for c in some if c not in serious], baseline)
 
 
-def _compared(problem: Problem, fits: list[tuple[Hypothesis, Confirmed]], baseline: Baseline) -> list[Candidate]:
+def _compared(problem: Problem, fits: list[tuple[Hypothesis, HypothesisFit]], baseline: Baseline) -> list[Candidate]:
     """Fits with what they add to the baseline, best evidence first."""
     return sorted((compared(problem, h, fit, baseline) for h, fit in fits), key=lambda c: -c.evidence)
 
@@ -141,7 +141,7 @@ def _beyond(problem: Problem, h: Hypothesis, start: Array) -> Array:
     return start
 
 
-def start_of(problem: Problem, data: Products, h: Hypothesis, steps: Array, beta: Array, free: tuple[int, ...]) -> Array:
+def start_of(problem: Problem, data: NormalEquations, h: Hypothesis, steps: Array, beta: Array, free: tuple[int, ...]) -> Array:
     """Parameters from which a hypothesis is fitted by re-simulation: the linear answer, inside the bounds.
 
     Args:
@@ -153,10 +153,10 @@ def start_of(problem: Problem, data: Products, h: Hypothesis, steps: Array, beta
         free: slots that the fit moves; tolerances of sensors that are not among them stay in the tangent.
     """
     start = beta.copy()
-    still = {s for s in stays(problem.plant) if s not in free}
+    still = {s for s in tangent_slots(problem.plant) if s not in free}
     for slot, value in h.at:
         start[slot] = value
-    moved, begins = {d.id: d.slot for d in h.directions}, {d.slot for d in h.directions} | {slot for slot, _ in h.at}
+    moved, begins = {d.id: d.slot for d in h.displaced}, {d.slot for d in h.displaced} | {slot for slot, _ in h.at}
     for column, move in zip(data.columns, steps, strict=True):
         slot = moved.get(column, column)
         if move and 0 <= slot < len(start) and slot not in still and (column in moved or slot not in begins):

@@ -13,9 +13,9 @@ from rovval.diagnose.criteria import (
     FORM_SHARE_MOST,
     TEMPERING_EVIDENCE,
 )  # fmt: skip
-from rovval.diagnose.inference.bootstrap import _blocks
-from rovval.diagnose.inference.laplace import evidence
-from rovval.diagnose.inference.problem import Problem
+from rovval.diagnose.inference.bootstrap import block_resamples
+from rovval.diagnose.inference.laplace import resampled_evidence
+from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.search.baseline import Candidate
 
 RESAMPLES = 200  # of the bootstrap: resolve `CONFUSED_LEVEL`
@@ -35,11 +35,11 @@ def confusion_group(problem: Problem, candidates: list[Candidate], seed: int, bl
         block: windows that are resampled together.
     """
     best = candidates[0]
-    draws = _blocks(problem.blocks, block, np.random.default_rng(seed))[:RESAMPLES]
-    counts = np.stack([np.bincount(draw, minlength=problem.blocks) for draw in draws]).astype(float)
-    form = form_share(problem.blocks)
+    draws = block_resamples(problem.window_count, block, np.random.default_rng(seed))[:RESAMPLES]
+    counts = np.stack([np.bincount(draw, minlength=problem.window_count) for draw in draws]).astype(float)
+    form = form_share(problem.window_count)
     near = [c for c in candidates if c is best or c.evidence > (1 - 2 * form) * best.evidence or _near(c, best, form) or gains_alike(problem, c, best)]
-    total = {c.hypothesis.name: evidence(problem, c.fit.point, counts) for c in near}
+    total = {c.hypothesis.name: resampled_evidence(problem, c.fit.posterior, counts) for c in near}
     lead = total[best.hypothesis.name]
     kept = [
         c for c in near
@@ -58,7 +58,7 @@ def form_share(windows: int) -> float:
 
 def gains_alike(problem: Problem, one: Candidate, best: Candidate) -> bool:
     """Whether a log has too few windows to weigh evidence, and a candidate reduces the gap nearly as much as the best."""
-    return problem.blocks < FEW_WINDOWS and one.gain >= FEW_WINDOWS_GAIN * best.gain
+    return problem.window_count < FEW_WINDOWS and one.gain >= FEW_WINDOWS_GAIN * best.gain
 
 
 def _near(one: Candidate, best: Candidate, form: float) -> bool:

@@ -15,9 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.inference.cross_validation import free_of
-from rovval.diagnose.inference.prior import Prior
-from rovval.diagnose.residuals.normal_equations import Products
+from rovval.diagnose.residuals.normal_equations import NormalEquations
+from rovval.diagnose.residuals.ridge import Prior, free_columns
 
 DRAWS = 200  # null logs: resolve a family-wise error rate of 0.05
 BLOCK = 2  # windows that keep one sign: 20 s, beyond the memory of hull and thrusters
@@ -50,7 +49,7 @@ class Detection:
         return self.evidence[self.best]
 
 
-def detect(data: Products, base: Prior, slop: Prior, hypotheses: Mapping[str, Prior], inflation: float, everything: Array, seed: int) -> Detection:
+def detect(data: NormalEquations, base: Prior, slop: Prior, hypotheses: Mapping[str, Prior], design_effect: float, everything: Array, seed: int) -> Detection:
     """Evidence of every hypothesis, in the log and in null logs.
 
     Args:
@@ -58,36 +57,36 @@ def detect(data: Products, base: Prior, slop: Prior, hypotheses: Mapping[str, Pr
         base: prior of what is free in the baseline.
         slop: tolerances, by which the coefficients of null logs are off.
         hypotheses: prior of what each hypothesis sets free, by label.
-        inflation: design effect of autocorrelated residuals.
+        design_effect: design effect of autocorrelated residuals.
         everything: (k,) step that fits the whole library: what it leaves is the disturbance of the null logs.
         seed: of their draws.
     """
     b = np.concatenate([data.b.sum(axis=0)[None], _draws(data, slop, everything, np.random.default_rng(seed))])
     A, real = data.A.sum(axis=0), np.array([1.0, *np.zeros(DRAWS)])[:, None]
-    ground = _evidence(data, A, b, real, base, inflation)
+    ground = _evidence(data, A, b, real, base, design_effect)
     evidence, best = dict[str, float](), np.full(DRAWS, -np.inf)
     for label, prior in hypotheses.items():
-        gain = _evidence(data, A, b, real, base.widened(prior), inflation) - ground
+        gain = _evidence(data, A, b, real, base.widened(prior), design_effect) - ground
         evidence[label] = float(gain[0])
         best = np.maximum(best, gain[1:])
     return Detection(evidence, best)
 
 
-def _evidence(data: Products, A: Array, b: Array, real: Array, prior: Prior, inflation: float) -> Array:
+def _evidence(data: NormalEquations, A: Array, b: Array, real: Array, prior: Prior, design_effect: float) -> Array:
     """Twice the log marginal likelihood (d,) of each right-hand side ``b`` (d, k), up to a constant: explained sum of squares less the log volume
     that the data takes from the prior (MacKay 1992, section 2.7). ``real`` (d, 1) is 1 where the columns are as far from their priors as the
     log's fit has taken them, 0 for null draws, which begin at them."""
     if not prior.sd:
         return np.zeros(len(b))
-    free, ridge, offset = free_of(data, prior, inflation)
+    free, ridge, offset = free_columns(data, prior, design_effect)
     H, pull = A[np.ix_(free, free)] + ridge, real * (ridge @ offset)
     slope = b[:, free] - pull
-    explained = ((slope * np.linalg.solve(H, slope.T).T).sum(axis=1) - pull @ offset) / inflation
+    explained = ((slope * np.linalg.solve(H, slope.T).T).sum(axis=1) - pull @ offset) / design_effect
     volume = np.linalg.slogdet(H)[1] - np.log(np.diag(ridge)).sum()
     return np.asarray(explained - volume)
 
 
-def _draws(data: Products, slop: Prior, everything: Array, rng: np.random.Generator) -> Array:
+def _draws(data: NormalEquations, slop: Prior, everything: Array, rng: np.random.Generator) -> Array:
     """Right-hand sides (d, k) of null logs, summed over windows."""
     m = len(data.c)
     left = data.b - np.einsum("wij,j->wi", data.A, everything)

@@ -16,13 +16,13 @@ import numpy as np
 from rovval.core.channels import AXES
 from rovval.core.data import Array
 from rovval.diagnose.criteria import GENERIC_SIZES, OWN_FORCE
-from rovval.diagnose.inference.cross_validation import Fold, heldout, settled
-from rovval.diagnose.inference.laplace import Point
-from rovval.diagnose.inference.prior import Prior
-from rovval.diagnose.inference.problem import Problem
-from rovval.diagnose.residuals.external_forces import generic
-from rovval.diagnose.residuals.normal_equations import Products, joined, products
-from rovval.diagnose.residuals.sensitivities import Linear, spread
+from rovval.diagnose.inference.laplace import Posterior
+from rovval.diagnose.problem.cross_validation import Fold, held_out_losses
+from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.residuals.external_forces import generic_force_responses
+from rovval.diagnose.residuals.normal_equations import Linearisation, NormalEquations, concatenated, normal_equations
+from rovval.diagnose.residuals.nuisances import nuisance_sd
+from rovval.diagnose.residuals.ridge import Prior, eliminated
 
 FREED = 1e-3  # of a prior's precision: it holds nothing any more
 
@@ -36,14 +36,14 @@ class GenericForces:
         data: normal equations of the fit's k columns and of the forces behind them.
         precision: (k,) of the priors of the fit's columns.
         pull: (k,) gradient that those priors add.
-        inflation: design effect of autocorrelated residuals.
+        design_effect: design effect of autocorrelated residuals.
     """
 
     names: tuple[tuple[str, str], ...]
-    data: Products
+    data: NormalEquations
     precision: Array
     pull: Array
-    inflation: float
+    design_effect: float
 
     def evidence(self, axes: Sequence[str] = AXES, feature: str = "") -> float:
         """Evidence of all forces on ``axes``, or of those with one feature only."""
@@ -64,14 +64,14 @@ class GenericForces:
         own = [k + i for i, (axis, _) in enumerate(self.names) if axis in axes and undone[k + i] > OWN_FORCE * at_first[k + i]]
         A, b = self._eliminated(self.precision)
         A, b = A[np.ix_(own, own)], b[own]
-        ridge, total = self.inflation / np.array(GENERIC_SIZES)[:, None] ** 2, 0.0
+        ridge, total = self.design_effect / np.array(GENERIC_SIZES)[:, None] ** 2, 0.0
         for _ in range(min(most, len(own))):
-            worth = b**2 / (np.diag(A) + ridge) / self.inflation - np.log1p(np.diag(A) / ridge)
+            worth = b**2 / (np.diag(A) + ridge) / self.design_effect - np.log1p(np.diag(A) / ridge)
             size, best = np.unravel_index(int(np.argmax(worth)), worth.shape)
             if worth[size, best] <= 0.0:
                 break
             total += float(worth[size, best])
-            A, b = settled(A, b, np.array([best]), np.diag(ridge[size]), np.zeros(1))
+            A, b = eliminated(A, b, np.array([best]), np.diag(ridge[size]), np.zeros(1))
             A, b = np.delete(np.delete(A, best, 0), best, 1), np.delete(b, best)
         return total
 
@@ -84,38 +84,38 @@ class GenericForces:
         """Share by which all forces reduce the squared error on held-out windows, everything else fixed; 0 where they do not."""
         k = len(self.precision)
         columns, whole = self.data.columns[k:], float(self.data.c.sum())
-        kept = [float(heldout(self.data, folds, Prior(dict.fromkeys(columns, size)), self.inflation).sum()) for size in GENERIC_SIZES]
+        kept = [float(held_out_losses(self.data, folds, Prior(dict.fromkeys(columns, size)), self.design_effect).sum()) for size in GENERIC_SIZES]
         return max(1.0 - min(kept) / whole, 0.0)
 
     def _eliminated(self, precision: Array) -> tuple[Array, Array]:
         """Curvature and slope of everything, the fit's columns with priors of ``precision`` eliminated."""
         free = np.arange(len(precision))
-        return settled(self.data.A.sum(axis=0), self.data.b.sum(axis=0), free, np.diag(precision), self.pull)
+        return eliminated(self.data.A.sum(axis=0), self.data.b.sum(axis=0), free, np.diag(precision), self.pull)
 
     def _evidence(self, chosen: Sequence[int], prior_size: float) -> float:
         k = len(self.precision)
         free = np.array([*range(k), *(k + i for i in chosen)], dtype=int)
-        ridge = np.concatenate([self.precision, np.full(len(chosen), self.inflation / prior_size**2)])
+        ridge = np.concatenate([self.precision, np.full(len(chosen), self.design_effect / prior_size**2)])
         H = self.data.A.sum(axis=0)[np.ix_(free, free)] + np.diag(ridge)
         slope = self.data.b.sum(axis=0)[free] - np.concatenate([self.pull, np.zeros(len(chosen))])
-        return float(slope @ np.linalg.solve(H, slope)) / self.inflation - float(np.linalg.slogdet(H)[1] - np.log(ridge).sum())
+        return float(slope @ np.linalg.solve(H, slope)) / self.design_effect - float(np.linalg.slogdet(H)[1] - np.log(ridge).sum())
 
 
-def generic_forces(problem: Problem, point: Point) -> GenericForces:
+def generic_forces(problem: Problem, point: Posterior) -> GenericForces:
     """Every feature on every axis, simulated about a fit, beside its columns."""
-    return _beside(problem, point.beta, point.linear, point.precision, point.precision * point.offset)
+    return _beside(problem, point.beta, point.linear, point.precision, point.precision * point.departure)
 
 
 def nominal_forces(problem: Problem) -> GenericForces:
     """The same about the nominal vehicle, with nothing beside them: what the gap itself looks like."""
-    return _beside(problem, problem.origin, problem.at_null, np.zeros(0), np.zeros(0))
+    return _beside(problem, problem.origin, problem.nominal, np.zeros(0), np.zeros(0))
 
 
-def _beside(problem: Problem, beta: Array, linear: Sequence[Linear], precision: Array, pull: Array) -> GenericForces:
-    names, answers = generic(problem.parts, beta)
+def _beside(problem: Problem, beta: Array, linear: Sequence[Linearisation], precision: Array, pull: Array) -> GenericForces:
+    names, answers = generic_force_responses(problem.runs, beta)
     ids = tuple(range(len(beta), len(beta) + len(names)))
     parts = []
-    for part, one, answer in zip(problem.parts, linear, answers, strict=True):
-        both = Linear(one.r, np.concatenate([one.S, answer], axis=-1), one.J, (*one.columns, *ids), one.valid)
-        parts.append(products(both, part.ok, problem.white, spread(part)))
-    return GenericForces(names, joined(parts), precision, pull, problem.inflation)
+    for part, one, answer in zip(problem.runs, linear, answers, strict=True):
+        both = Linearisation(one.r, np.concatenate([one.S, answer], axis=-1), one.J, (*one.columns, *ids), one.valid)
+        parts.append(normal_equations(both, part.ok, problem.likelihood.variance, nuisance_sd(part)))
+    return GenericForces(names, concatenated(parts), precision, pull, problem.design_effect)

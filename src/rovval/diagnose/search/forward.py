@@ -26,13 +26,13 @@ from rovval.diagnose.criteria import (
     STRONG_EVIDENCE,
 )  # fmt: skip
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of, prior_of, wide_prior
-from rovval.diagnose.inference.cross_validation import Ring, contest, fit
-from rovval.diagnose.inference.hypothesis_fit import Confirmed, confirm, roughly
-from rovval.diagnose.inference.laplace import Point
-from rovval.diagnose.inference.map_fit import resettled
-from rovval.diagnose.inference.prior import Prior
-from rovval.diagnose.inference.problem import Problem, at
-from rovval.diagnose.residuals.normal_equations import Products
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, fit_hypothesis, fit_quickly
+from rovval.diagnose.inference.laplace import Posterior
+from rovval.diagnose.inference.map_fit import refit_healthy
+from rovval.diagnose.problem.cross_validation import FoldSums, contest, cross_validate
+from rovval.diagnose.problem.problem import Problem, equations_at
+from rovval.diagnose.residuals.normal_equations import NormalEquations
+from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.search.admissibility import admissible, possible, simplest
 from rovval.diagnose.search.baseline import Baseline, Candidate, SelectedCause, baseline_of, healthy_baseline
 from rovval.diagnose.search.candidates import candidates, relinearised
@@ -59,8 +59,8 @@ class Selection:
     """
 
     causes: tuple[SelectedCause, ...]
-    fit: Confirmed | None
-    healthy: Point
+    fit: HypothesisFit | None
+    healthy: Posterior
     ranking: tuple[tuple[str, float], ...]
     steps: tuple[tuple[Row, ...], ...]
     p_value: float
@@ -82,7 +82,7 @@ class Step:
 
 
 def search(
-    problem: Problem, library: list[Hypothesis], initialised: list[Hypothesis], healthy: Point, seed: int, progress: Callable[[str, float], None]
+    problem: Problem, library: list[Hypothesis], initialised: list[Hypothesis], healthy: Posterior, seed: int, progress: Callable[[str, float], None]
 ) -> Selection:
     """The causes that explain the gap.
 
@@ -119,11 +119,11 @@ def search(
     return Selection(tuple(causes), joint, healthy, ranking, rows, last.p_value(last.best), steps[0].onset, last.largest, null)
 
 
-def _step(problem: Problem, library: list[Hypothesis], open_now: list[Hypothesis], causes: list[SelectedCause], healthy: Point, seed: int) -> Step:
+def _step(problem: Problem, library: list[Hypothesis], open_now: list[Hypothesis], causes: list[SelectedCause], healthy: Posterior, seed: int) -> Step:
     """Is there anything beyond the causes, and which of the open hypotheses may be added to them?"""
     chosen = causes[-1].fit.slots if causes else ()
     baseline = baseline_of(causes[-1].fit) if causes else healthy_baseline(problem, healthy)
-    data = _linearised(problem, library, baseline.point)
+    data = _linearised(problem, library, baseline.posterior)
     detection = _detection(problem, data, open_now, chosen, seed)
     onset = None if causes else suspected_onset(problem, data, open_now)
     most = detection.largest
@@ -138,7 +138,8 @@ def _step(problem: Problem, library: list[Hypothesis], open_now: list[Hypothesis
 
 
 def _weighed(
-    problem: Problem, data: Products, library: list[Hypothesis], detection: Detection, causes: list[SelectedCause], baseline: Baseline, onset: Onset | None
+    problem: Problem, data: NormalEquations, library: list[Hypothesis], detection: Detection, causes: list[SelectedCause], baseline: Baseline,
+    onset: Onset | None,
 ) -> tuple[Step, set[str]]:
     """The step with the best of a library fitted by re-simulation, and the names of those that were."""
     weighed = candidates(problem, data, library, detection.evidence, baseline, causes[-1].fit.slots if causes else ())
@@ -161,26 +162,26 @@ def _offset(problem: Problem, weighed: list[Candidate], baseline: Baseline, evid
     return [c for c in possible(problem, relinearised(problem, strong, baseline)) if c.evidence >= least][:1] if strong else []
 
 
-def _linearised(problem: Problem, library: list[Hypothesis], base: Point) -> Products:
+def _linearised(problem: Problem, library: list[Hypothesis], base: Posterior) -> NormalEquations:
     """Normal equations of a library about the point reached, with how far each column is from its prior there."""
     asked = columns_of(library)
-    data = at(problem, base.beta, tuple(sorted({*asked.slots, *problem.slop.sd, *base.columns})), asked.directions)
+    data = equations_at(problem, base.beta, tuple(sorted({*asked.slots, *problem.tolerance.sd, *base.columns})), asked.displaced)
     offset = np.array([base.beta[c] - problem.origin[c] if c < len(base.beta) else 0.0 for c in data.columns])
     return replace(data, offset=offset)
 
 
-def _detection(problem: Problem, data: Products, library: list[Hypothesis], chosen: tuple[int, ...], seed: int) -> Detection:
+def _detection(problem: Problem, data: NormalEquations, library: list[Hypothesis], chosen: tuple[int, ...], seed: int) -> Detection:
     """Evidence of each hypothesis on top of tolerances and of what was chosen before."""
     slots = [c for c in data.columns if c < len(problem.plant.slots)]
     typical = Prior({c: problem.plant.slots[c].parameter.typical for c in slots})
-    everything = fit(Ring.of(data, problem.folds), typical, problem.inflation).step
-    base = problem.slop.widened(wide_prior(problem, chosen))
-    return detect(data, base, problem.slop, {h.label: prior_of(problem, h) for h in library}, problem.inflation, everything, seed)
+    everything = cross_validate(FoldSums.of(data, problem.folds), typical, problem.design_effect).step
+    base = problem.tolerance.widened(wide_prior(problem, chosen))
+    return detect(data, base, problem.tolerance, {h.label: prior_of(problem, h) for h in library}, problem.design_effect, everything, seed)
 
 
-def _restarted(problem: Problem, healthy: Point, causes: list[SelectedCause]) -> Point:
+def _restarted(problem: Problem, healthy: Posterior, causes: list[SelectedCause]) -> Posterior:
     """The healthy fit, tried from another start, where it is beside the causes, too."""
-    return resettled(problem, healthy, causes[-1].fit.point, causes[-1].fit.slots) if causes else healthy
+    return refit_healthy(problem, healthy, causes[-1].fit.posterior, causes[-1].fit.slots) if causes else healthy
 
 
 def _cause(problem: Problem, step: Step, seed: int) -> SelectedCause:
@@ -190,8 +191,8 @@ def _cause(problem: Problem, step: Step, seed: int) -> SelectedCause:
     if best.hypothesis.name not in dict(group):  # one that gains too little to be a cause has far more evidence
         group = confusion_group(problem, step.added, seed)
     group = tuple(sorted(group, key=lambda member: member[0] != best.hypothesis.name))
-    chosen_from = tuple(replace(c, fit=c.fit.light()) for c in step.admitted)
-    whole = best.fit if best.fit.point.scaled else confirm(problem, best.fit.point.beta, best.fit.slots)
+    chosen_from = tuple(replace(c, fit=c.fit.without_sensitivities()) for c in step.admitted)
+    whole = best.fit if best.fit.posterior.whitened else fit_hypothesis(problem, best.fit.posterior.beta, best.fit.slots)
     return SelectedCause(best.hypothesis, group, whole, step.detection.p_value(best.hypothesis.label), best.evidence, chosen_from)
 
 
@@ -202,9 +203,9 @@ def _pruned(problem: Problem, causes: list[SelectedCause]) -> list[SelectedCause
         slots = tuple(s for s in whole.slots if s not in one.hypothesis.slots)
         start = whole.beta.copy()
         start[list(one.hypothesis.slots)] = problem.origin[list(one.hypothesis.slots)]
-        without = roughly(problem, start, slots, whole.point.scaled)
+        without = fit_quickly(problem, start, slots, whole.posterior.whitened)
         if without.evidence > whole.evidence - NEEDLESS_EVIDENCE:
-            without = confirm(problem, without.point.beta, slots)
+            without = fit_hypothesis(problem, without.posterior.beta, slots)
             rest = [n for n in causes if n is not one]
             causes = [*rest[:-1], replace(rest[-1], fit=without)]
     return causes
@@ -213,8 +214,8 @@ def _pruned(problem: Problem, causes: list[SelectedCause]) -> list[SelectedCause
 def _ranking(problem: Problem, library: list[Hypothesis], causes: list[SelectedCause], steps: Sequence[Sequence[Row]]) -> tuple[tuple[str, float], ...]:
     """Every hypothesis with the reduction of the gap that it makes by itself, held out, coefficients as filed: the causes first, then the others by
     that, fitted by re-simulation for the first step's candidates, linearised for the rest."""
-    _, fits = contest(Ring.of(problem.gap_data, problem.folds), Prior({}), {h.label: prior_of(problem, h) for h in library}, problem.inflation)
-    gap, share = float(problem.gap_data.c.sum()), dict[str, float]()
+    _, fits = contest(FoldSums.of(problem.gap.total, problem.folds), Prior({}), {h.label: prior_of(problem, h) for h in library}, problem.design_effect)
+    gap, share = float(problem.gap.total.c.sum()), dict[str, float]()
     for h in library:
         share[h.name] = max(1.0 - fits[h.label].loss / gap, share.get(h.name, -np.inf))
     share |= {name: gain for name, _, gain in (steps[0] if steps else ())}

@@ -20,9 +20,9 @@ from rovval.diagnose.criteria import (
     MOST_ALTERNATIVES,
 )
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
-from rovval.diagnose.inference.hypothesis_fit import Confirmed, confirm, roughly
-from rovval.diagnose.inference.laplace import Point
-from rovval.diagnose.inference.problem import Problem
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, fit_hypothesis, fit_quickly
+from rovval.diagnose.inference.laplace import Posterior
+from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.search.baseline import (
     Baseline,
     Candidate,
@@ -48,7 +48,7 @@ def sufficient(one: Candidate, alone: bool) -> bool:
     return gain >= FURTHER_GAIN and one.evidence * min(gain, 1.0) >= FURTHER_EVIDENCE_GAIN
 
 
-def reselected(problem: Problem, causes: Sequence[SelectedCause], healthy: Point, seed: int) -> list[SelectedCause]:
+def reselected(problem: Problem, causes: Sequence[SelectedCause], healthy: Posterior, seed: int) -> list[SelectedCause]:
     """The causes that are sufficient beside the others, under the names that fit best there; ``healthy`` is the fit without causes."""
     found = list(causes)
     for i in range(len(found) if len(found) > 1 else 0):
@@ -67,18 +67,18 @@ def reselected(problem: Problem, causes: Sequence[SelectedCause], healthy: Point
     return [_group_apart(n, {other.hypothesis.name for other in found if other is not n}) for n in found]
 
 
-def joint_fit(problem: Problem, whole: Confirmed, kept: Sequence[Hypothesis], other: Candidate | None = None) -> Confirmed:
+def joint_fit(problem: Problem, whole: HypothesisFit, kept: Sequence[Hypothesis], other: Candidate | None = None) -> HypothesisFit:
     """The causes ``kept`` fitted from where they are in ``whole``, with another one from where it was as a candidate."""
-    start, slots = whole.point.beta.copy(), [s for h in kept for s in h.slots]
+    start, slots = whole.posterior.beta.copy(), [s for h in kept for s in h.slots]
     gone = [s for s in whole.slots if s not in slots]
     start[gone] = problem.origin[gone]
     if other:
         new = list(other.hypothesis.slots)
         start[new], slots = other.fit.beta[new], [*slots, *new]
-    return roughly(problem, start, tuple(dict.fromkeys(slots)), whole.point.scaled)
+    return fit_quickly(problem, start, tuple(dict.fromkeys(slots)), whole.posterior.whitened)
 
 
-def _without(problem: Problem, found: Sequence[SelectedCause], one: SelectedCause, healthy: Point) -> Baseline:
+def _without(problem: Problem, found: Sequence[SelectedCause], one: SelectedCause, healthy: Posterior) -> Baseline:
     """The baseline that the others are."""
     rest = [n for n in found if n is not one]
     if not rest:
@@ -92,7 +92,7 @@ def _merit(rest: Baseline, nothing: Baseline) -> float:
     return (rest.evidence - nothing.evidence) * max(gain, 0.0)
 
 
-def _exchanged(problem: Problem, found: list[SelectedCause], i: int, healthy: Point, seed: int) -> list[SelectedCause]:
+def _exchanged(problem: Problem, found: list[SelectedCause], i: int, healthy: Posterior, seed: int) -> list[SelectedCause]:
     """The causes with the i-th under the name that fits best beside the others, and with those that are not told from it there."""
     one, whole = found[i], found[-1].fit
     taken, rest = {n.hypothesis.name for n in found}, [n.hypothesis for n in found if n is not one]
@@ -110,7 +110,7 @@ def _exchanged(problem: Problem, found: list[SelectedCause], i: int, healthy: Po
     exchanged = [better if n is one else n for n in found]
     if best is mine:
         return exchanged
-    return [*exchanged[:-1], replace(exchanged[-1], fit=confirm(problem, best.fit.point.beta, best.fit.slots))]
+    return [*exchanged[:-1], replace(exchanged[-1], fit=fit_hypothesis(problem, best.fit.posterior.beta, best.fit.slots))]
 
 
 def _group_apart(one: SelectedCause, others: set[str]) -> SelectedCause:
@@ -126,4 +126,4 @@ def _removed(problem: Problem, found: list[SelectedCause], weak: SelectedCause) 
     if not rest:
         return []
     start = joint_fit(problem, found[-1].fit, [n.hypothesis for n in rest])
-    return [*rest[:-1], replace(rest[-1], fit=confirm(problem, start.point.beta, start.slots))]
+    return [*rest[:-1], replace(rest[-1], fit=fit_hypothesis(problem, start.posterior.beta, start.slots))]

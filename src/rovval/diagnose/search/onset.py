@@ -15,14 +15,13 @@ import numpy as np
 from rovval.core.data import Array
 from rovval.diagnose.criteria import ONSET_DENIED, ONSET_HINTED, ONSETS_TRIED, WINDOWS_AFTER_ONSET, WINDOWS_BEFORE_ONSET
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of
-from rovval.diagnose.inference.cross_validation import free_of, settled
-from rovval.diagnose.inference.hypothesis_fit import Confirmed
-from rovval.diagnose.inference.laplace import Point, whole_evidence
-from rovval.diagnose.inference.map_fit import about
-from rovval.diagnose.inference.prior import Prior
-from rovval.diagnose.inference.problem import Problem
-from rovval.diagnose.residuals.normal_equations import Products
-from rovval.diagnose.windows.shooting import Stretches
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
+from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
+from rovval.diagnose.inference.map_fit import posterior_at
+from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.residuals.normal_equations import NormalEquations
+from rovval.diagnose.residuals.ridge import Prior, eliminated, free_columns
+from rovval.diagnose.windows.windows import Windows
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,57 +41,57 @@ class Stretch:
     b: Array
 
     @classmethod
-    def of(cls, data: Products, windows: slice, slop: Prior, inflation: float) -> Stretch:
+    def of(cls, data: NormalEquations, windows: slice, slop: Prior, design_effect: float) -> Stretch:
         """Coefficients are fitted on these windows alone."""
-        free, ridge, offset = free_of(data, slop, inflation)
-        return cls(*settled(data.A[windows].sum(axis=0), data.b[windows].sum(axis=0), free, ridge, ridge @ offset))
+        free, ridge, offset = free_columns(data, slop, design_effect)
+        return cls(*eliminated(data.A[windows].sum(axis=0), data.b[windows].sum(axis=0), free, ridge, ridge @ offset))
 
-    def explained(self, at: np.ndarray, prior: Prior, inflation: float) -> tuple[float, Array]:
+    def explained(self, at: np.ndarray, prior: Prior, design_effect: float) -> tuple[float, Array]:
         """(Twice the log Bayes factor of a hypothesis with the columns ``at`` over none, its fitted size)."""
-        ridge = inflation / np.array(list(prior.sd.values())) ** 2
+        ridge = design_effect / np.array(list(prior.sd.values())) ** 2
         H, slope = self.A[np.ix_(at, at)] + np.diag(ridge), self.b[at]
         size = np.linalg.solve(H, slope)
-        return float(slope @ size / inflation - np.linalg.slogdet(H)[1] + np.log(ridge).sum()), size
+        return float(slope @ size / design_effect - np.linalg.slogdet(H)[1] + np.log(ridge).sum()), size
 
     def reduction(self, at: np.ndarray, size: Array) -> float:
         """What a hypothesis of a given size takes from the loss; negative where it adds to it."""
         return float(2.0 * self.b[at] @ size - size @ self.A[np.ix_(at, at)] @ size)
 
 
-def suspected_onset(problem: Problem, data: Products, library: Sequence[Hypothesis]) -> Onset | None:
+def suspected_onset(problem: Problem, data: NormalEquations, library: Sequence[Hypothesis]) -> Onset | None:
     """From when on something is at work that was not there before; None where nothing says so, and for several logs, each of which would have an onset
     of its own. ``data`` is the library linearised at the healthy fit."""
-    if len(problem.parts) > 1 or problem.blocks < WINDOWS_BEFORE_ONSET + WINDOWS_AFTER_ONSET:
+    if len(problem.runs) > 1 or problem.window_count < WINDOWS_BEFORE_ONSET + WINDOWS_AFTER_ONSET:
         return None
     priors = {h.label: prior_of(problem, h) for h in library if not h.effect.begins}
-    whole = Stretch.of(data, slice(None), problem.slop, problem.inflation)
-    always = {label: whole.explained(data.place(tuple(prior.sd)), prior, problem.inflation)[0] for label, prior in priors.items()}
-    first, last = WINDOWS_BEFORE_ONSET, problem.blocks - WINDOWS_AFTER_ONSET
+    whole = Stretch.of(data, slice(None), problem.tolerance, problem.design_effect)
+    always = {label: whole.explained(data.place(tuple(prior.sd)), prior, problem.design_effect)[0] for label, prior in priors.items()}
+    first, last = WINDOWS_BEFORE_ONSET, problem.window_count - WINDOWS_AFTER_ONSET
     step = max(1, (last - first) // ONSETS_TRIED)
     found = {k: _evidence_from(problem, data, priors, always, k) for k in range(first, last + 1, step)}
     best = max(found, key=lambda k: found[k])
     near = range(max(first, best - step + 1), min(last, best + step - 1) + 1) if found[best] else ()
     found |= {k: _evidence_from(problem, data, priors, always, k) for k in near if k not in found}
     best = max(found, key=lambda k: found[k])
-    windows = problem.parts[0]
+    windows = problem.runs[0]
     return Onset(float(windows.start[best] * windows.run.dt), found[best]) if found[best] else None
 
 
-def _evidence_from(problem: Problem, data: Products, priors: Mapping[str, Prior], always: Mapping[str, float], k: int) -> float:
+def _evidence_from(problem: Problem, data: NormalEquations, priors: Mapping[str, Prior], always: Mapping[str, float], k: int) -> float:
     """Most evidence of a hypothesis in the windows from the ``k``-th on, of those with clearly more than on the whole log that the windows before deny;
     0 where there is none."""
-    after = Stretch.of(data, slice(k, None), problem.slop, problem.inflation)
-    before = Stretch.of(data, slice(k), problem.slop, problem.inflation)
+    after = Stretch.of(data, slice(k, None), problem.tolerance, problem.design_effect)
+    before = Stretch.of(data, slice(k), problem.tolerance, problem.design_effect)
     best = 0.0
     for label, prior in priors.items():
         at = data.place(tuple(prior.sd))
-        evidence, size = after.explained(at, prior, problem.inflation)
-        if evidence > max(best, max(always[label], 0.0) + ONSET_HINTED) and before.reduction(at, size) < -ONSET_DENIED * problem.inflation:
+        evidence, size = after.explained(at, prior, problem.design_effect)
+        if evidence > max(best, max(always[label], 0.0) + ONSET_HINTED) and before.reduction(at, size) < -ONSET_DENIED * problem.design_effect:
             best = evidence
     return best
 
 
-def windows_from(windows: Stretches, time: float) -> Stretches:
+def windows_from(windows: Windows, time: float) -> Windows:
     """The windows of a run from ``time`` (s since its start) on."""
     kept = windows.start * windows.run.dt >= time
     return replace(
@@ -100,7 +99,7 @@ def windows_from(windows: Stretches, time: float) -> Stretches:
     )
 
 
-def evidence_with_onset(problem: Problem, late: Confirmed, time: float, healthy: Point) -> float:
+def evidence_with_onset(problem: Problem, late: HypothesisFit, time: float, healthy: Posterior) -> float:
     """Twice the log Bayes factor over the nominal vehicle, on every window, of the causes that the fit ``late`` shows from ``time`` (s) on and of a healthy
     vehicle before.
 
@@ -108,30 +107,30 @@ def evidence_with_onset(problem: Problem, late: Confirmed, time: float, healthy:
     are at the ``healthy`` fit, whichever is better.
     """
     own = list(late.slots)
-    beside, alone, without = late.point.beta, healthy.beta.copy(), late.point.beta.copy()
+    beside, alone, without = late.posterior.beta, healthy.beta.copy(), late.posterior.beta.copy()
     alone[own], without[own] = beside[own], healthy.beta[own]
     starts = (beside, without), (alone, healthy.beta)
-    return max(whole_evidence(problem, _switched(problem, late.slots, now, then, time)) for now, then in starts)
+    return max(laplace_evidence(problem, _switched(problem, late.slots, now, then, time)) for now, then in starts)
 
 
-def _switched(problem: Problem, own: tuple[int, ...], now: Array, then: Array, time: float) -> Point:
+def _switched(problem: Problem, own: tuple[int, ...], now: Array, then: Array, time: float) -> Posterior:
     """The windows before ``time`` linearised about ``then``, the others about ``now``. A coefficient that the causes take is one of the vehicle's own, with
     its tolerance, before they do."""
-    columns = (*own, *(c for c in problem.slop.sd if c not in own))
-    begun, before = about(problem, now, columns, len(own)), about(problem, then, columns, len(own))
-    taken = [i for i, slot in enumerate(own) if slot in problem.slop.sd]
+    columns = (*own, *(c for c in problem.tolerance.sd if c not in own))
+    begun, before = posterior_at(problem, now, columns, len(own)), posterior_at(problem, then, columns, len(own))
+    taken = [i for i, slot in enumerate(own) if slot in problem.tolerance.sd]
     k, slots = len(columns), [own[i] for i in taken]
     late, early = np.eye(k + len(taken), k), np.eye(k + len(taken), k)
     early[: len(own)] = 0.0
     early[np.arange(k, k + len(taken)), taken] = 1.0
-    first = np.concatenate([part.start * part.run.dt < time for part in problem.parts])
-    A = np.where(first[:, None, None], early @ before.data.A @ early.T, late @ begun.data.A @ late.T)
-    b = np.where(first[:, None], before.data.b @ early.T, begun.data.b @ late.T)
+    first = np.concatenate([part.start * part.run.dt < time for part in problem.runs])
+    A = np.where(first[:, None, None], early @ before.total.A @ early.T, late @ begun.total.A @ late.T)
+    b = np.where(first[:, None], before.total.b @ early.T, begun.total.b @ late.T)
     none = np.zeros(len(taken))
     return replace(
         begun,
-        columns=(*columns, *slots), data=Products(A, b, np.where(first, before.data.c, begun.data.c), (*columns, *slots)),
-        precision=np.concatenate([begun.precision, [problem.inflation / problem.slop.sd[s] ** 2 for s in slots]]),
-        offset=np.concatenate([begun.offset, (then - problem.origin)[slots]]),
-        side=np.concatenate([begun.side, none]), still=np.concatenate([begun.still, none > 0]),
+        columns=(*columns, *slots), total=NormalEquations(A, b, np.where(first, before.total.c, begun.total.c), (*columns, *slots)),
+        precision=np.concatenate([begun.precision, [problem.design_effect / problem.tolerance.sd[s] ** 2 for s in slots]]),
+        departure=np.concatenate([begun.departure, (then - problem.origin)[slots]]),
+        bound_side=np.concatenate([begun.bound_side, none]), tangent_only=np.concatenate([begun.tangent_only, none > 0]),
     )  # fmt: skip

@@ -12,19 +12,19 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.windows.shooting import Stretches
+from rovval.diagnose.windows.windows import Windows
 from rovval.vehicle.model import allocation
 
 TILTS = {"roll": ("phi", "p", 3), "pitch": ("theta", "q", 4)}  # angle, its rate and the axis of the moment
 SHOWN = 0.05  # chosen: share of the moment's variance that angle and rate must account for
 
 
-def gains(parts: Sequence[Stretches]) -> dict[str, float]:
+def loop_gains(parts: Sequence[Windows]) -> dict[str, float]:
     """Loop gain of roll and pitch, the mean over runs."""
     return {axis: float(np.mean([loop_gain(part, *where) for part in parts])) for axis, where in TILTS.items()}
 
 
-def discount(parts: Sequence[Stretches], gain: Mapping[str, float]) -> Array:
+def variance_factors(parts: Sequence[Windows], gain: Mapping[str, float]) -> Array:
     """Factor (c,) on the variance of each residual channel: (1 + loop gain)^2 for roll and pitch, else 1."""
     channels = parts[0].channels
     by_channel = {c: (1.0 + gain[axis]) ** 2 for axis, (angle, rate, _) in TILTS.items() for c in (angle, rate)}
@@ -33,7 +33,7 @@ def discount(parts: Sequence[Stretches], gain: Mapping[str, float]) -> Array:
 
 
 
-def loop_gain(part: Stretches, angle: str, rate: str, axis: int) -> float:
+def loop_gain(part: Windows, angle: str, rate: str, axis: int) -> float:
     """Moment that the thrusters give against an angle, over the righting moment; 0 where they do not answer it.
 
     Least squares of the thrusters' moment (from the recorded speeds) on angle and rate: M = m0 - k angle - d rate.
@@ -41,8 +41,8 @@ def loop_gain(part: Stretches, angle: str, rate: str, axis: int) -> float:
     run, vehicle = part.run, part.plant.vehicle
     if not (run.measured(angle) and run.measured(rate)):
         return 0.0
-    moment = part.plant.thrust(part.driven.inputs.speed) @ allocation(vehicle)[axis]
-    use = run.ok(angle) & run.ok(rate) & part.driven.known
+    moment = part.plant.thrust(part.actuation.inputs.speed) @ allocation(vehicle)[axis]
+    use = run.ok(angle) & run.ok(rate) & part.actuation.known
     if use.sum() < 10 or moment[use].std() == 0.0:
         return 0.0
     X = np.column_stack([np.ones(use.sum()), run.get(angle)[use], run.get(rate)[use]])

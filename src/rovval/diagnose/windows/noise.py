@@ -10,20 +10,20 @@ from rovval.core.data import Array, Flags, Run
 from rovval.core.frames import wrap
 
 ANGLES = ("phi", "theta", "psi")
-BELIEVED = {"u": 1e-3, "v": 1e-3, "w": 1e-3, "p": 1e-3, "q": 1e-3, "r": 1e-3, "phi": 1e-3, "theta": 1e-3, "psi": 2e-3, "x": 5e-3, "y": 5e-3, "z": 5e-3}
+LEAST_NOISE = {"u": 1e-3, "v": 1e-3, "w": 1e-3, "p": 1e-3, "q": 1e-3, "r": 1e-3, "phi": 1e-3, "theta": 1e-3, "psi": 2e-3, "x": 5e-3, "y": 5e-3, "z": 5e-3}
 # m/s, rad/s, rad, m: below these no ROV sensor is believed (chosen; keeps a noise-free log from dividing by zero)
 FEWEST_LEVELS, REPEATS = 3, 5  # values of a channel that repeat themselves, and how often each does on the average, in coarse steps (chosen)
 ROUNDING, OFF_GRID = 1e-6, 0.1  # of the largest step: a smaller one is rounding; and of a step, by which levels may miss their grid (chosen)
 OUTLIER_SIGMA = 8.0  # chosen: a sample this far from its neighbours' line is an outlier of the sensor
 
 
-def cleaned(run: Run, channels: Sequence[str]) -> tuple[Array, Flags, Array, Flags]:
+def clean_channels(run: Run, channels: Sequence[str]) -> tuple[Array, Flags, Array, Flags]:
     """Channel values (n, c), where they count, white noise of each (c,), and where isolated outliers were set aside (n,): no window begins
     at one, since its start state would be the outlier."""
     values = run.stack(tuple(channels))
     good = np.isfinite(values)
     noise, spoiled = np.zeros(len(channels)), np.zeros(len(run), dtype=bool)
-    for i, (name, stride) in enumerate(zip(channels, strides(run, channels), strict=True)):
+    for i, (name, stride) in enumerate(zip(channels, sample_strides(run, channels), strict=True)):
         real = np.arange(0, len(run), stride)
         keep = np.zeros(len(run), dtype=bool)
         keep[real] = good[real, i]
@@ -31,12 +31,12 @@ def cleaned(run: Run, channels: Sequence[str]) -> tuple[Array, Flags, Array, Fla
         wild = _wild(series, name)
         spoiled[real] |= wild & keep[real]
         keep[real] &= ~wild
-        noise[i] = max(white_noise(series, keep[real]), grain(run.get(name)) / np.sqrt(12.0))
+        noise[i] = max(white_noise(series, keep[real]), quantisation_step(run.get(name)) / np.sqrt(12.0))
         good[:, i] = keep
     return np.where(good, values, 0.0), good, noise, spoiled
 
 
-def strides(run: Run, channels: Sequence[str]) -> tuple[int, ...]:
+def sample_strides(run: Run, channels: Sequence[str]) -> tuple[int, ...]:
     """Grid points per real sample of each channel: 1 at the grid's rate, 3 for a depth logged at 3 Hz. What alignment drew between two
     samples is not evidence of its own."""
     periods = [run.resampled[c].period_s if c in run.resampled else run.dt for c in channels]
@@ -51,7 +51,7 @@ def _wild(series: Array, name: str) -> Flags:
     finite = bend[np.isfinite(bend)]
     spread = 1.4826 * float(np.median(np.abs(finite))) if len(finite) else 0.0
     with np.errstate(invalid="ignore"):
-        wild[1:-1] = np.abs(bend) > OUTLIER_SIGMA * max(spread, 2 * BELIEVED[name])
+        wild[1:-1] = np.abs(bend) > OUTLIER_SIGMA * max(spread, 2 * LEAST_NOISE[name])
     return wild
 
 
@@ -65,7 +65,7 @@ def white_noise(series: Array, good: Flags) -> float:
     return float(1.4826 * np.median(np.abs(third[usable])) / np.sqrt(20.0)) if usable.any() else 0.0
 
 
-def grain(values: Array) -> float:
+def quantisation_step(values: Array) -> float:
     """Step in which a channel is written, from values (n,) that repeat themselves; 0 where these lie on no grid. Rounding to it errs uniformly, with
     a variance of a twelfth of its square (Widrow 1956)."""
     held = values[1:][values[1:] == values[:-1]]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from rovval.diagnose.inference.prior import STRAINED
+from rovval.diagnose.problem.prior import STRAINED
 from rovval.diagnose.result.diagnosis import Cause, Diagnosis, Shrinkage
 from rovval.report.common.numbers import number, per_cent, probability, quantity, share
 from rovval.report.diagnosis import recalibration

@@ -7,15 +7,15 @@ tolerances of their own; each effect states its own (`effects.Tolerance`): what 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
+from rovval.diagnose.residuals.ridge import Prior
 from rovval.plant import Plant
 
 WITHIN = 3.5  # standard deviations of tolerance that healthy coefficients reach (tuning set: 3.3 of some hundred)
 STRAINED = 5.0  # standard deviations from which a coefficient is off by more than slop of the stated size
 
 
-def slop_prior(plant: Plant, slop: float) -> Prior:
+def tolerance_prior(plant: Plant, slop: float) -> Prior:
     """Standard deviation by plant slot of what a healthy simulator and log may be off by, as each effect states it; empty where ``slop``, the relative
     calibration tolerance, is zero."""
     if slop <= 0:
@@ -24,21 +24,9 @@ def slop_prior(plant: Plant, slop: float) -> Prior:
     return Prior({i: t.of(slot.parameter, plant.vehicle, slot.target, slop) for i, slot, t in stated if t is not None})
 
 
-@dataclass(frozen=True, slots=True)
-class Prior:
-    """Standard deviation of the departure of columns from where the model stands; columns not named do not move."""
-
-    sd: Mapping[int, float]
-
-    def widened(self, other: Prior) -> Prior:
-        """Both sets free; a column in both takes the wider prior."""
-        merged = dict(self.sd)
-        for column, value in other.sd.items():
-            merged[column] = max(value, merged.get(column, 0.0))
-        return Prior(merged)
 
 
-def loosened(prior: Prior, plant: Plant, gain: Mapping[str, float]) -> Prior:
+def loosened_by_closed_loop(prior: Prior, plant: Plant, gain: Mapping[str, float]) -> Prior:
     """The tolerances of what turns the vehicle about an axis that an autopilot steadies with the loop ``gain``, and of how it rights itself, wider by as
     much as the motion shows less of them (`effects.Tolerance`)."""
     sd = dict(prior.sd)

@@ -26,7 +26,7 @@ REPEATED = 0.3  # of the samples: more is a slow sensor, written at the log's ra
 SLOWEST, STEADY = 30, 0.9  # samples between pings, and share of the pings that keep such a beat (chosen)
 
 
-def sensed(run: Run) -> tuple[Run, tuple[Finding, ...]]:
+def condition(run: Run) -> tuple[Run, tuple[Finding, ...]]:
     """The run with samples at a stop masked and with held velocities drawn between pings, as a log at the pings' rate would be; and what
     was found."""
     values, reasons, resampled = dict(run.values), dict(run.reasons), dict(run.resampled)
@@ -36,14 +36,14 @@ def sensed(run: Run) -> tuple[Run, tuple[Finding, ...]]:
             reasons[name] = np.full_like(reasons[name], Reason.SATURATED)
             found.append(Finding("saturated", name, f"says {np.nanmax(run.get(name)):.4g} (SI units) all along, which no sensor does, and was left out"))
             continue
-        stop = at_stop(run.get(name))
+        stop = saturated(run.get(name))
         if stop.any():
             reasons[name] = np.where(stop, Reason.SATURATED, reasons[name]).astype(np.uint8)
             levels = " and ".join(f"{x:.4g}" for x in np.unique(values[name][stop]))
             detail = f"stands at the end of its sensor's range ({levels} in SI units) for {stop.sum() * run.dt:.0f} s, which were left out"
             found.append(Finding("saturated", name, detail))
     pinged = tuple(c for c in PINGED if run.measured(c))
-    beat, first = pings(run.stack(pinged)) if pinged else (1, 0)
+    beat, first = ping_period(run.stack(pinged)) if pinged else (1, 0)
     if beat > 1:
         period = beat * run.dt
         for name in pinged:
@@ -55,7 +55,7 @@ def sensed(run: Run) -> tuple[Run, tuple[Finding, ...]]:
     return replace(run, values=values, reasons=reasons, resampled=resampled, findings=(*run.findings, *found)), tuple(found)
 
 
-def at_stop(values: Array) -> Flags:
+def saturated(values: Array) -> Flags:
     """Samples (n,) that stand at the end of a sensor's range: the same extreme again and again, reached steeply."""
     known = values[np.isfinite(values)]
     stop = np.zeros(len(values), dtype=bool)
@@ -78,7 +78,7 @@ def _never_changes(values: Array) -> bool:
     return bool(len(known) > 1 and np.ptp(known) == 0.0 and known[0] != 0.0)
 
 
-def pings(values: Array) -> tuple[int, int]:
+def ping_period(values: Array) -> tuple[int, int]:
     """Beat (samples) at which channels (n, c) are new and the first such sample, where all repeat themselves to the last digit between; else (1, 0).
 
     A vehicle at rest in a coarsely written log repeats itself, too, but at no beat.

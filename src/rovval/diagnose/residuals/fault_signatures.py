@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.data import Array, Flags
-from rovval.diagnose.residuals.dead_reckoning import drift, inside, wrap_angles
-from rovval.diagnose.windows.shooting import Stretches
+from rovval.diagnose.residuals.dead_reckoning import pose_drift, without_margin, wrap_angles
+from rovval.diagnose.windows.windows import Windows
 from rovval.effects.log import Log
 from rovval.plant.sensors import observe
 
@@ -20,11 +20,11 @@ STEP = 0.25  # finite-difference step, in typical sizes
 
 
 @dataclass(frozen=True, slots=True)
-class Traces:
+class FaultSignatures:
     """Smooth measured motion ``nu`` and ``eta`` (m, margin + n + margin, 6) of the windows, ``usable`` (m,) of them, its drift ``as_is`` (m, rows, 6), and
     what sensors make of it (`traced`)."""
 
-    stretches: Stretches
+    stretches: Windows
     nu: Array
     eta: Array
     usable: Flags
@@ -57,13 +57,13 @@ class Traces:
         return _drift_of(seen.nu, seen.eta, self.stretches.run.dt, self.usable)
 
 
-def traced(stretches: Stretches, nu: Array, eta: Array, usable: Flags) -> Traces:
+def fault_signatures(stretches: Windows, nu: Array, eta: Array, usable: Flags) -> FaultSignatures:
     """Traces of a smooth motion."""
-    return Traces(stretches, nu, eta, usable, _drift_of(nu, eta, stretches.run.dt, usable))
+    return FaultSignatures(stretches, nu, eta, usable, _drift_of(nu, eta, stretches.run.dt, usable))
 
 
 def _drift_of(nu: Array, eta: Array, dt: float, usable: Flags) -> Array:
-    rows = drift(inside(nu), inside(eta), dt)
+    rows = pose_drift(without_margin(nu), without_margin(eta), dt)
     rows[~usable] = 0.0
     return rows
 

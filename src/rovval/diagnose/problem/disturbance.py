@@ -1,0 +1,154 @@
+"""Disturbances that nobody logged: slowly varying forces on each axis, as large and as slow as the log itself shows them to be.
+
+Under an autopilot the thrusters answer whatever pushes the vehicle. A replay gets their answers without the push, and errs by both; unless the push
+is a nuisance of the fit, that error is read as a fault of the model (closed-loop identification: Ljung 1999, section 13.4). The force on an axis is
+an Ornstein-Uhlenbeck process (Uhlenbeck and Ornstein 1930), constant in each of `SEGMENTS` segments of a window; its standard deviation and its
+correlation time are found by expectation and maximisation (Dempster, Laird and Rubin 1977) on what the whole library and steady forces of the
+environment leave.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from rovval.core.channels import AXES
+from rovval.core.data import Array
+from rovval.diagnose.residuals.external_forces import force_sensitivities, generic_force_responses, typical_wrench
+from rovval.diagnose.residuals.normal_equations import Linearisation, NormalEquations, concatenated, normal_equations
+from rovval.diagnose.residuals.nuisances import initial_state_sd
+from rovval.diagnose.residuals.ridge import Prior, ridge_step
+from rovval.diagnose.windows.windows import Windows
+
+SEGMENTS = 12  # of a window in which a force holds still: 0.8 s of 10 s, well below the period at which a small ROV rolls
+ROUNDS = 10  # of expectation and maximisation
+FIRST, FIRST_S = 0.1, 1.0  # guesses: of the thrusters' own rms on an axis, and the time in which a force forgets itself
+CORRELATION = (0.02, 0.98)  # limits of the latter
+ENVIRONMENT = ("constant", "cos heading", "sin heading", "depth", "time")  # systematic forces that are no disturbance
+GENERIC = 0.1  # prior size of a generic force, as a share of the same
+COVERED = 0.05  # of the noise's variance: a part of a disturbance that does less than this changes no weight
+LEAST = 1e-6  # of the same: smaller is none
+
+
+@dataclass(frozen=True, slots=True)
+class Disturbance:
+    """Forces that nobody logged.
+
+    Attributes:
+        rms: standard deviation of the force on each axis (6,), N and N m.
+        memory_s: time (6,) in which the force on each axis loses a share 1 - 1/e of its correlation, in seconds.
+        response: what they do to the windows of each run (m, n, c, d), in d independent parts of one standard deviation.
+    """
+
+    rms: Array
+    memory_s: Array
+    response: tuple[Array, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class UnitResponses:
+    """What forces as large as the thrusters' rms ``wrench`` (6,), N and N m, do to the windows of each run: ``segments`` (m, n, c, 6 * SEGMENTS) by a
+    force on one axis in one segment of every window, ``steady`` (m, n, c, f) by steady forces of the environment."""
+
+    wrench: Array
+    segments: tuple[Array, ...]
+    steady: tuple[Array, ...]
+
+
+def unit_responses(runs: Sequence[Windows], beta: Array) -> UnitResponses:
+    """Simulate the responses about ``beta`` (k,)."""
+    wrench = typical_wrench(runs)
+    segments = tuple(
+        force_sensitivities(windows, beta, [(axis, series * wrench[AXES.index(axis)]) for axis, series in unit_forces(windows)])
+        for windows in runs
+    )
+    return UnitResponses(wrench, segments, tuple(generic_force_responses(runs, beta, ENVIRONMENT)[1]))
+
+
+def no_disturbance() -> Disturbance:
+    """No disturbance, because none was looked for."""
+    return Disturbance(np.zeros(len(AXES)), np.zeros(len(AXES)), ())
+
+
+def initial_disturbance(responses: UnitResponses) -> Disturbance:
+    """The guess that expectation and maximisation begins with."""
+    return Disturbance(FIRST * responses.wrench, np.full(len(AXES), FIRST_S), ())
+
+
+def estimate_disturbance(
+    runs: Sequence[Windows], responses: UnitResponses, left: Sequence[Linearisation], variance: Array, design_effect: float,
+    before: Disturbance,
+) -> Disturbance:  # fmt: skip
+    """Fit the disturbances to what the residuals of ``left`` hold beyond steady forces and white noise of ``variance`` (n, c), beginning with those
+    of ``before``."""
+    steady = _equations(runs, left, responses.steady, variance)
+    strength = ridge_step(steady, Prior(dict.fromkeys(steady.columns, GENERIC)), design_effect)
+    less = [
+        replace(one, r=np.where(windows.ok, one.r - S @ strength, 0.0))
+        for windows, one, S in zip(runs, left, responses.steady, strict=True)
+    ]
+    segment_s = (runs[0].steps + 1) * runs[0].run.dt / SEGMENTS
+    share, correlation = before.rms / responses.wrench, np.exp(-segment_s / before.memory_s)
+    share, correlation = _expectation_maximisation(_equations(runs, less, responses.segments, variance), share, correlation)
+    root = np.linalg.cholesky(_covariance(share, correlation))
+    return Disturbance(share * responses.wrench, -segment_s / np.log(correlation), tuple(one @ root for one in responses.segments))
+
+
+def unit_forces(windows: Windows) -> list[tuple[str, Array]]:
+    """A unit force on each axis in one segment of every window: (axis, series (run,) on the run's grid) of each."""
+    return [(axis, on) for axis in AXES for on in segment_indicators(windows)]
+
+
+def segment_indicators(windows: Windows, count: int = SEGMENTS) -> list[Array]:
+    """Series (run,) on the run's grid that are one in the first, second, ... of ``count`` segments of every window, and zero elsewhere."""
+    edges = np.linspace(0, windows.steps + 1, count + 1).round().astype(int)
+    found = [np.zeros(len(windows.run)) for _ in range(count)]
+    for on, (low, high) in zip(found, pairwise(edges), strict=True):
+        on[(windows.start[:, None] + np.arange(low, high)).reshape(-1)] = 1.0
+    return found
+
+
+def principal_parts(runs: Sequence[Windows], response: Sequence[Array], variance: Array) -> tuple[Array, ...]:
+    """The same covariance in fewer columns (m, n, c, d): each window's principal components, but for those that noise of ``variance`` (n, c) covers."""
+    found, most = list[list[Array]](), 0
+    for windows, one in zip(runs, response, strict=True):
+        found.append([])
+        for w in range(windows.count):
+            weighted = np.where(windows.ok[w], 1.0 / np.sqrt(variance), 0.0)[..., None] * one[w]
+            power, way = np.linalg.eigh(np.einsum("tci,tcj->ij", weighted, weighted, optimize=True))
+            found[-1].append(one[w] @ way[:, power > COVERED])
+            most = max(most, found[-1][-1].shape[-1])
+    return tuple(np.stack([np.pad(x, ((0, 0), (0, 0), (0, most - x.shape[-1]))) for x in one]) for one in found)
+
+
+def _equations(runs: Sequence[Windows], left: Sequence[Linearisation], S: Sequence[Array], variance: Array) -> NormalEquations:
+    """Normal equations of residuals with other sensitivities (m, n, c, f), initial states marginalised."""
+    return concatenated([
+        normal_equations(replace(one, S=each, columns=tuple(range(each.shape[-1]))), windows.ok, variance, initial_state_sd(windows))
+        for windows, one, each in zip(runs, left, S, strict=True)
+    ])  # fmt: skip
+
+
+def _expectation_maximisation(data: NormalEquations, share: Array, correlation: Array) -> tuple[Array, Array]:
+    """Standard deviation (6,) of the forces as shares of the thrusters' rms, and their correlation (6,) from one segment to the next.
+
+    Expectation: posterior mean and covariance of every window's forces. Maximisation: their mean second moments over windows and segments.
+    """
+    for _ in range(ROUNDS):
+        cover = np.linalg.inv(data.A + np.linalg.inv(_covariance(share, correlation)))
+        mean = np.einsum("wij,wj->wi", cover, data.b)
+        square = (cover + mean[:, :, None] * mean[:, None, :]).mean(axis=0).reshape(len(AXES), SEGMENTS, len(AXES), SEGMENTS)
+        own = np.einsum("aiaj->aij", square)
+        alone, next_one = np.einsum("aii->a", own) / SEGMENTS, np.einsum("aii->a", own[:, :-1, 1:]) / (SEGMENTS - 1)
+        share, correlation = np.sqrt(alone), np.clip(next_one / alone, *CORRELATION)
+    return share, correlation
+
+
+def _covariance(share: Array, correlation: Array) -> Array:
+    """Covariance (6 SEGMENTS, 6 SEGMENTS) of the forces: the correlation of two segments falls geometrically with the number between them."""
+    apart = np.abs(np.subtract.outer(np.arange(SEGMENTS), np.arange(SEGMENTS)))
+    return np.asarray(block_diag(*[max(s, LEAST) ** 2 * m**apart for s, m in zip(share, correlation, strict=True)]))

@@ -1,0 +1,113 @@
+"""The windows that a diagnosis works on: short stretches restarted from the measured state (multiple shooting).
+
+A window of 10 s is three to five time constants of surge of an observation-class ROV: long enough for a missing force to show as a
+velocity error, short enough that the initial state does not decide the outcome.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rovval.core.data import Flags, Run
+from rovval.core.errors import BadInput, all_at_once
+from rovval.diagnose.windows.conditioning import condition
+from rovval.diagnose.windows.contact import in_contact
+from rovval.diagnose.windows.noise import clean_channels, sample_strides
+from rovval.diagnose.windows.windows import Windows, residual_channels
+from rovval.plant import Plant
+from rovval.simulation.actuation import recorded_actuation, start_states, startable
+from rovval.vehicle.model import Vehicle
+
+FEWEST_WINDOWS = 3  # one to hold out, two to fit on
+MANY_WINDOWS = 6  # fewer, and shorter windows are tried (chosen)
+SHORTEST_SHARE = 0.6  # chosen: a window with fewer of its samples measured is left out
+
+
+
+
+def cut(runs: Sequence[Run], vehicle: Vehicle, model: str, window_s: float) -> tuple[tuple[Windows, ...], tuple[str, ...]]:
+    """Every run cut into windows of one length: the longest of ``window_s``, its half and its quarter that suits them all; and which runs
+    were too short and left out, with the reason.
+
+    Raises:
+        BadInput: no run can be cut, or the runs differ in the channels that they hold.
+    """
+    parts, left_out = list[Windows](), list[str]()
+    for run in (condition(one)[0] for one in runs):
+        try:
+            parts.append(cut_run(run, vehicle, model, window_s))
+        except BadInput as error:
+            if len(runs) == 1:
+                raise
+            left_out.append(error.message)
+    if not parts:
+        raise BadInput(all_at_once(left_out, "no log can be diagnosed"), "use longer logs")
+    shortest = min(part.steps + 1 for part in parts)
+    same = tuple(p if p.steps + 1 == shortest else _cut(p.run, vehicle, model, shortest * p.run.dt) for p in parts)
+    if len({part.channels for part in same}) > 1:
+        held = "; ".join(f"{part.run.id}: {', '.join(part.channels)}" for part in same)
+        raise BadInput(f"the logs hold different channels and cannot be diagnosed together ({held})", "diagnose them one by one")
+    return same, tuple(left_out)
+
+
+def cut_run(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Windows:
+    """Cut a run into windows of ``window_s``, or of half or a quarter of it where a short log gives too few.
+
+    Raises:
+        BadInput: fewer than `FEWEST_WINDOWS` windows can be simulated; says how many and why.
+    """
+    for share in (1.0, 0.5):
+        try:
+            stretches = _cut(run, vehicle, model, share * window_s)
+        except BadInput:
+            continue
+        if stretches.count >= MANY_WINDOWS:
+            return stretches
+    return _cut(run, vehicle, model, 0.25 * window_s)
+
+
+def _cut(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Windows:
+    plant, driven = Plant(vehicle, model), recorded_actuation(run, vehicle)
+    channels = residual_channels(run)
+    steps = round(window_s / run.dt) - 1
+    touching = in_contact(run, driven)
+    values, good, noise, wild = clean_channels(run, channels)
+    start = _starts(driven.known & ~touching, startable(run) & ~wild, steps)
+    inside = start[:, None] + np.arange(steps + 1)[None, :]
+    possible = np.mean([1.0 / stride for stride in sample_strides(run, channels)])
+    enough = good[inside].mean(axis=(1, 2)) >= SHORTEST_SHARE * possible if len(start) else np.zeros(0, dtype=bool)
+    start = start[enough]
+    if len(start) < FEWEST_WINDOWS:
+        raise BadInput(
+            f"run {run.id}: {len(start)} windows of {window_s:g} s hold inputs and measurements throughout, at least {FEWEST_WINDOWS} are needed",
+            "use a longer log, a shorter --window, or look at the gaps with `rovval compare`",
+        )
+    inside = start[:, None] + np.arange(steps + 1)[None, :]
+    nu0, eta0, _ = start_states(run, start)
+    return Windows(
+        run, plant, driven, channels, start, steps, nu0, eta0, values[inside], good[inside], noise, int(wild.sum()), float(touching.sum() * run.dt)
+    )
+
+
+
+
+
+
+
+
+def _starts(known: Flags, ready: Flags, steps: int) -> NDArray[np.int64]:
+    """First sample of each window: as many as fit, each from a startable point with known inputs throughout."""
+    blocked = np.concatenate([[0], np.cumsum(~known)])
+    starts, at = [], 0
+    while at + steps < len(known):
+        if ready[at] and blocked[at + steps + 1] == blocked[at]:
+            starts.append(at)
+            at += steps + 1
+        else:
+            at += 1
+    return np.array(starts, dtype=np.int64)
+
+

@@ -1,0 +1,93 @@
+"""TODO The windows that a diagnosis works on: short stretches restarted from the measured state (multiple shooting)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rovval.core.channels import AXES
+from rovval.core.data import Array, Flags, Run
+from rovval.core.frames import wrap
+from rovval.diagnose.windows.noise import ANGLES
+from rovval.plant import Plant
+from rovval.simulation.actuation import Actuation
+
+VELOCITY_CHANNELS = ("u", "v", "w", "p", "q", "r")
+ATTITUDE_CHANNELS = ("phi", "theta")
+AXIS_OF = dict(zip((*VELOCITY_CHANNELS, "x", "y", "z", "phi", "theta", "psi"), (*AXES, *AXES), strict=True))
+POSE_OF = dict(zip(VELOCITY_CHANNELS, ("x", "y", "z", "phi", "theta", "psi"), strict=True))
+
+
+@dataclass(frozen=True, slots=True)
+class Windows:
+    """Windows of one run: ``start`` (m,) grid index, ``steps`` per window, measured start states (m, 6), and the measured channels
+    ``y`` (m, steps + 1, c) with ``ok`` where they hold a value. ``noise`` (c,) is the white part of each channel's error; ``contact_s``
+    seconds left out because the vehicle was held or aground. ``pushed`` (m, steps + 1, c, d) is what disturbances of one standard deviation
+    do to the windows (`disturbance`), once their size is known; ``stopped`` windows in which the simulation of the vehicle as it is stops."""
+
+    run: Run
+    plant: Plant
+    actuation: Actuation
+    channels: tuple[str, ...]
+    start: NDArray[np.int64]
+    steps: int
+    nu0: Array
+    eta0: Array
+    y: Array
+    ok: Flags
+    noise: Array
+    outliers: int
+    contact_s: float
+    disturbance_response: Array | None = None
+    stopped: int = 0
+
+    @property
+    def count(self) -> int:
+        """Number of windows."""
+        return len(self.start)
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """Axis that each channel belongs to."""
+        return tuple(AXIS_OF[c] for c in self.channels)
+
+    def time(self) -> Array:
+        """Seconds since the run's start of every sample (m, steps + 1)."""
+        return np.asarray((self.start[:, None] + np.arange(self.steps + 1)[None, :]) * self.run.dt)
+
+
+def residual_channels(run: Run) -> tuple[str, ...]:
+    """Velocities, or the pose of an axis whose velocity was not logged, and roll and pitch, whose static value shows trim."""
+    chosen = [c if run.measured(c) else POSE_OF[c] for c in VELOCITY_CHANNELS]
+    chosen += [c for c in ATTITUDE_CHANNELS if c not in chosen]
+    return tuple(c for c in chosen if run.measured(c))
+
+
+def predicted_channels(stretches: Windows, nu: Array, eta: Array, out: Array | None = None) -> Array:
+    """The residual channels of simulated motions: (b, steps + 1, 6) twice -> (b, steps + 1, c), into ``out`` where it is given."""
+    names = (*VELOCITY_CHANNELS, "x", "y", "z", "phi", "theta", "psi")
+    at = [names.index(channel) for channel in stretches.channels]
+    begins = [i for i in range(len(at)) if i == 0 or at[i] != at[i - 1] + 1 or at[i] == 6]  # neighbours are copied at once
+    blocks = [(at[i], j - i) for i, j in zip(begins, [*begins[1:], len(at)], strict=True)]
+    return np.concatenate([(nu, eta)[first // 6][..., first % 6 : first % 6 + size] for first, size in blocks], axis=-1, out=out)
+
+
+def channel_difference(stretches: Windows, a: Array, b: Array) -> Array:
+    """a - b per channel, angles wrapped."""
+    out = a - b
+    for i, name in enumerate(stretches.channels):
+        if name in ANGLES and (np.abs(out[..., i]) > np.pi).any():
+            out[..., i] = wrap(out[..., i])
+    return np.asarray(out)
+
+
+def axis_channels(stretches: Windows) -> dict[str, int]:
+    """Channel that carries the gap of each measured axis: its velocity, or its pose where that is all there is."""
+    carrier = {}
+    for axis, velocity in zip(AXES, VELOCITY_CHANNELS, strict=True):
+        name = velocity if velocity in stretches.channels else POSE_OF[velocity]
+        if name in stretches.channels:
+            carrier[axis] = stretches.channels.index(name)
+    return carrier
