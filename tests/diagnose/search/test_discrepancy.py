@@ -34,7 +34,7 @@ def test_a_few_forces_are_worth_what_they_are_one_after_another():
     data = NormalEquations(np.einsum("wni,wnj->wij", X, X), np.einsum("wni,wn->wi", X, r), (r**2).sum(axis=1), tuple(range(X.shape[-1])))
     beside = GenericForces(tuple((axis, str(i)) for i, axis in enumerate(axes)), data, np.full(4, 2.0), rng.normal(size=4), 1.7)
     of_two = X[..., [0, 1, 2, 3, 6, 7]]
-    two = Products(np.einsum("wni,wnj->wij", of_two, of_two), np.einsum("wni,wn->wi", of_two, r), data.c, tuple(range(6)))
+    two = NormalEquations(np.einsum("wni,wnj->wij", of_two, of_two), np.einsum("wni,wn->wi", of_two, r), data.c, tuple(range(6)))
     assert beside.single(most=2) == pytest.approx(replace(beside, names=beside.names[2:4], data=two).evidence())
     assert beside.single() < beside.single(most=2) <= beside.single(most=4) < beside.single(most=2) + 8.0, "the others are noise"
 

@@ -119,7 +119,7 @@ def test_a_part_that_cannot_be_simulated_leaves_the_answer_of_the_whole(monkeypa
 def test_what_follows_a_change_has_to_outdo_what_the_whole_log_shows(
     monkeypatch: pytest.MonkeyPatch, first: tuple[tuple[str, float, float], ...], causes: float, evidence: float, told: bool
 ):
-    monkeypatch.setattr("rovval.diagnose.decision.finding.whole_evidence", lambda *_: 1000.0)
+    monkeypatch.setattr("rovval.diagnose.decision.finding.laplace_evidence", lambda *_: 1000.0)
     monkeypatch.setattr("rovval.diagnose.decision.finding.evidence_with_onset", lambda problem, late, time, healthy: evidence if time == 40.0 else 0.0)
     onset = Onset(40.0, 70.0)
     assert clearer(finding(80.0, "reverse_asymmetry"), finding(causes, first=first, onset=onset), onset) is told
