@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from rovval.effects import Effect
 
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
-GROWS = {"weight": "the weight", "drag": "the drag ahead", "speed": "the thrusters' speed"}  # what the numbers of an effect go by (`plant.slots`)
 
 
 class Kind(StrEnum):
@@ -110,9 +109,11 @@ def _profile(name: str) -> Shown:
 
 def _effect(name: str) -> Shown:
     from rovval import effects
+    from rovval.effects.effect import GROWS
 
     effect = effects.load(name.partition("[")[0])  # reports name it with its axis or thruster
-    lines = [f"{effect.name}: {effect.title}", f"enters at: {effect.place}", f"equation: {effect.equation}", "", "parameters"]
+    lines = [f"{effect.name}: {effect.title}", f"enters at: {effect.place}", f"equation: {effect.equation}"]
+    lines += [f"  {symbol}: {meaning}" for symbol, meaning in effect.symbols.items()] + ["", "parameters"]
     lines += [
         f"  {p.target and f'[{p.target}] '}{p.name} [{p.unit}]  {p.low:g} to {p.high:g}, null {p.null:g}, typical {p.typical:g}"
         f"{p.sized and f' on a BlueROV2, in proportion to {GROWS[p.sized]} on another vehicle'} ({p.source})"
@@ -126,6 +127,7 @@ def _effect(name: str) -> Shown:
         f"signature: {effect.signature}",
         f"confused with: {', '.join(effect.confused_with) or 'none'}",
         f"what separates it: {effect.separates}",
+        f"literature: {'; '.join(effect.literature)}",
     ]
     lines += [f"needs: {', '.join(effect.needs)}"] if effect.needs else []
     lines += [] if effect.competes else ["a tolerance that healthy vehicles have: a diagnosis takes it into account and never names it as a cause"]
@@ -135,10 +137,10 @@ def _effect(name: str) -> Shown:
 
 def _effect_document(effect: Effect) -> dict[str, Any]:
     plain = ("name", "title", "place", "equation", "signature", "separates", "per")
-    listed = ("confused_with", "axes", "needs")
+    listed = ("confused_with", "axes", "needs", "literature")
     numbers = ("name", "unit", "low", "high", "null", "typical", "source", "target")
     document: dict[str, Any] = {k: getattr(effect, k) for k in plain} | {k: list(getattr(effect, k)) for k in listed}
-    return document | {"parameters": [{k: getattr(p, k) for k in numbers} for p in effect.parameters]}
+    return document | {"symbols": dict(effect.symbols), "parameters": [{k: getattr(p, k) for k in numbers} for p in effect.parameters]}
 
 
 def _metric(name: str) -> Shown:

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterable
 
 from rovval import effects
-from rovval.effects.effect import Effect, Parameter, Place
+from rovval.effects.effect import GROWS, Effect, Parameter, Place
 from rovval.effects.literature import REFERENCES, key
 
 PLACES: dict[Place, tuple[str, str]] = {
@@ -16,7 +16,6 @@ PLACES: dict[Place, tuple[str, str]] = {
     "wrench": ("Forces", "A force is missing."),
     "sensor": ("Sensors and clocks", "The log, not the world, is off."),
 }
-GROWS = {"weight": "weight", "drag": "drag at 1 m/s ahead", "speed": "thruster speed at 1 m/s ahead"}
 HEAD = """# Effects
 
 What can be wrong with a nominal simulator of an underwater vehicle: the library that `rovval diagnose` searches and that `rovval simulate --effect`
@@ -24,8 +23,9 @@ applies. Written by `python -m rovval.effects.document` out of the files in `src
 
 Body axes point forward, to starboard and down; the world's frame is north-east-down; SI units and radians. An arrow `<-` reads "is replaced by".
 Every parameter changes nothing at its *null*. *Typical* is the size that a cause is expected to have, one standard deviation; *tolerance* what a healthy
-vehicle or sensor may be off by, one standard deviation; c stands for the relative calibration tolerance (`--calibration-slop`, 0.05 by default). A sized
-parameter, marked with the quantity that it grows with, is given for a BlueROV2. References stand at the end; "chosen" is a judgement of the authors."""
+vehicle or sensor may be off by, one standard deviation; c stands for the relative calibration tolerance (`--calibration-slop`, 0.05 by default). A range
+and typical size that go "times" a quantity are those of a BlueROV2, and are in proportion to that quantity on another vehicle. References stand at the
+end; "chosen" is a judgement of the authors."""
 
 
 def text() -> str:
@@ -86,7 +86,7 @@ def _parameters(parameters: Iterable[Parameter]) -> str:
 
 def _row(p: Parameter) -> str:
     name = f"`{p.name}`" + (f" of [{p.target}]" if p.target else "")
-    sized = f" ({GROWS[p.sized]})" if p.sized else ""
+    sized = f", times {GROWS[p.sized]}" if p.sized else ""
     cells = (name, p.unit, f"{p.low:g} to {p.high:g}{sized}", f"{p.null:g}", f"{p.typical:g}", _tolerance(p), p.source)
     return "| " + " | ".join(cells) + " |"
 

@@ -18,6 +18,7 @@ Role = Literal["size", "amplitude", "onset", "period", "phase", "direction", "da
 Error = Literal["additive", "factor", "delay"]
 Stage = Literal["", "position", "mounting", "scale", "bias", "filter", "delay"]
 Family = Literal["", "drag", "thrust", "allocation", "mass", "trim"]
+GROWS = {"weight": "the weight", "drag": "the drag at 1 m/s ahead", "speed": "the thrusters' speed at 1 m/s ahead"}  # what sized parameters go by
 STAGES: tuple[str, ...] = get_args(Stage)
 FAMILIES: tuple[str, ...] = get_args(Family)[1:]
 SIZES = ("size", "amplitude", "lever")  # roles of parameters that have a null value of their own; the others only place an effect

@@ -20,7 +20,7 @@ from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.coherence import coherence
 
-EXCITED = 3.0  # a typical size shows with this many standard errors while nothing else moves (research E.6)
+EXCITED = 3.0  # a typical size shows with this many standard errors while nothing else moves (chosen; near the detection limit of Currie 1968, 3.3)
 TOLD_APART = 1.5  # the same while everything else that is tuned, and slop, moves with it (chosen: a 90 % interval within a typical size)
 WIDEST = 2.0  # typical sizes: a half interval beyond it, at the fitted point, is no answer
 

@@ -28,7 +28,7 @@ from rovval.diagnose.windows.windows import Windows
 T = TypeVar("T")
 MOST = 5  # refits: of more logs than that, a fifth is left out at a time
 
-HARM = 0.05  # an axis that gets this much worse is named (research E.7)
+HARM = 0.05  # an axis that gets this much worse is named (chosen)
 NO_SHRINKAGE = {"total": 0.0, "low": 0.0, "high": 0.0, "of_explainable": 0.0, "axes": {}, "axes_interval": {}, "held_out": True}
 
 

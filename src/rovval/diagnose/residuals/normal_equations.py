@@ -2,7 +2,7 @@
 
 With V = diag(variance) + J Sigma0 J^T (variance: noise, slop and unexplained residual of a channel at a time in the window), every
 linear question, held-out gains, coherence, bootstrap, is answered from A = S^T V^-1 S, b = S^T V^-1 r and c = r^T V^-1 r of
-each window (Woodbury identity; `research`: efficient-score projection with a finite prior on the initial state).
+each window (Woodbury identity; where the prior on the initial state is flat, the efficient score of van der Vaart 1998, 25.4).
 """
 
 from __future__ import annotations

@@ -227,7 +227,7 @@ def _whole(bag: Path, scratch: Path, found: list[Finding]) -> Path:
 
 @contextmanager
 def _stage(path: Path, stage: str, done: Callable[[], str] = lambda: "") -> Iterator[None]:
-    """Damaged bags make rosbags raise a dozen unrelated types (research/stack.md, 2): all become one refusal."""
+    """Damaged bags make rosbags raise a dozen unrelated types: all become one refusal."""
     try:
         yield
     except (RovvalError, KeyboardInterrupt):
