@@ -28,7 +28,7 @@ from rovval.diagnose.criteria import (
     ROUNDING_SHARE,
     SURE_REDUCTION,
     UNEXPLAINED_NOTHING,
-)  # fmt: skip
+)
 from rovval.diagnose.inference.gap import weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 from rovval.diagnose.inference.laplace import Posterior

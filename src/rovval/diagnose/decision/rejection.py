@@ -29,7 +29,7 @@ from rovval.diagnose.criteria import (
     STRAINED_DEPARTURE,
     STRAINED_EVIDENCE,
     VARYING_EVIDENCE,
-)  # fmt: skip
+)
 from rovval.diagnose.decision.benefit import (
     Benefit,
     acting_axes,

@@ -12,7 +12,7 @@ from rovval.diagnose.criteria import (
     ONSET_CLEAR,
     SERIOUS_EVIDENCE,
     SIMPLER_GAIN,
-)  # fmt: skip
+)
 from rovval.diagnose.inference.hypothesis_fit import only_places, significance
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.search.baseline import Candidate

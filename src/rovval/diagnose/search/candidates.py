@@ -21,7 +21,7 @@ from rovval.diagnose.criteria import (
     SERIOUS_EVIDENCE,
     STARTS_TRIED,
     TANGENT_KEPT,
-)  # fmt: skip
+)
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of, wide_prior
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, fit_hypothesis, fit_quickly
 from rovval.diagnose.inference.map_fit import progressive_start, tangent_slots

@@ -12,7 +12,7 @@ from rovval.diagnose.criteria import (
     FORM_SHARE,
     FORM_SHARE_MOST,
     TEMPERING_EVIDENCE,
-)  # fmt: skip
+)
 from rovval.diagnose.inference.bootstrap import block_resamples
 from rovval.diagnose.inference.laplace import resampled_evidence
 from rovval.diagnose.problem.problem import Problem

@@ -24,7 +24,7 @@ from rovval.diagnose.criteria import (
     OFFSET_TRIED,
     PROMISING_EVIDENCE,
     STRONG_EVIDENCE,
-)  # fmt: skip
+)
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of, prior_of, wide_prior
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, fit_hypothesis, fit_quickly
 from rovval.diagnose.inference.laplace import Posterior
