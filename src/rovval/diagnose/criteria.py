@@ -137,3 +137,21 @@ MOST_VARYING = 4  # so many features at most (chosen)
 
 
 # -- result: attribution, next experiment, recalibration ----------------------------------------------------------------------------
+
+STRONG_QUANTILE = 0.8  # chosen: of a velocity's size in the log, above which its regime is "strong"; an acceleration above it is a transient
+WEAK_SHARE = 0.33  # chosen: of that level, below which the regime is "weak"
+LEAST_SPEED, LEAST_TURN_RATE = 0.05, 1.0  # m/s, deg/s; chosen: a vehicle that is slower nearly all the time has no regimes of that velocity
+LEAST_DEPTH_SPAN = 1.0  # m; chosen: a log that spans less has no regimes of depth
+LOW_ALTITUDES = (1.0, 2.0, 4.0)  # m; chosen: regimes near the bottom
+WORKING_SHARE = 0.3  # chosen: of the 95 % quantile of a thruster's speed, above which it counts as turning
+REGIME_TIME = (0.02, 0.98)  # chosen: share of the time below and above which a regime is no part of the log worth telling
+SLICE_WINDOWS = 4  # chosen: windows; a slice that touches fewer carries no interval
+SLICE_LIFT = 1.3  # chosen: below it a slice holds hardly more of the gap than its time would
+SLICES_AN_AXIS, SLICES = 3, 5  # chosen: slices told of one axis, and in all
+PARAMETER_FORM_ERROR = 0.10  # of a parameter's departure, one standard error: equations are only nearly right (logs of two independent plants ask for it)
+GROUP_NAMES = 3  # chosen: members told of a confusion group
+BUSY_QUANTILE, BUSY_LEAST = 0.98, 0.2  # chosen: quantile of a thruster's speed that counts as the most it does, and its least share of the busiest one's peak
+EXPERIMENT_WINDOW_S = 10.0  # s: windows in which a simulated manoeuvre is judged, as those of a log
+RECALIBRATION_ROUNDS = 6  # of setting coefficients free that depart, which may make others depart
+RECALIBRATION_LEAST = 3  # chosen: coefficients; one or two are what an effect of the library, or its nearest relative, leaves
+SURELY_BEYOND = 1.0  # tolerances: a coefficient whose whole interval is further off is surely beyond what a healthy file has

@@ -10,6 +10,7 @@ import numpy as np
 from rovval.core.channels import AXES
 from rovval.core.data import Array
 from rovval.core.version import __version__
+from rovval.diagnose.criteria import SLICES
 from rovval.diagnose.decision.consistency import inconsistencies
 from rovval.diagnose.decision.finding import Finding
 from rovval.diagnose.decision.unexplained import Unexplained as Rest
@@ -47,7 +48,6 @@ from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.windows.conditioning import NO_MEASUREMENT
 from rovval.vehicle.write import with_effects
 
-MOST_SLICES = 5  # named of where the gap lies
 WRENCH_UNITS = ("N", "N", "N", "N m", "N m", "N m")
 
 
@@ -135,7 +135,7 @@ def _where(problem: Problem, before: list[Array], axes: Mapping[str, AxisGap], s
     found = [s for part, error in zip(problem.runs, before, strict=True) for s in worst(slices(part, error, part.ok, seed), shares)]
     return tuple(
         GapSlice(axis=s.axis, regime=s.regime, share=s.share, time_share=s.time_share, lift=s.lift, low=s.low, high=s.high)
-        for s in found[:MOST_SLICES]
+        for s in found[:SLICES]
     )
 
 

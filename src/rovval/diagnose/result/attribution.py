@@ -1,7 +1,7 @@
-"""Where the gap lies: its share by axis, by regime (speed, turn, depth, heading, each thruster) and by time.
+"""Attribution: where the gap lies, by axis, by regime (speed, turn, depth, heading, each thruster) and by time.
 
 The gap of an axis is the sum of squared velocity errors (of the pose, where no velocity was logged) after the best initial state of each
-window is taken out. A slice's share is its part of that sum, its lift the share over its part of the time.
+window is taken out. A slice's share is its part of that sum, its lift the share over its part of the time: a lift of 1 is an even gap.
 """
 
 from __future__ import annotations
@@ -12,17 +12,39 @@ import numpy as np
 
 from rovval.core.data import Array, Flags
 from rovval.core.units import DEGREES
+from rovval.diagnose.criteria import (
+    LEAST_DEPTH_SPAN,
+    LEAST_SPEED,
+    LEAST_TURN_RATE,
+    LOW_ALTITUDES,
+    REGIME_TIME,
+    SLICE_LIFT,
+    SLICE_WINDOWS,
+    SLICES,
+    SLICES_AN_AXIS,
+    STRONG_QUANTILE,
+    WEAK_SHARE,
+    WORKING_SHARE,
+)
 from rovval.diagnose.windows.windows import Windows, axis_channels
 
-RESAMPLES = 200
-FEWEST_WINDOWS = 4  # a slice that touches fewer windows carries no interval
-MOST_AN_AXIS = 3  # slices named of one axis
-LOWEST_LIFT = 1.3  # chosen: below it a slice holds hardly more than its time would
+RESAMPLES = 200  # draws of the bootstrap over windows (Efron and Tibshirani 1993: 50 to 200 for a standard error)
 
 
 @dataclass(frozen=True, slots=True)
 class Slice:
-    """One axis in one regime: share of the axis's gap, share of the time, lift = share / time share with its 90 % interval."""
+    """One axis in one regime.
+
+    Attributes:
+        axis: which axis.
+        regime: when, in words.
+        share: share of the axis's squared gap (1).
+        time_share: share of the time (1).
+        lift: share / time_share.
+        low: lower end of lift's 90 % interval, by bootstrap over windows.
+        high: upper end.
+        windows: how many windows it touches.
+    """
 
     axis: str
     regime: str
@@ -34,26 +56,27 @@ class Slice:
     windows: int
 
 
-
-
 def regimes(stretches: Windows) -> dict[str, Flags]:
-    """Name in words -> where it holds (m, n), from what was measured and commanded."""
+    """Regimes by name, each with the samples of m windows where it holds (m, n), from what was measured and commanded.
+
+    One that holds nearly always or nearly never is left out.
+    """
     run, found = stretches.run, dict[str, Flags]()
     at = stretches.start[:, None] + np.arange(stretches.steps + 1)[None, :]
-    for name, unit, factor, floor in (("u", "m/s", 1.0, 0.05), ("v", "m/s", 1.0, 0.05), ("w", "m/s", 1.0, 0.05), ("r", "deg/s", DEGREES, 1.0)):
+    for name, unit, factor, floor in (*((name, "m/s", 1.0, LEAST_SPEED) for name in "uvw"), ("r", "deg/s", DEGREES, LEAST_TURN_RATE)):
         if run.measured(name):
             found.update(_levels(name, factor * run.get(name)[at], unit, floor))
     if run.measured("u"):
         change = np.abs(np.gradient(np.nan_to_num(run.get("u")), run.dt))[at]
-        limit = float(np.quantile(change, 0.8))
+        limit = float(np.quantile(change, STRONG_QUANTILE))
         found["transient (surge acceleration in its top fifth)"] = change > limit
         found["steady (surge acceleration below its median)"] = change < float(np.median(change))
-    if run.measured("z") and np.ptp(run.get("z")[run.ok("z")]) > 1.0:
+    if run.measured("z") and np.ptp(run.get("z")[run.ok("z")]) > LEAST_DEPTH_SPAN:
         depth, middle = run.get("z")[at], float(np.nanmedian(run.get("z")))
         found[f"depth > {middle:.1f} m"], found[f"depth < {middle:.1f} m"] = depth > middle, depth < middle
     if run.measured("altitude"):
         height = run.get("altitude")[at]
-        for limit in (1.0, 2.0, 4.0):
+        for limit in LOW_ALTITUDES:
             found[f"altitude < {limit:g} m"] = height < limit
     if run.measured("psi"):
         found.update(_headings(run.get("psi")[at]))
@@ -63,11 +86,18 @@ def regimes(stretches: Windows) -> dict[str, Flags]:
         flags = np.zeros(at.shape, dtype=bool)
         flags[part] = True
         found[f"{words} third of the run"] = flags
-    return {name: flags for name, flags in found.items() if 0.02 < flags.mean() < 0.98}
+    return {name: flags for name, flags in found.items() if REGIME_TIME[0] < flags.mean() < REGIME_TIME[1]}
 
 
 def slices(stretches: Windows, error: Array, ok: Flags, seed: int) -> list[Slice]:
-    """Every axis in every regime, with a bootstrap over windows. ``error`` (m, n, c)."""
+    """Every axis in every regime.
+
+    Args:
+        stretches: the m windows of a run.
+        error: residuals (m, n, c) of the c channels.
+        ok: where they count (m, n, c).
+        seed: of the bootstrap over windows.
+    """
     rng = np.random.default_rng(seed)
     draws = rng.integers(0, len(error), (RESAMPLES, len(error)))
     found = []
@@ -92,15 +122,18 @@ def slices(stretches: Windows, error: Array, ok: Flags, seed: int) -> list[Slice
     return found
 
 
-def worst(found: list[Slice], axis_share: dict[str, float], most: int = 5) -> list[Slice]:
-    """The slices that matter: much of the whole gap in little of the time, with a lift whose interval stays above 1; of one quantity
-    (``u > 0.3 m/s`` and ``|u| > 0.3 m/s``) the first, an axis."""
-    able = [s for s in found if s.windows >= FEWEST_WINDOWS and s.lift > LOWEST_LIFT and s.low > 1.0]
+def worst(found: list[Slice], axis_share: dict[str, float], most: int = SLICES) -> list[Slice]:
+    """The slices that hold much of the whole gap in little of the time, with a lift whose interval stays above 1, the worst first.
+
+    Of slices of one axis that cut the same quantity (``u > 0.3 m/s`` and ``|u| > 0.3 m/s``) only the first is kept. ``axis_share``: each
+    axis's share of the whole gap.
+    """
+    able = [s for s in found if s.windows >= SLICE_WINDOWS and s.lift > SLICE_LIFT and s.low > 1.0]
     able.sort(key=lambda s: -(s.share - s.time_share) * axis_share.get(s.axis, 0.0))
     chosen: list[Slice] = []
     for one in able:
         same = [c for c in chosen if c.axis == one.axis]
-        if len(same) < MOST_AN_AXIS and len(chosen) < most and not any(_quantity(c) == _quantity(one) for c in same):
+        if len(same) < SLICES_AN_AXIS and len(chosen) < most and not any(_quantity(c) == _quantity(one) for c in same):
             chosen.append(one)
     return chosen
 
@@ -112,10 +145,10 @@ def _quantity(one: Slice) -> str:
 def _levels(name: str, value: Array, unit: str, floor: float) -> dict[str, Flags]:
     """Strong, weak and signed bins of a velocity, cut at its own 80th percentile rounded to two digits."""
     size = np.abs(np.nan_to_num(value))
-    high = float(f"{np.quantile(size, 0.8):.2g}")
+    high = float(f"{np.quantile(size, STRONG_QUANTILE):.2g}")
     if high < floor:
         return {}
-    low = float(f"{0.33 * high:.1g}")
+    low = float(f"{WEAK_SHARE * high:.1g}")
     return {
         f"{name} > {high:g} {unit}": value > high,
         f"{name} < {-high:g} {unit}": value < -high,
@@ -135,7 +168,7 @@ def _headings(psi: Array) -> dict[str, Flags]:
 def _thrusters(stretches: Windows, at: np.ndarray) -> dict[str, Flags]:
     speed, found = stretches.actuation.inputs.speed[at], dict[str, Flags]()
     for i, name in enumerate(stretches.plant.vehicle.thrusters):
-        limit = 0.3 * float(np.quantile(np.abs(speed[..., i]), 0.95))
+        limit = WORKING_SHARE * float(np.quantile(np.abs(speed[..., i]), 0.95))
         if limit > 0:
             found[f"{name} turning forward"] = speed[..., i] > limit
             found[f"{name} turning backward"] = speed[..., i] < -limit

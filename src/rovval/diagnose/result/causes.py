@@ -6,6 +6,7 @@ import numpy as np
 
 from rovval import effects
 from rovval.core.data import Array
+from rovval.diagnose.criteria import GROUP_NAMES, PARAMETER_FORM_ERROR
 from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, confidence_interval, fit_quickly, standard_errors
@@ -13,9 +14,6 @@ from rovval.diagnose.inference.shrinkage import shrinkage
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.result.diagnosis import Cause, Parameter, Shrinkage
 from rovval.diagnose.search.baseline import SelectedCause
-
-FORM = 0.10  # of a parameter's departure, one standard error: equations that are only nearly right (logs of two independent plants ask for it)
-MOST_GROUP = 3  # names printed of a confusion group
 
 
 def causes(problem: Problem, decision: Decision, before: list[Array], since: float | None, seed: int) -> tuple[Cause, ...]:
@@ -28,7 +26,7 @@ def causes(problem: Problem, decision: Decision, before: list[Array], since: flo
 
 def members(decision: Decision, h: Hypothesis) -> tuple[str, ...]:
     """The cause's confusion group, itself first, as many as are printed."""
-    return tuple(name for name, _ in decision.groups[h.name][:MOST_GROUP])
+    return tuple(name for name, _ in decision.groups[h.name][:GROUP_NAMES])
 
 
 def alone(problem: Problem, fitted: HypothesisFit, h: Hypothesis) -> Array:
@@ -71,7 +69,7 @@ def _parameters(problem: Problem, fitted: HypothesisFit, h: Hypothesis) -> dict[
     found, error = dict[str, Parameter](), standard_errors(problem, fitted)
     for slot in h.slots:
         p, value = problem.plant.slots[slot].parameter, float(fitted.beta[slot])
-        form = FORM * abs(value - float(problem.origin[slot]))
+        form = PARAMETER_FORM_ERROR * abs(value - float(problem.origin[slot]))
         low, high = confidence_interval(value, float(np.hypot(error[fitted.slots.index(slot)], form)), problem.window_count)
         found[p.name] = Parameter(
             value=value, low=max(low, p.low), high=min(high, p.high), unit=p.unit, null=p.null, at_bound=slot in fitted.at_bound

@@ -13,7 +13,7 @@ import numpy as np
 
 from rovval.core.channels import VELOCITIES
 from rovval.core.data import Array, ClockReport, Reason, Run
-from rovval.diagnose.criteria import PRIOR_WIDTH
+from rovval.diagnose.criteria import BUSY_LEAST, BUSY_QUANTILE, EXPERIMENT_WINDOW_S, PRIOR_WIDTH
 from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.problem.cross_validation import FoldSums, cross_validate, make_folds
 from rovval.diagnose.problem.problem import Problem
@@ -23,12 +23,10 @@ from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.residuals.sensitivities import linearise
 from rovval.diagnose.result.causes import alone, members
 from rovval.diagnose.result.diagnosis import NextExperiment, ScheduleLeg, ThrusterSchedule
-from rovval.diagnose.result.manoeuvres import Manoeuvre, bank
+from rovval.diagnose.result.manoeuvres import Helm, Manoeuvre, bank
 from rovval.diagnose.windows.multiple_shooting import cut_run
 
-BUSY, LEAST_BUSY = 0.98, 0.2  # chosen: quantile of a thruster's speed in the log that counts as its most, and least share of its peak
-DT = 0.1
-WINDOW_S = 10.0
+DT = 0.1  # s, the common grid
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +66,7 @@ def next_experiment(problem: Problem, decision: Decision) -> Experiment | None:
         group = members(decision, one.hypothesis)
         if len(group) > 1:
             speed = np.concatenate([np.abs(p.actuation.inputs.speed) for p in problem.runs])
-            most = np.maximum(np.quantile(speed, BUSY, axis=0), LEAST_BUSY * speed.max())
+            most = np.maximum(np.quantile(speed, BUSY_QUANTILE, axis=0), BUSY_LEAST * speed.max())
             return best(problem, alone(problem, decision.fit, one.hypothesis), group, most)
     return None
 
@@ -79,7 +77,7 @@ def best(problem: Problem, beta: Array, group: tuple[str, ...], most_speed: Arra
     ``beta`` (k,) are the parameters of the plant with the cause as it was fitted, ``most_speed`` (thrusters,) in rev/s.
     """
     found: Experiment | None = None
-    for manoeuvre in bank(problem.plant.vehicle, most_speed):
+    for manoeuvre in bank(Helm(problem.plant.vehicle, most_speed)):
         misfit = _misfit(problem, beta, group, manoeuvre)
         if misfit is not None and (found is None or misfit > found.misfit):
             found = Experiment(manoeuvre, group, misfit)
@@ -92,7 +90,7 @@ def _misfit(problem: Problem, beta: Array, members: tuple[str, ...], manoeuvre: 
     if run is None:
         return None
     plant = problem.plant
-    stretches = cut_run(run, plant.vehicle, plant.model, WINDOW_S)
+    stretches = cut_run(run, plant.vehicle, plant.model, EXPERIMENT_WINDOW_S)
     base = plant.null.copy()
     free = {name: plant.hypotheses[name] for name in members}
     columns = tuple(sorted({s for slots in free.values() for s in slots}))

@@ -1,4 +1,4 @@
-"""What the report draws of a diagnosis: heat map of axis by regime, the worst stretches before and after, the coherence matrix."""
+"""The data of the figures: heat map of axis by regime, the worst windows before and after, the coherence matrix."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from rovval.diagnose.result.diagnosis import Coherence, HeatMap, Trace
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.windows.windows import Windows, axis_channels
 
-MOST_TRACES = 4
-MOST_COHERENCE = 10
+TRACES = 4  # windows drawn
+COHERENCE_EFFECTS = 10  # rows of the matrix
 
 
 def heat_map(part: Windows, error: Array, seed: int) -> HeatMap:
-    """Share of each axis's gap in each regime, and the lift."""
+    """Share of each axis's squared gap in each regime, and the lift; ``error`` (m, n, c) are the nominal simulator's residuals of a run."""
     found = slices(part, error, part.ok, seed)
     axes = list(dict.fromkeys(s.axis for s in found))
     regimes = list(dict.fromkeys(s.regime for s in found))
@@ -32,10 +32,13 @@ def heat_map(part: Windows, error: Array, seed: int) -> HeatMap:
     return HeatMap(axes=tuple(axes), regimes=tuple(regimes), share=_rows(share, 4), lift=_rows(lift, 3))
 
 
-def traces(problem: Problem, final: HypothesisFit | None, before: list[Array]) -> tuple[Trace, ...]:
-    """Measured, nominal and corrected curves of the windows with the largest gap, at most one an axis."""
+def traces(problem: Problem, fitted: HypothesisFit | None, before: list[Array]) -> tuple[Trace, ...]:
+    """Measured, nominal and corrected curves of the windows with the largest weighted gap, at most one of an axis and run.
+
+    ``before`` are the nominal simulator's residuals (m, n, c) of each run; without ``fitted`` causes the corrected curve is the nominal one.
+    """
     found = []
-    beta = problem.origin if final is None else final.beta
+    beta = problem.origin if fitted is None else fitted.beta
     for number, part in enumerate(problem.runs):
         nominal, corrected = residual(part, problem.origin)[0], residual(part, beta)[0]
         for axis, channel in axis_channels(part).items():
@@ -43,7 +46,7 @@ def traces(problem: Problem, final: HypothesisFit | None, before: list[Array]) -
             w = int(weight.argmax())
             found.append((float(weight[w]), number, axis, channel, w, nominal, corrected))
     found.sort(key=lambda item: -item[0])
-    return tuple(_trace(problem.runs[number], axis, channel, w, *pair) for _, number, axis, channel, w, *pair in found[:MOST_TRACES])
+    return tuple(_trace(problem.runs[number], axis, channel, w, *pair) for _, number, axis, channel, w, *pair in found[:TRACES])
 
 
 def _trace(part: Windows, axis: str, channel: int, w: int, nominal: Array, corrected: Array) -> Trace:
@@ -63,10 +66,10 @@ def _trace(part: Windows, axis: str, channel: int, w: int, nominal: Array, corre
 
 
 def coherence_matrix(problem: Problem, selection: Selection, decision: Decision) -> Coherence:
-    """Canonical correlation of the best-ranked hypotheses' signatures in this log."""
+    """First canonical correlation between the projected sensitivities of the causes, their groups and the best-ranked effects."""
     columns = set(problem.likelihood.total.columns)
     wanted = [name for n in decision.causes for name, _ in decision.groups[n.hypothesis.name]] + [name for name, _ in selection.ranking]
-    names = [n for n in dict.fromkeys(wanted) if set(problem.plant.hypotheses[n]) <= columns][:MOST_COHERENCE]
+    names = [n for n in dict.fromkeys(wanted) if set(problem.plant.hypotheses[n]) <= columns][:COHERENCE_EFFECTS]
     slots = [problem.plant.hypotheses[n] for n in names]
     matrix = [[coherence(problem.likelihood.total, a, b) if a != b else 1.0 for b in slots] for a in slots]
     return Coherence(effects=tuple(names), matrix=_rows(np.array(matrix), 3) if names else ())

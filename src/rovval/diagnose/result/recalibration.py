@@ -13,7 +13,14 @@ import numpy as np
 
 from rovval import effects
 from rovval.core.data import Array
-from rovval.diagnose.criteria import FEW_WINDOWS, FURTHER_GAIN
+from rovval.diagnose.criteria import (
+    FEW_WINDOWS,
+    FURTHER_GAIN,
+    PARAMETER_FORM_ERROR,
+    RECALIBRATION_LEAST,
+    RECALIBRATION_ROUNDS,
+    SURELY_BEYOND,
+)
 from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.inference.hypothesis_fit import (
     HypothesisFit,
@@ -27,14 +34,9 @@ from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.inference.shrinkage import refitted_shrinkage, shrinkage, worsened_axes
 from rovval.diagnose.problem.prior import STRAINED, WITHIN
 from rovval.diagnose.problem.problem import Problem
-from rovval.diagnose.result.causes import FORM
 from rovval.diagnose.result.diagnosis import AxisHarm, Coefficient, Recalibration, Shrinkage
 from rovval.diagnose.search.forward import Selection
 from rovval.effects import Effect
-
-ROUNDS = 6  # of setting coefficients free that depart, which may make others depart
-LEAST = 3  # coefficients: one or two are what an effect of the library, or its nearest relative, leaves (chosen)
-BEYOND = 1.0  # tolerances: a coefficient whose whole interval is further off is surely beyond what a healthy file has
 
 
 def recalibration(
@@ -60,7 +62,7 @@ def recalibration(
         return None
     rows = _coefficients(problem, fitted, causes)
     beyond = tuple(name for name, row in rows.items() if row.beyond)
-    if len(beyond) < LEAST:
+    if len(beyond) < RECALIBRATION_LEAST:
         return None
     progress("fitting them anew without the windows that they are scored on", 0.95)
     shrunk = refitted_shrinkage(problem, fitted, before, tolerance, seed)
@@ -91,7 +93,7 @@ def _asked(problem: Problem, selection: Selection, decision: Decision) -> bool:
     rest, point = decision.unexplained, decision.fit.posterior if decision.fit else selection.healthy
     if rest is None or rest.accounted is not None or problem.window_count < FEW_WINDOWS:
         return False
-    return len(departing(problem, point, STRAINED)) >= LEAST
+    return len(departing(problem, point, STRAINED)) >= RECALIBRATION_LEAST
 
 
 def _fitted(problem: Problem, selection: Selection, decision: Decision) -> HypothesisFit | None:
@@ -101,7 +103,7 @@ def _fitted(problem: Problem, selection: Selection, decision: Decision) -> Hypot
     point, beta = final.posterior if final else selection.healthy, selection.healthy.beta.copy()
     beta[list(causes)] = point.beta[list(causes)]
     near, free, refused = replace(selection.healthy, beta=beta), tuple[int, ...](), set[int]()
-    for _ in range(ROUNDS):
+    for _ in range(RECALIBRATION_ROUNDS):
         more = [s for s in departing(problem, point, WITHIN) if s not in refused and not _effect(problem, s).searched]
         able, out = identifiable(problem, (*free, *more))
         refused |= out.keys()
@@ -118,12 +120,12 @@ def _coefficients(problem: Problem, fitted: HypothesisFit, causes: Sequence[int]
     rows, error = dict[str, Coefficient](), standard_errors(problem, fitted)
     for slot, se in zip(fitted.slots, error, strict=True):
         p, value, was = problem.plant.slots[slot].parameter, float(fitted.beta[slot]), float(problem.origin[slot])
-        low, high = confidence_interval(value, float(np.hypot(se, FORM * abs(value - was))), problem.window_count)
+        low, high = confidence_interval(value, float(np.hypot(se, PARAMETER_FORM_ERROR * abs(value - was))), problem.window_count)
         low, high, tolerance = max(low, p.low), min(high, p.high), problem.tolerance.sd.get(slot)
         rows[problem.plant.slots[slot].key] = Coefficient(
             value=value, low=low, high=high, unit=p.unit, was=was, tolerance=tolerance,
             departure=None if tolerance is None else (value - was) / tolerance,
-            beyond=tolerance is not None and slot not in causes and not low - BEYOND * tolerance <= was <= high + BEYOND * tolerance,
+            beyond=tolerance is not None and slot not in causes and not low - SURELY_BEYOND * tolerance <= was <= high + SURELY_BEYOND * tolerance,
             at_bound=slot in fitted.at_bound, of_cause=slot in causes,
         )  # fmt: skip
     return dict(sorted(rows.items(), key=lambda item: (item[1].of_cause, -abs(item[1].departure or 0.0))))
