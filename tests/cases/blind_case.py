@@ -67,26 +67,32 @@ def label(*effects: dict[str, Any], left_out: bool = False) -> dict[str, Any]:
 
 def cause(effect: str, probability: float = 0.9, group: tuple[str, ...] = (), **parameters: float) -> dict[str, Any]:
     """A cause as an answer names it, with intervals of 0.1 to both sides."""
-    known = {k: {"value": v, "low": v - 0.1, "high": v + 0.1} for k, v in parameters.items()}
+    known = {k: {"value": v, "low": v - 0.1, "high": v + 0.1, "unit": "1"} for k, v in parameters.items()}
     return {
         "effect": effect,
         "group": [effect, *group],
         "probability": probability,
         "onset_s": known.pop("onset", {}).get("value"),
         "parameters": known,
+        "shrinkage": {"total": 0.5, "low": 0.4, "high": 0.6, "of_explainable": 0.5},
     }
 
 
 def answer(*causes: dict[str, Any], verdict: str = "", where: str = "heave", left: list[str] | None = None) -> dict[str, Any]:
     """An answer that names these causes."""
     document = {
+        "run": "made-up", "vehicle": "merlin", "model": "fossen", "window_s": 10.0, "calibration_slop": 0.05,
         "verdict": verdict or ("explained" if causes else "no_gap"),
         "causes": list(causes),
         "ranking": [{"effect": n, "score": 0.1} for n in HYPOTHESES],
-        "shrinkage": {"total": 0.5 if causes else 0.0},
-        "gap": {"where": [{"axis": where, "regime": "u > 0.6 m/s"}]},
+        "shrinkage": {"total": 0.5 if causes else 0.0, "low": 0.0, "high": 0.6, "of_explainable": 0.5},
+        "gap": {
+            "axes": {}, "change_points_s": [],
+            "where": [{"axis": where, "regime": "u > 0.6 m/s", "share": 0.6, "time_share": 0.2, "lift": 3.0}],
+        },
+        "not_testable": [], "next_experiment": None,
         "left": {"axes": left, "depends_on": ["thrust of HFP"]} if left else None,
-    }
+    }  # fmt: skip
     return {"document": document, "floors": {"ridge": "rpm_scale"}, "cpu_s": 1.0}
 
 

@@ -31,7 +31,7 @@ def test_what_is_left_out_is_gone_under_every_name_that_would_be_right():
         if q.left_out:
             [e] = q.case.effects
             planted = {"name": e.name, "target": e.target, "place": ""}
-            right = {h for h in library if ground_truth.accepts(planted, {"effect": h, "onset_s": 0.0})}
+            right = {h for h in library if ground_truth.accepts(planted, ground_truth.Member(h, 0.0))}
             assert right and {h.partition("[")[0] for h in right} <= set(q.without), e
 
 

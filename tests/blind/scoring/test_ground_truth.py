@@ -8,6 +8,7 @@ from blind_case import cause, planted
 from rovval import vehicle
 from rovval.blind.planted.catalogue import catalogue, names
 from rovval.blind.scoring import ground_truth
+from rovval.diagnose.result.diagnosis import Cause
 from rovval.plant import Plant
 
 MERLIN = vehicle.LIBRARY / "merlin.toml"
@@ -44,7 +45,7 @@ ALIASES = [
 
 @pytest.mark.parametrize(("effect", "said", "same"), ALIASES, ids=[f"{e['name']}-{c['effect']}-{s}" for e, c, s in ALIASES])
 def test_aliases_are_few(effect, said, same):
-    assert ground_truth.accepts(effect, said) is same
+    assert ground_truth.accepts(effect, Cause.model_validate(said)) is same
 
 
 def test_every_planted_name_is_a_hypothesis_of_the_library():

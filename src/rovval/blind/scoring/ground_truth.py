@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from rovval.blind.plant.nominal_vehicle import read_vehicle
 from rovval.blind.plant.scales import scales
 from rovval.blind.plant.spec import AXES
 
-Row = Mapping[str, Any]  # one effect of a label, or one cause of an answer
+Row = Mapping[str, Any]  # one effect of a label
 TARGETED = {"added_mass", "linear_drag", "quadratic_drag", "inertia_error", "thruster_degraded", "thruster_fault_onset"}
 TARGETED |= {"thruster_reversed", "thruster_misaligned", "thruster_interaction"}  # by axis or thruster, as the library has them
 EARLY_S = 10.0  # an onset within the first window is no onset to a diagnosis in windows of 10 s
@@ -27,6 +28,26 @@ GOES_WITH = {  # what the gap of an effect varies with, as the diagnosis words r
 }  # fmt: skip
 
 
+class Said(Protocol):
+    """An effect that an answer names, as a cause or in the confusion group of one."""
+
+    @property
+    def effect(self) -> str:
+        """Name in the library."""
+
+    @property
+    def onset_s(self) -> float | None:
+        """Time from which it is at work, s; None: all of the log, or not told."""
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A name of a confusion group, or of the ranking."""
+
+    effect: str
+    onset_s: float | None = None
+
+
 def name(effect: Row) -> str:
     """The library's hypothesis for a planted effect; a foreign one keeps its own name, which no hypothesis has."""
     if effect["name"] == "inertia_error" and effect["target"] == "surge":
@@ -40,20 +61,19 @@ def foreign(effect: Row) -> bool:
     return bool(effect["place"] == "foreign")
 
 
-def accepts(effect: Row, cause: Row) -> bool:
+def accepts(effect: Row, said: Said) -> bool:
     """Whether a cause of an answer names a planted effect, by its own name or an alias that the cause's numbers bear out."""
-    return not foreign(effect) and (cause["effect"] == name(effect) or alias(effect, cause) is not None)
+    return not foreign(effect) and (said.effect == name(effect) or alias(effect, said) is not None)
 
 
-def alias(effect: Row, cause: Row) -> str | None:
+def alias(effect: Row, cause: Said) -> str | None:
     """The reason for which a cause of another name is the same answer; None: it is not. There are these and no others."""
-    said, on = str(cause["effect"]), f"[{effect['target']}]"
+    said, on = cause.effect, f"[{effect['target']}]"
     if effect["name"] == "inertia_error" and effect["target"] == "surge":
         if said in ("added_mass[sway]", "added_mass[heave]", "payload_change"):
             return "weightless extra mass has no name of its own: the library has it as added mass of an axis or as a payload"
     elif effect["name"] == "thruster_degraded" and said == f"thruster_fault_onset{on}":
-        onset = cause.get("onset_s")
-        if onset is not None and float(onset) < EARLY_S:
+        if cause.onset_s is not None and cause.onset_s < EARLY_S:
             return "a loss from the first window on is a loss all the time"
     elif effect["name"] in ABOUT and effect["target"] in ("roll", "pitch", "yaw") and said == ABOUT[effect["name"]] + on:
         return "about an axis of rotation the motion shows the sum of inertia and added inertia and nothing of either"

@@ -19,6 +19,7 @@ from rovval.blind.sealed.folder import Folder, write
 from rovval.blind.sealed.make import now
 from rovval.core.errors import UsageProblem
 from rovval.core.version import __version__
+from rovval.diagnose import Diagnosis
 from rovval.vehicle import load as load_vehicle
 
 SCHEMA = "rovval.blind-score/1"
@@ -87,7 +88,8 @@ def score_logs(
     rows = []
     for name, label in labels.items():
         answer = answers.get(name, {"failed": "no answer", "cpu_s": 0.0})
-        best = _at_least(oracles.get(name, {}), label, answer)
+        diagnosis = None if "failed" in answer else Diagnosis.read(answer["document"])
+        best = _at_least(oracles.get(name, {}), label, diagnosis)
         row = score_log(label, answer, best, nominal, path)
         row |= {
             "log": name,
@@ -98,18 +100,17 @@ def score_logs(
         row |= {"foreign": [ground_truth.foreign(e) for e in label["effects"]], "left_out": label["left_out"]}
         row |= {
             "severity": [e["severity"] for e in label["effects"]],
-            "library": len(answer.get("document", {}).get("ranking", [])),
+            "library": len(diagnosis.ranking) if diagnosis else 0,
         }
         rows.append(row)
     return {"logs": rows, "strata": tables.table(rows), "wrong": tables.confusions(rows)}
 
 
-def _at_least(best: Mapping[str, float], label: Mapping[str, Any], answer: Mapping[str, Any]) -> dict[str, float]:
+def _at_least(best: Mapping[str, float], label: Mapping[str, Any], diagnosis: Diagnosis | None) -> dict[str, float]:
     """The oracle, which is a local search, is never behind an answer that names the truth and nothing else."""
-    causes = answer.get("document", {}).get("causes", [])
-    if not best or [c["effect"] for c in causes] != tables.names_of(label) or label["left_out"]:
+    if not best or diagnosis is None or [c.effect for c in diagnosis.causes] != tables.names_of(label) or label["left_out"]:
         return dict(best)
-    reached = float(answer["document"]["shrinkage"]["total"])
+    reached = diagnosis.shrinkage.total
     return {key: value if key == "each" else max(value, reached) for key, value in best.items()}
 
 
