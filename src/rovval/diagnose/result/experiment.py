@@ -25,6 +25,7 @@ from rovval.diagnose.result.causes import alone, members
 from rovval.diagnose.result.diagnosis import NextExperiment, ScheduleLeg, ThrusterSchedule
 from rovval.diagnose.result.manoeuvres import Helm, Manoeuvre, bank
 from rovval.diagnose.windows.multiple_shooting import cut_run
+from rovval.plant import Inputs
 
 DT = 0.1  # s, the common grid
 
@@ -109,8 +110,6 @@ def _misfit(problem: Problem, beta: Array, members: tuple[str, ...], manoeuvre: 
 
 def _flown(problem: Problem, beta: Array, manoeuvre: Manoeuvre) -> Run | None:
     """A run of the manoeuvre as the simulator with the fitted effects would log it, from rest at 10 m depth, without noise."""
-    from rovval.plant import Inputs
-
     vehicle = problem.plant.vehicle
     speed = np.concatenate([np.tile(leg.speed, (round(leg.seconds / DT), 1)) for leg in manoeuvre.legs])
     n = len(speed)
