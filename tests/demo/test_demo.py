@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_case import run
+from diagnosis_schema import check_document
 
 from rovval import demo
 from rovval.demo import make
@@ -38,5 +39,6 @@ def test_demo_is_labelled_and_its_maker_is_deterministic(here):
 
 def test_demo_names_the_effect_that_was_left_in(here):
     document = json.loads(run("demo", "--json", "--out", "demo", "-q").stdout)
+    check_document(document["diagnosis"])
     assert [cause["effect"] for cause in document["diagnosis"]["causes"]] == [demo.EFFECT.partition(":")[0]]
     assert all(Path(p).exists() for p in document["files"].values())

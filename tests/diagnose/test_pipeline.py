@@ -155,6 +155,14 @@ def test_where_the_true_effect_is_left_out_of_the_library_less_of_the_gap_closes
 
 
 @pytest.mark.slow
+def test_several_runs_are_one_diagnosis():
+    found = diagnose([own((PLANTED,), 5, 100.0), own((PLANTED,), 6, 100.0)], merlin())
+    check_document(written(found))
+    assert found.runs == ("own5", "own6") and found.run == "own5, own6"
+    assert [cause.effect for cause in found.causes] == ["inflow_loss"]
+
+
+@pytest.mark.slow
 def test_the_sample_names_what_was_left_in():
     assert diagnose([demo.sample()], merlin()).document()["causes"][0]["effect"] == "inflow_loss"
 
