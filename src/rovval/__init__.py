@@ -92,6 +92,8 @@ def diagnose(
 ) -> Diagnosis:
     """Where the gap between ``vehicle``'s simulator and its logs lies, which effects cause it, and how far it shrinks with them.
 
+    The result's ``sentence`` says it in words; ``verdict``, ``causes``, ``gap`` and the rest are its typed parts.
+
     Args:
         runs: one run, or several of one vehicle, which are then one experiment.
         vehicle: as `simulate` takes it.
@@ -104,13 +106,16 @@ def diagnose(
     """
     from rovval.diagnose.pipeline import diagnose
     from rovval.pipeline.steps import checked_against
+    from rovval.report.diagnosis.json import document
 
     logs = _several(runs)
     nominal = _vehicle(logs[0], vehicle)
     logs = [checked_against(run, nominal) for run in logs]
-    return diagnose(
+    found = diagnose(
         logs, nominal, model=model, window_s=window_s, calibration_slop=calibration_slop, seed=seed, progress=progress
     )  # fmt: skip
+    words = document(found)
+    return found.model_copy(update={name: words[name] for name in ("answer", "sentence")})
 
 
 def fit(

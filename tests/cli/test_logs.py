@@ -38,7 +38,7 @@ def test_many_findings_are_counted_not_poured_out(tmp_path, capsys):
     logs.print_findings(replace(run, findings=tuple(Finding("gap", f"c{k}", "long") for k in range(50))))
     said = capsys.readouterr().err.splitlines()
     assert said[0] == f"{run.id}: 50 findings in this log"
-    assert len(said) == logs.SHOWN + 2
+    assert len(said) == logs.MOST_FINDINGS + 2
     assert "and 44 more" in said[-1]
     logs.print_findings(replace(run, findings=()))
     assert not capsys.readouterr().err

@@ -10,7 +10,7 @@ from merlin_case import columns, text, write
 
 from rovval.core.errors import BadInput
 from rovval.ingest import read
-from rovval.ingest.clock import settle
+from rovval.ingest.clock import increasing_stamps
 from rovval.ingest.formats.csv_log import read as read_csv
 from rovval.ingest.profile import load_profile, parse_profile
 from rovval.storage.archive import open_run
@@ -296,7 +296,7 @@ def test_any_order_and_any_loss_of_rows_keeps_stamps_and_values_together(tmp_pat
 def test_any_stamps_settle_or_are_refused(stamps):
     t = np.array(stamps)
     try:
-        kept, out, _ = settle(t, np.arange(2, len(t) + 2), "x")
+        kept, out, _ = increasing_stamps(t, np.arange(2, len(t) + 2), "x")
     except BadInput:
         return
     assert (np.diff(out) > 0).all() and len(kept) == len(out) and np.isfinite(out).all()

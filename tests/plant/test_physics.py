@@ -15,14 +15,14 @@ from rovval.core.frames import euler_from_quaternion, quaternion_from_euler, rot
 from rovval.effects.lanes import reference_speed
 from rovval.effects.library import tether_drag, tether_tension
 from rovval.plant import Inputs, Plant, geometry, parse_settings
-from rovval.vehicle.model import rigid_body_mass, square
+from rovval.vehicle.model import as_matrix, rigid_body_mass
 
 ZERO6 = (0.0,) * 6
 
 
 def energy(vehicle, nu, eta, added=True):
     """Kinetic energy of body and added mass, and of weight and buoyancy (z down), J."""
-    mass = rigid_body_mass(vehicle.body) + (square(vehicle.body.added_mass) if added else 0.0)
+    mass = rigid_body_mass(vehicle.body) + (as_matrix(vehicle.body.added_mass) if added else 0.0)
     kinetic = 0.5 * np.einsum("...i,ij,...j->...", nu, mass, nu)
     rotation = rotation_from_euler(eta[..., 3:])[..., 2, :]
     depth = [eta[..., 2] + rotation @ np.array(p) for p in (vehicle.body.centre_of_gravity, vehicle.body.centre_of_buoyancy)]
@@ -102,7 +102,7 @@ def test_mirror_symmetry():
         vehicle, Ixy=-body.Ixy, Iyz=-body.Iyz,
         centre_of_gravity=tuple(np.array(body.centre_of_gravity) * [1, -1, 1]),
         centre_of_buoyancy=tuple(np.array(body.centre_of_buoyancy) * [1, -1, 1]),
-        **{m: tuple(map(tuple, f[:, None] * square(getattr(body, m)) * f)) for m in ("added_mass", "linear_drag", "quadratic_drag")},
+        **{m: tuple(map(tuple, f[:, None] * as_matrix(getattr(body, m)) * f)) for m in ("added_mass", "linear_drag", "quadratic_drag")},
     )  # fmt: skip
     over = np.array([1, -1, 1])
     thrusters = tuple(

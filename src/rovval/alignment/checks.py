@@ -15,9 +15,9 @@ from rovval.core.frames import euler_rates, rotation_from_euler
 STUCK_S = 3.0  # a living sensor does not repeat itself to the last digit for so long, unless the vehicle rests
 SENSORS = ("u", "v", "w", "p", "q", "r", "x", "y", "z", "phi", "theta", "psi", "udot", "vdot", "wdot", "altitude")
 EULER = ("phi", "theta", "psi")
-LEVEL = 1.0  # rad of roll and pitch beyond which Euler rates say little
-SAME, FAR = 0.9, 2.0  # correlation and ratio of speed and set-point: a governor that lags or droops stays within
-SURE = 0.5  # correlation of two signals that are one by kinematics, beyond which a sign or a scale may be named
+LEVEL_RAD = 1.0  # rad of roll and pitch beyond which Euler rates say little
+SET_POINT_CORRELATION, SET_POINT_RATIO = 0.9, 2.0  # correlation and ratio of speed and set-point: a governor that lags or droops stays within
+KINEMATIC_CORRELATION = 0.5  # correlation of two signals that are one by kinematics, beyond which a sign or a scale may be named
 
 
 def check(raw: RawLog) -> tuple[Finding, ...]:
@@ -28,10 +28,10 @@ def check(raw: RawLog) -> tuple[Finding, ...]:
         found += _stuck(raw, name, series)
         found += bad_samples(name, series, None)[1]
         found += _rate(name, series)
-    return (*_together(found), *_kinematics(raw), *_set_points(raw))
+    return (*_merged(found), *_kinematics(raw), *_set_points(raw))
 
 
-def _together(found: list[Finding]) -> list[Finding]:
+def _merged(found: list[Finding]) -> list[Finding]:
     """What is true of several channels in the same words is one finding."""
     where: dict[tuple[str, str], list[str]] = {}
     for finding in found:
@@ -113,7 +113,7 @@ def _kinematics(raw: RawLog) -> list[Finding]:
         turn = rotation_from_euler(euler)[k // 2 : k // 2 + len(t) - k]
         room = np.einsum("nji,nj->ni", turn, np.stack([_step(c[n], k) for n in "xyz"], axis=1))
         moved += [(f"{n}, {b}", room[:, i], _way(c[b], t, k)) for i, (n, b) in enumerate(zip("xyz", "uvw", strict=True))]
-    level = _while(np.abs(euler[:, :2]).max(axis=1) < LEVEL, k) & (t[k:] - t[:-k] < 2.0)
+    level = _while(np.abs(euler[:, :2]).max(axis=1) < LEVEL_RAD, k) & (t[k:] - t[:-k] < 2.0)
     found: list[Finding] = []
     for names, way, said in moved:
         known = level & np.isfinite(way) & np.isfinite(said)
@@ -132,11 +132,11 @@ def _set_points(raw: RawLog) -> list[Finding]:
             continue
         a, b = speed.values, np.interp(speed.t, wanted.t, wanted.values)
         aa, ab, bb = (float((x * y).sum()) for x, y in ((a, a), (a, b), (b, b)))
-        if abs(ab) < SAME * np.sqrt(aa * bb) or ab == 0.0:
+        if abs(ab) < SET_POINT_CORRELATION * np.sqrt(aa * bb) or ab == 0.0:
             continue
         if ab < 0:
             found.append(Finding("sign", f"{name}, n_cmd:{thruster}", "the thruster turns against its set-point: one of the signs is wrong"))
-        elif not 1 / FAR < ab / bb < FAR:
+        elif not 1 / SET_POINT_RATIO < ab / bb < SET_POINT_RATIO:
             detail = f"the thruster turns {ab / bb:.3g} times its set-point: one of the units is wrong"
             found.append(Finding("scale", f"{name}, n_cmd:{thruster}", detail))
     return found
@@ -165,7 +165,7 @@ def _agree(names: str, moved: Array, said: Array) -> list[Finding]:
     if size < 1e-12 * len(a):
         return []
     correlation, scale = ab / size, ab / bb
-    if correlation < -SURE:
+    if correlation < -KINEMATIC_CORRELATION:
         detail = f"the pose runs against the velocity that is its rate (correlation {correlation:.2f}): one of the signs is wrong"
         return [Finding("sign", names, detail)]
     if correlation > 0.9 and not 0.8 < scale < 1.25:

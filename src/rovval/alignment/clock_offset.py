@@ -14,10 +14,10 @@ import numpy as np
 from rovval.core.channels import members
 from rovval.core.data import Array
 
-WITHIN_S = 2.0
-SLOW_S = 5.0  # what is slower than this is trim, not a manoeuvre
-ENOUGH = 0.3  # correlation below which no lag is named
-LEAST_S = 30.0  # a shorter log has too few manoeuvres
+LARGEST_OFFSET_S = 2.0
+TREND_S = 5.0  # what is slower than this is trim, not a manoeuvre
+LEAST_CORRELATION = 0.3  # correlation below which no lag is named
+SHORTEST_LOG_S = 30.0  # a shorter log has too few manoeuvres
 
 
 def estimated_offset(values: Mapping[str, Array], dt: float) -> tuple[float | None, float | None, str]:
@@ -26,19 +26,19 @@ def estimated_offset(values: Mapping[str, Array], dt: float) -> tuple[float | No
     moved = [_filled(values[n]) for n in ("u", "v", "w") if n in values]
     if drive is None or not moved:
         return None, None, "no offset: needs thrusters or sticks, and velocity"
-    if len(drive) * dt < LEAST_S:
-        return None, None, f"no offset: shorter than {LEAST_S:g} s"
+    if len(drive) * dt < SHORTEST_LOG_S:
+        return None, None, f"no offset: shorter than {SHORTEST_LOG_S:g} s"
     acceleration = np.sqrt(sum(_quick(np.diff(v, append=v[-1]) / dt, dt) ** 2 for v in moved))
     a, b = (_standard(x) for x in (drive, acceleration))
     if a is None or b is None:
         return None, None, "no offset: nothing moves"
-    reach = round(WITHIN_S / dt)
+    reach = round(LARGEST_OFFSET_S / dt)
     score = np.array([_overlap(a, b, k) for k in range(-reach, reach + 1)])
     best = int(np.argmax(score))
-    if score[best] < ENOUGH:
-        return None, float(score[best]), f"no offset: best correlation {score[best]:.2f} is below {ENOUGH:g}"
+    if score[best] < LEAST_CORRELATION:
+        return None, float(score[best]), f"no offset: best correlation {score[best]:.2f} is below {LEAST_CORRELATION:g}"
     if best in (0, len(score) - 1):
-        return None, float(score[best]), f"no offset: not within {WITHIN_S:g} s"
+        return None, float(score[best]), f"no offset: not within {LARGEST_OFFSET_S:g} s"
     left, top, right = score[best - 1 : best + 2]
     bend = left - 2 * top + right
     shift = 0.5 * (left - right) / bend if bend < 0 else 0.0
@@ -72,7 +72,7 @@ def _smooth(v: Array, n: int) -> Array:
 
 
 def _quick(v: Array, dt: float) -> Array:
-    return np.asarray(v - _smooth(v, round(SLOW_S / dt) | 1))
+    return np.asarray(v - _smooth(v, round(TREND_S / dt) | 1))
 
 
 def _standard(v: Array) -> Array | None:

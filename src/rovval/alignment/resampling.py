@@ -10,7 +10,7 @@ from rovval.core.data import Array, Codes, Reason, Series
 from rovval.core.frames import wrap
 
 ON_GRID = 0.25  # of a step: how far a stamp may be from its grid point to be that grid point's sample (20 ms of jitter at 10 Hz fit)
-FASTER = 1.5  # times the grid's rate: a channel above it is averaged, below it interpolated
+FASTER_THAN_GRID = 1.5  # times the grid's rate: a channel above it is averaged, below it interpolated
 EPS_S = 1e-6  # stamps closer than this are the same
 
 
@@ -35,7 +35,7 @@ def resample(series: Series, bad: Codes, start: float, n: int, dt: float, gap_s:
     k = on_grid(series.t, start, dt)
     if k is not None:
         said, at, exact = "unchanged" if len(k) < 2 or np.median(np.diff(k)) == 1 else _name(method), k[good], v
-    elif method in ("mean", "circular") and len(t) > 2 and float(np.median(np.diff(t))) * FASTER < dt:
+    elif method in ("mean", "circular") and len(t) > 2 and float(np.median(np.diff(t))) * FASTER_THAN_GRID < dt:
         said, (at, exact) = f"{method} mean".replace("mean mean", "mean"), _bin_mean(t, v, start, n, dt, method == "circular")
     else:
         said = _name(method)
@@ -91,7 +91,7 @@ def _hold(series: Series, bad: Codes, grid: Array, gap_s: float) -> tuple[Array,
     good = np.flatnonzero(bad == Reason.OK)
     t, v = series.t[good], series.values[good]
     period = float(np.median(np.diff(t))) if len(t) > 1 else 0.0
-    codes = _outside(series.t, bad, t, grid, min(gap_s, FASTER * period))
+    codes = _outside(series.t, bad, t, grid, min(gap_s, FASTER_THAN_GRID * period))
     i = np.clip(np.searchsorted(t, grid + EPS_S, "right") - 1, 0, len(t) - 1)
     after = np.clip(i + 1, 0, len(t) - 1)
     age = grid - t[i]

@@ -8,8 +8,8 @@ from rovval.core.channels import channel
 from rovval.core.data import Codes, Reason, Series
 from rovval.core.errors import Finding
 
-MOST = 0.5  # a channel that moves mostly outside its sane range is not what the profile says: its rest is no measurement either
-FILLS = 3  # distinct values: no more than these are what an instrument writes while it has nothing to say (-32.768, 9999)
+MOST_OUTSIDE = 0.5  # a channel that moves mostly outside its sane range is not what the profile says: its rest is no measurement either
+FILL_VALUES = 3  # distinct values: no more than these are what an instrument writes while it has nothing to say (-32.768, 9999)
 
 
 def still_runs(series: Series, longer_than_s: float) -> list[tuple[int, int]]:
@@ -35,7 +35,7 @@ def bad_samples(name: str, series: Series, stuck_s: float | None) -> tuple[Codes
             detail = f"{len(runs)} runs of equal values longer than {stuck_s:g} s, from t = {series.t[runs[0][0]]:.1f} s; masked"
             findings.append(Finding("stuck", name, detail))
     outside = (series.values < row.low) | (series.values > row.high)
-    most = outside.mean() > MOST and len(np.unique(series.values[outside])) > FILLS
+    most = outside.mean() > MOST_OUTSIDE and len(np.unique(series.values[outside])) > FILL_VALUES
     code[outside | most] = Reason.OUT_OF_RANGE
     if outside.any():
         low, high = series.values[outside].min(), series.values[outside].max()

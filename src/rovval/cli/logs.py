@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rovval.core.data import Run, SimResult
     from rovval.vehicle.model import Vehicle
 
-SHOWN = 6  # findings of a run in a terminal; the others stand in its report
+MOST_FINDINGS = 6  # findings of a run in a terminal; the others stand in its report
 
 
 def opened(source: str, profile: str | None, archive: Path, quiet: bool = False) -> Run:
@@ -69,7 +69,7 @@ def print_findings(run: Run, quiet: bool = False) -> None:
     if not run.findings:
         return
     lines = [f"{run.id}: {len(run.findings)} finding{'s'[: len(run.findings) > 1]} in this log"]
-    lines += [f"  {finding}" for finding in run.findings[:SHOWN]]
-    if (more := len(run.findings) - SHOWN) > 0:
+    lines += [f"  {finding}" for finding in run.findings[:MOST_FINDINGS]]
+    if (more := len(run.findings) - MOST_FINDINGS) > 0:
         lines.append(f"  and {more} more: `rovval ingest --json` and the report of `rovval compare` have all")
     output.say("\n".join(lines), quiet)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval.core.frames import skew
-from rovval.vehicle.model import Vehicle, allocation, inertia, square
+from rovval.vehicle.model import Vehicle, allocation, as_matrix, inertia
 
 Array = NDArray[np.float64]
 PASSES = 0.1  # cosine under which a jet passes the hull by (chosen: 6 degrees, as a jet spreads)
@@ -87,9 +87,9 @@ def nominal(vehicle: Vehicle, model: str) -> Lanes:
         mass=each(body.mass),
         centre_of_gravity=each(body.centre_of_gravity),
         inertia=each(inertia(body)),
-        added_mass=each(fossen * square(body.added_mass)),
-        linear_drag=each(fossen * square(body.linear_drag)),
-        quadratic_drag=each(square(body.quadratic_drag)),
+        added_mass=each(fossen * as_matrix(body.added_mass)),
+        linear_drag=each(fossen * as_matrix(body.linear_drag)),
+        quadratic_drag=each(as_matrix(body.quadratic_drag)),
         weight=each(vehicle.weight),
         buoyancy=each(vehicle.buoyancy),
         centre_of_buoyancy=each(body.centre_of_buoyancy),
@@ -118,14 +118,14 @@ def with_centre_of_gravity(lanes: Lanes, centre: Array) -> tuple[Array, Array]:
 def reference_drag(vehicle: Vehicle) -> tuple[Array, Array]:
     """Coefficients (6,) that a relative departure of linear and quadratic drag refers to: the vehicle's own diagonal. Where that
     is zero, linear drag refers to the quadratic force at 0.1 m/s (rad/s), quadratic to the linear force at 1 m/s (chosen)."""
-    linear, quadratic = np.diag(square(vehicle.body.linear_drag)), np.diag(square(vehicle.body.quadratic_drag))
+    linear, quadratic = np.diag(as_matrix(vehicle.body.linear_drag)), np.diag(as_matrix(vehicle.body.quadratic_drag))
     return np.where(linear > 0, linear, 0.1 * quadratic), np.where(quadratic > 0, quadratic, linear)
 
 
 def reference_added_mass(vehicle: Vehicle) -> Array:
     """What a relative departure of added mass (6,) refers to: the vehicle's own diagonal, or half of the rigid body's where that
     is zero (chosen; the thesis's Merlin has 0.5 m and 0.1 I)."""
-    own = np.diag(square(vehicle.body.added_mass))
+    own = np.diag(as_matrix(vehicle.body.added_mass))
     body = vehicle.body
     rigid = np.array([body.mass, body.mass, body.mass, body.Ixx, body.Iyy, body.Izz])
     return np.where(own > 0, own, 0.5 * rigid)
@@ -133,7 +133,7 @@ def reference_added_mass(vehicle: Vehicle) -> Array:
 
 def reference_drag_force(vehicle: Vehicle) -> float:
     """Drag at 1 m/s ahead, N; a tenth of the weight for a vehicle without any (chosen: only a size for priors and bounds)."""
-    drag = float(square(vehicle.body.linear_drag)[0, 0] + square(vehicle.body.quadratic_drag)[0, 0])
+    drag = float(as_matrix(vehicle.body.linear_drag)[0, 0] + as_matrix(vehicle.body.quadratic_drag)[0, 0])
     return drag if drag > 0 else 0.1 * vehicle.weight
 
 

@@ -19,7 +19,7 @@ from rovval.ingest.profile import ATTITUDE, GEODETIC, WORLD_VELOCITY, Profile, S
 SIDEWAYS_OR_DOWN = ("v", "w", "q", "r", "vdot", "wdot")  # change sign between forward-left-up and forward-starboard-down
 TO_NED = {"ned": np.eye(3), "enu": ENU_TO_NED, "nwu": FLU_TO_FSD}
 EULER = ("phi", "theta", "psi")
-SPIKE = 1.5  # rad
+SPIKE_RAD = 1.5  # rad
 WGS84_A, WGS84_E2 = 6378137.0, 6.69437999014e-3  # semi-major axis (m) and first eccentricity squared, NIMA TR8350.2, table 3.1
 
 
@@ -168,7 +168,7 @@ def _angles(name: str, series: Series, found: list[Finding]) -> Series:
     beyond = (np.abs(series.values) > np.pi) & (np.abs(series.values) <= 7.0)
     values = np.where(beyond, wrap(series.values), series.values)
     step, over = np.abs(wrap(np.diff(values))), np.abs(wrap(values[2:] - values[:-2]))
-    spike = np.concatenate(([False], (step[:-1] > SPIKE) & (step[1:] > SPIKE) & (over < SPIKE / 3), [False]))
+    spike = np.concatenate(([False], (step[:-1] > SPIKE_RAD) & (step[1:] > SPIKE_RAD) & (over < SPIKE_RAD / 3), [False]))
     spike = spike[: len(values)] & (np.abs(values) <= np.pi)
     if spike.any():
         detail = f"{spike.sum()} single samples far from both neighbours, from t = {series.t[spike][0]:.1f} s; dropped"

@@ -10,7 +10,7 @@ import polars as pl
 
 from rovval.core.data import Array
 from rovval.core.errors import BadInput, Finding, all_at_once
-from rovval.ingest.text import Table, cells, some
+from rovval.ingest.text import Table, cells, first_few
 
 BLANK = ("", "nan", "-", "--", "null", "none", "n/a", "na", "#n/a", "-nan", "nan(ind)", "-nan(ind)")
 DECIMAL_COMMA = r"^[+-]?\d+,\d*([eE][+-]?\d+)?$"
@@ -51,7 +51,7 @@ def numbers(text: pl.DataFrame, table: Table, path: str) -> tuple[dict[str, Arra
             findings.append(Finding("blank_cell", name, f"{blank.sum()} cells are blank, from line {lines[blank][0]}; taken as missing"))
         if bad.any():
             examples = ", ".join(repr(c) for c in column.filter(pl.Series(bad))[:3])
-            where = some(lines[bad].tolist())
+            where = first_few(lines[bad].tolist())
             findings.append(Finding("not_a_number", name, f"{bad.sum()} cells are not numbers ({examples}; {where}); dropped"))
             if bad.sum() > 0.5 * (~blank).sum():
                 hopeless.append(f"column {name!r}: {bad.sum()} of {(~blank).sum()} cells are not numbers, such as {examples} ({where})")

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from rovval.core.data import Array
 from rovval.core.errors import BadInput, Finding
-from rovval.ingest.text import some
+from rovval.ingest.text import first_few
 
-FEW = 10  # rows: more than these behind or ahead are not a slip of one message
+SLIP_ROWS = 10  # rows: more than these behind or ahead are not a slip of one message
 STEPS, STEP_SHARE = 3, 0.01  # a clock is stepped back now and then, hardly ever more often than both of these
 DAY_S = 86400.0
 Index = NDArray[np.int64]
@@ -32,7 +32,7 @@ def time_of_day(columns: list[Array]) -> Array:
     return np.asarray(seconds, dtype=float)
 
 
-def settle(t: Array, lines: Index, where: str) -> tuple[Index, Array, tuple[Finding, ...]]:
+def increasing_stamps(t: Array, lines: Index, where: str) -> tuple[Index, Array, tuple[Finding, ...]]:
     """Rows to keep in order, and their stamps (s). ``lines`` are the rows' numbers in the file.
 
     Raises `BadInput` when fewer than two stamps are left, or when most rows share a stamp with another.
@@ -41,7 +41,7 @@ def settle(t: Array, lines: Index, where: str) -> tuple[Index, Array, tuple[Find
     findings = []
     if len(rows) < len(t):
         lost = lines[~np.isfinite(t)]
-        findings.append(Finding("bad_stamp", where, f"{len(lost)} rows have no readable stamp ({some(lost.tolist())}); dropped"))
+        findings.append(Finding("bad_stamp", where, f"{len(lost)} rows have no readable stamp ({first_few(lost.tolist())}); dropped"))
     t = np.array(t[rows], dtype=float)
     if len(t) and (np.diff(t) < 0).any():
         t, kept, found = _backwards(t, lines[rows], where)
@@ -54,7 +54,7 @@ def settle(t: Array, lines: Index, where: str) -> tuple[Index, Array, tuple[Find
         raise BadInput(f"{where}: {len(t)} rows share {first.sum()} stamps; they are too coarse", "export the stamps with milliseconds")
     if not first.all():
         same = lines[rows[~first]]
-        findings.append(Finding("duplicate_stamp", where, f"{len(same)} rows repeat a stamp ({some(same.tolist())}); the first is kept"))
+        findings.append(Finding("duplicate_stamp", where, f"{len(same)} rows repeat a stamp ({first_few(same.tolist())}); the first is kept"))
     if first.sum() < 2:
         raise BadInput(f"{where}: {first.sum()} rows with a readable stamp; a log needs at least 2", "is this the whole file?")
     return rows[first], t[first], tuple(findings)
@@ -66,7 +66,7 @@ def _backwards(t: Array, lines: Index, where: str) -> tuple[Array, NDArray[np.bo
     period = float(np.median(forward[forward > 0])) if (forward > 0).any() else 1.0
     if not _collides(t, period):
         late = lines[np.flatnonzero(t < np.maximum.accumulate(t))]
-        return t, np.ones(len(t), bool), [Finding("swapped_row", where, f"{len(late)} rows are late ({some(late.tolist())}); sorted")]
+        return t, np.ones(len(t), bool), [Finding("swapped_row", where, f"{len(late)} rows are late ({first_few(late.tolist())}); sorted")]
     keep = np.ones(len(t), bool)
     bad: list[int] = []
     late_rows: list[int] = []
@@ -79,12 +79,12 @@ def _backwards(t: Array, lines: Index, where: str) -> tuple[Array, NDArray[np.bo
         ahead = np.flatnonzero(keep[: k + 1] & (t[: k + 1] >= t[k + 1]))
         reach = np.flatnonzero(t[k + 1 :] >= top)
         behind = int(reach[0]) if len(reach) else len(t) - k - 1
-        if len(ahead) <= FEW and len(ahead) < behind:
+        if len(ahead) <= SLIP_ROWS and len(ahead) < behind:
             keep[ahead] = False
             bad += lines[ahead].tolist()
-        elif behind <= FEW and _in_holes(t[: k + 1][keep[: k + 1]], t[k + 1 : k + 1 + behind], period):
+        elif behind <= SLIP_ROWS and _in_holes(t[: k + 1][keep[: k + 1]], t[k + 1 : k + 1 + behind], period):
             late_rows += lines[k + 1 : k + 1 + behind].tolist()
-        elif behind <= FEW and (len(reach) == 0 or t[k + 1 + behind] - t[k] > (0.5 * behind + 1) * period):
+        elif behind <= SLIP_ROWS and (len(reach) == 0 or t[k + 1 + behind] - t[k] > (0.5 * behind + 1) * period):
             keep[k + 1 : k + 1 + behind] = False
             bad += lines[k + 1 : k + 1 + behind].tolist()
         else:
@@ -93,9 +93,9 @@ def _backwards(t: Array, lines: Index, where: str) -> tuple[Array, NDArray[np.bo
             steps.append((int(lines[k + 1]), float(by)))
     findings += _stepped(steps, len(t), period, span, where)
     if bad:
-        findings.append(Finding("bad_stamp", where, f"{len(bad)} rows are stamped far from their neighbours ({some(bad)}); dropped"))
+        findings.append(Finding("bad_stamp", where, f"{len(bad)} rows are stamped far from their neighbours ({first_few(bad)}); dropped"))
     if late_rows:
-        findings.append(Finding("swapped_row", where, f"{len(late_rows)} rows are late ({some(late_rows)}); sorted"))
+        findings.append(Finding("swapped_row", where, f"{len(late_rows)} rows are late ({first_few(late_rows)}); sorted"))
     return t, keep, findings
 
 
@@ -104,7 +104,7 @@ def _stepped(steps: list[tuple[int, float]], rows: int, period: float, span: flo
     back = sum(by for _, by in steps)
     if len(steps) > max(STEPS, STEP_SHARE * rows) and back > span:
         raise BadInput(
-            f"{where}: the stamps go back {len(steps)} times in {rows} rows ({some([line for line, _ in steps])}), by {back:.0f} s in all "
+            f"{where}: the stamps go back {len(steps)} times in {rows} rows ({first_few([line for line, _ in steps])}), by {back:.0f} s in all "
             f"where they span {span:.0f} s: this is no clock that was set back, the rows are in no order of time",
             "sort the rows by time, split logs that were joined, or is time another column than the profile says?",
         )
@@ -120,7 +120,7 @@ def _collides(t: Array, period: float) -> bool:
     order = np.argsort(t, kind="stable")
     stretch = np.cumsum(np.diff(t, prepend=t[0]) < 0)[order]
     close = np.diff(t[order]) < 0.6 * period
-    far = np.abs(order - np.arange(len(t))).max() > FEW
+    far = np.abs(order - np.arange(len(t))).max() > SLIP_ROWS
     return bool(far or (close & (np.diff(stretch) != 0)).any())
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from rovval.core.errors import BadInput
 
 
-def parts(path: Path) -> tuple[Path, ...]:
+def files_of(path: Path) -> tuple[Path, ...]:
     """The files that make up a log: itself, or what a folder (a ROS 2 bag) holds, in order of name."""
     return tuple(sorted(p for p in path.rglob("*") if p.is_file())) if path.is_dir() else (path,)
 
@@ -20,8 +20,8 @@ def refuse_unusable(path: Path) -> None:
     if not (path.is_file() or path.is_dir()):
         raise BadInput(f"{path}: neither a file nor a folder", "check the path")
     try:
-        size = sum(part.stat().st_size for part in parts(path))
-        with parts(path)[0].open("rb") as file:
+        size = sum(part.stat().st_size for part in files_of(path))
+        with files_of(path)[0].open("rb") as file:
             file.read(1)
     except IndexError:
         raise BadInput(f"{path}: the folder is empty", "give a log file, or a folder that is a ROS 2 bag") from None
@@ -34,7 +34,7 @@ def refuse_unusable(path: Path) -> None:
 def sha256(path: Path) -> str:
     """Digest of a log's content; of a folder, of the names and contents of its files."""
     digest = hashlib.sha256()
-    for part in parts(path):
+    for part in files_of(path):
         if path.is_dir():
             digest.update(part.relative_to(path).as_posix().encode() + b"\0")
         with part.open("rb") as file:

@@ -15,10 +15,10 @@ from rovval.core.data import Series
 from rovval.core.errors import Finding
 from rovval.core.frames import rotation_from_euler
 
-STRETCH_S = 1.5
+WAY_S = 1.5
 NEEDED = ("x", "y", "phi", "theta", "psi", "u", "v", "w")
-BETTER = 0.7  # the misfit must fall below this part of itself, or be small already
-SMALL = 0.2
+LARGEST_MISFIT_RATIO = 0.7  # the misfit must fall below this part of itself, or be small already
+SMALL_MISFIT = 0.2
 
 
 def with_heading_zero(series: Mapping[str, Series]) -> tuple[dict[str, Series], Finding]:
@@ -31,7 +31,7 @@ def with_heading_zero(series: Mapping[str, Series]) -> tuple[dict[str, Series], 
     size = float(np.median(np.abs(room)))
     before, after = (float(np.median(np.abs(room - dead * turn))) / max(size, 1e-9) for turn in (1.0, np.exp(1j * angle)))
     told = f"{np.degrees(angle):.1f} deg between heading and position (misfit {before:.2f} of the way covered, {after:.2f} once turned)"
-    if after > max(BETTER * before, SMALL):
+    if after > max(LARGEST_MISFIT_RATIO * before, SMALL_MISFIT):
         return out, Finding("heading_zero", "psi", f"{told}; not clear enough, left as logged")
     out["psi"] = Series(series["psi"].t, series["psi"].values + angle, series["psi"].stamp)
     return out, Finding("heading_zero", "psi", f"{told}; added to the heading")
@@ -44,7 +44,7 @@ def _ways(series: Mapping[str, Series]) -> tuple[NDArray[np.complex128], NDArray
     euler = np.stack([columns[n] for n in ("phi", "theta", "psi")], axis=1)
     world = np.einsum("nij,nj->ni", rotation_from_euler(euler), np.stack([columns[n] for n in "uvw"], axis=1))
     way = np.concatenate((np.zeros((1, 3)), np.cumsum(0.5 * (world[1:] + world[:-1]) * np.diff(t)[:, None], axis=0)))
-    k = max(1, min(len(t) - 1, round(STRETCH_S / float(np.median(np.diff(t))))))
+    k = max(1, min(len(t) - 1, round(WAY_S / float(np.median(np.diff(t))))))
     room: NDArray[np.complex128] = np.asarray(columns["x"] + 1j * columns["y"], dtype=np.complex128)
     dead: NDArray[np.complex128] = np.asarray(way[:, 0] + 1j * way[:, 1], dtype=np.complex128)
     return room[k:] - room[:-k], dead[k:] - dead[:-k]

@@ -44,7 +44,7 @@ def decode(path: Path, most: int = -1) -> str:
         return content.decode("latin-1")
 
 
-def bare(name: str) -> str:
+def plain_name(name: str) -> str:
     """A header cell without unit and decoration: ``"Lin Vel X [m/s]"`` -> ``linvelx``."""
     return re.sub(r"[^a-z0-9]", "", re.sub(r"\(.*?\)|\[.*?\]", "", name).casefold())
 
@@ -64,7 +64,7 @@ def member(pattern: str, name: str) -> str | None:
 
 def fits(pattern: str, name: str) -> bool:
     """Whether a header cell is the column that a profile means."""
-    return member(pattern, name) is not None if "*" in pattern else bare(pattern) == bare(name)
+    return member(pattern, name) is not None if "*" in pattern else plain_name(pattern) == plain_name(name)
 
 
 def cells(line: str, separator: str) -> list[str]:
@@ -111,22 +111,22 @@ def split(text: str, wanted: Sequence[str]) -> Table | None:
     findings = [Finding("cut_line", f"line {cut[0]}", "the last line is cut; dropped")] if cut else []
     if again:
         detail = f"{len(again)} rows repeat an earlier one to the letter, stamp included; dropped"
-        findings.append(Finding("repeated_row", some(again), detail))
+        findings.append(Finding("repeated_row", first_few(again), detail))
     if whole:
-        findings.append(Finding("ragged_row", some(whole), f"{len(whole)} rows have not the header's {width} cells; dropped"))
+        findings.append(Finding("ragged_row", first_few(whole), f"{len(whole)} rows have not the header's {width} cells; dropped"))
     return Table(header, separator, rows, numbers, tuple(findings))
 
 
 def _header(lines: Sequence[str], wanted: Sequence[str]) -> tuple[int, str] | None:
     best, place = 0, None
-    plain = {bare(w) for w in wanted if "*" not in w}
+    plain = {plain_name(w) for w in wanted if "*" not in w}
     patterns = [w for w in wanted if "*" in w]
     for at, line in enumerate(lines):
         for separator in SEPARATORS:
             if separator not in line and len(wanted) > 1:
                 continue
             names = cells(line, separator)
-            score = len(plain & {bare(n) for n in names if n.lower() != n.upper()})
+            score = len(plain & {plain_name(n) for n in names if n.lower() != n.upper()})
             if score or not plain:
                 score += sum(any(fits(w, n) for n in names) for w in patterns)
             if score > best:
@@ -134,7 +134,7 @@ def _header(lines: Sequence[str], wanted: Sequence[str]) -> tuple[int, str] | No
     return place
 
 
-def some(numbers: Sequence[int], what: str = "line") -> str:
+def first_few(numbers: Sequence[int], what: str = "line") -> str:
     """The first few of many line numbers: ``lines 7, 9, 12, ...``."""
     shown = ", ".join(str(n) for n in numbers[:5])
     return f"{what}{'s' if len(numbers) > 1 else ''} {shown}{', ...' if len(numbers) > 5 else ''}"

@@ -14,7 +14,7 @@ from rovval.plant.codegen import cache
 from rovval.plant.codegen.spec import Spec, W
 from rovval.plant.inputs import Inputs, Prepared
 from rovval.plant.lowering import Lowered, mass_numbers, pack, steps_before_nothing, with_payload
-from rovval.vehicle.model import Vehicle, square
+from rovval.vehicle.model import Vehicle, as_matrix
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -116,7 +116,7 @@ def _payload(lanes: Lanes, blocks: int) -> tuple[Array, Array]:
 
 
 def _coupled(values: tuple[float, ...] | tuple[tuple[float, ...], ...]) -> bool:
-    matrix = square(values)
+    matrix = as_matrix(values)
     return bool((matrix != np.diag(np.diag(matrix))).any())
 
 

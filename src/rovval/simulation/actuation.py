@@ -15,6 +15,7 @@ from rovval.plant import Inputs
 from rovval.vehicle.model import Mixer, PulseTable, Vehicle
 
 SLOPE_HALF_WIDTH = 5  # samples: a velocity that was not logged starts as the slope of its pose over +-0.5 s (chosen)
+SOURCES = {"n": "measured speed", "n_cmd": "speed set-point", "pwm": "pulse width", "stick": "pilot's sticks"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,8 +26,6 @@ class Actuation:
     known: Flags
     source: str
     assumptions: tuple[str, ...]
-
-NAMES = {"n": "measured speed", "n_cmd": "speed set-point", "pwm": "pulse width", "stick": "pilot's sticks"}
 
 
 def recorded_actuation(run: Run, vehicle: Vehicle) -> Actuation:
@@ -54,12 +53,12 @@ def recorded_actuation(run: Run, vehicle: Vehicle) -> Actuation:
                     tether_length=_optional(run, "tether_length"),
                 ),
                 known=known,
-                source=NAMES[family],
-                assumptions=(*(f"{lack}, so the {NAMES[family]} drives all thrusters" for lack in partly), *assumptions),
+                source=SOURCES[family],
+                assumptions=(*(f"{lack}, so the {SOURCES[family]} drives all thrusters" for lack in partly), *assumptions),
             )
         gone = [name.partition(":")[2] for name in wanted if not run.measured(name)]
         if len(gone) < len(wanted):
-            partly.append(f"{NAMES[family]} is missing for {', '.join(gone)}")
+            partly.append(f"{SOURCES[family]} is missing for {', '.join(gone)}")
     held = sorted(n for n in run.values if n.partition(":")[0] in ("n", "n_cmd", "pwm", "stick"))
     why = "; ".join(partly) or f"the log holds {', '.join(held) or 'none'}"
     raise BadInput(

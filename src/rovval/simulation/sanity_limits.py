@@ -10,8 +10,8 @@ from rovval.core.errors import Finding
 from rovval.core.units import DEGREES
 from rovval.vehicle.model import Vehicle
 
-SPEED = channel("u").high  # m/s; the channel table's own: a log is masked beyond it
-RATE = 2 * np.pi  # rad/s, a turn a second; chosen above the fastest of the published logs in use, 4.8 rad/s (a BlueROV2 in a tank)
+SANE_SPEED = channel("u").high  # m/s; the channel table's own: a log is masked beyond it
+SANE_RATE = 2 * np.pi  # rad/s, a turn a second; chosen above the fastest of the published logs in use, 4.8 rad/s (a BlueROV2 in a tank)
 
 
 def overspeed(run: Run, vehicle: Vehicle) -> tuple[Finding, ...]:
@@ -31,13 +31,13 @@ def overspeed(run: Run, vehicle: Vehicle) -> tuple[Finding, ...]:
 
 
 def first_beyond(nu: Array) -> tuple[int, str] | None:
-    """First sample of a simulated motion (T, 6) beyond `SPEED` or `RATE`, and which axis by how much; None where all are sane."""
-    over = np.abs(nu) / np.repeat([SPEED, RATE], 3)
+    """First sample of a simulated motion (T, 6) beyond `SANE_SPEED` or `SANE_RATE`, and which axis by how much; None where all are sane."""
+    over = np.abs(nu) / np.repeat([SANE_SPEED, SANE_RATE], 3)
     beyond = np.flatnonzero((over > 1.0).any(axis=1))
     if not len(beyond):
         return None
     k = int(beyond[0])
     j = int(np.argmax(over[k]))
     value = nu[k, j]
-    said = f"{value:.3g} m/s, limit {SPEED:g} m/s" if j < 3 else f"{value * DEGREES:.3g} deg/s, limit {RATE * DEGREES:.3g} deg/s"
+    said = f"{value:.3g} m/s, limit {SANE_SPEED:g} m/s" if j < 3 else f"{value * DEGREES:.3g} deg/s, limit {SANE_RATE * DEGREES:.3g} deg/s"
     return k, f"{AXES[j]} at {said}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rovval.core.channels import AXES
-from rovval.vehicle.model import Vehicle, allocation, inertia, rigid_body_mass, square
+from rovval.vehicle.model import Vehicle, allocation, as_matrix, inertia, rigid_body_mass
 
 WEIGHT_MISMATCH = 0.25  # chosen: an ROV is trimmed to within a few per cent; a quarter is a wrong unit or a wrong volume
 DIRECTION_TOLERANCE = 1e-3  # chosen: a direction is printed with three digits or more
@@ -46,7 +46,7 @@ def _mass(vehicle: Vehicle) -> list[str]:
             f"inertia tensor breaks the triangle rule: principal moments {np.round(moments, 4).tolist()} kg m2, "
             "the largest may not exceed the sum of the others"
         )
-    added = square(body.added_mass)
+    added = as_matrix(body.added_mass)
     if not np.allclose(added, added.T, rtol=1e-6, atol=1e-9):
         problems.append("added_mass is not symmetric (potential flow: M_A = M_A^T, Fossen 2021, 6.3)")
     if (np.diag(added) < 0).any():
@@ -60,7 +60,7 @@ def _mass(vehicle: Vehicle) -> list[str]:
 def _damping(vehicle: Vehicle) -> list[str]:
     """Power taken from any motion must not be negative: nu^T D(nu) nu >= 0."""
     problems = []
-    linear, quadratic = square(vehicle.body.linear_drag), square(vehicle.body.quadratic_drag)
+    linear, quadratic = as_matrix(vehicle.body.linear_drag), as_matrix(vehicle.body.quadratic_drag)
     for name, matrix in (("linear_drag", linear), ("quadratic_drag", quadratic)):
         negative = [AXES[i] for i in range(6) if matrix[i, i] < 0]
         if negative:

@@ -130,7 +130,7 @@ class Vehicle(Strict):
         return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 
-def square(values: tuple[float, ...] | tuple[tuple[float, ...], ...]) -> Array:
+def as_matrix(values: tuple[float, ...] | tuple[tuple[float, ...], ...]) -> Array:
     """A diagonal of six or a 6 x 6 matrix, as a matrix."""
     a = np.array(values, dtype=float)
     return np.diag(a) if a.ndim == 1 else a

@@ -30,7 +30,7 @@ SHAPES: Mapping[str, tuple[tuple[int, ...], ...]] = {
 }
 SIZE = ("length", "width", "height")
 INERTIA = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
-SHOWN = 60  # characters of a wrong value in a message
+MOST_CHARACTERS = 60  # characters of a wrong value in a message
 PRINTED_DIGITS = 1e-3  # asymmetry, relative to the diagonal, that is the last printed digit (RexROV: 10.774 and 10.775)
 RPM = 2.0 * np.pi / 60.0  # rad/s of one revolution per minute
 DEFAULTS = {"density": 1028.0, "gravity": 9.81}  # uuv_simulator's own (vehicle.py: density 1028, gravity 9.81)
@@ -121,7 +121,7 @@ def _numbers(value: Any, shapes: Sequence[tuple[int, ...]]) -> bool:
 
 def _short(value: Any) -> str:
     text = repr(value)
-    return text if len(text) <= SHOWN else text[:SHOWN] + "..."
+    return text if len(text) <= MOST_CHARACTERS else text[:MOST_CHARACTERS] + "..."
 
 
 def _gains(parameters: Any, thrusters: int) -> list[float]:

@@ -3,7 +3,7 @@
 import pytest
 
 from rovval import vehicle
-from rovval.blind.cases.questions import DECOYS, questions, same_law
+from rovval.blind.cases.questions import DECOY_SHARE, questions, same_law
 from rovval.blind.scoring import ground_truth
 from rovval.core.errors import UsageProblem
 from rovval.plant import Plant
@@ -20,7 +20,7 @@ def test_full_set_asks_about_every_stratum():
         on = [q.case.effects[0].target for q in left if q.case.effects[0].name == one]
         assert len(on) == 2 and (on[0] != on[1] or on == [None, None])
     decoys = [q for q in asked if q.without and not q.left_out]
-    assert 0.5 * DECOYS < len(decoys) / (len(asked) - len(left)) < 1.5 * DECOYS
+    assert 0.5 * DECOY_SHARE < len(decoys) / (len(asked) - len(left)) < 1.5 * DECOY_SHARE
     for q in decoys:
         assert not set(q.without) & {law for e in q.case.effects for law in same_law(e.name)}
 

@@ -26,7 +26,7 @@ from rovval.diagnose.windows.windows import VELOCITY_CHANNELS, Windows
 from rovval.vehicle.model import Vehicle
 
 POINTS = 400  # instants of the pointwise methods, evenly over the log
-REAL = 10.0  # BIC gain that counts as "very strong" (Kass and Raftery 1995)
+LEAST_BIC_GAIN = 10.0  # BIC gain that counts as "very strong" (Kass and Raftery 1995)
 PAIR_S = 0.2  # two samples
 
 
@@ -62,7 +62,7 @@ def _by_bic(r: Array, S: Array, columns: tuple[int, ...], library: Sequence[Hypo
         gain = n * np.log(float(y @ y) / max(float(left @ left), 1e-300)) - (x.shape[1] + len(h.at)) * np.log(n)
         scores[h.name] = max(gain, scores.get(h.name, -np.inf))
     best = max(scores, key=lambda k: scores[k])
-    return best if scores[best] > REAL else ""
+    return best if scores[best] > LEAST_BIC_GAIN else ""
 
 
 def _sparse(points: Windows, r: Array, motion: list[int], fine: np.ndarray) -> str:

@@ -14,7 +14,7 @@ from rovval.blind.missions.pilot import Nav
 from rovval.blind.plant.dynamics import Plant
 from rovval.blind.plant.effect import Effect, Kinematics, Setting
 from rovval.blind.plant.environment import Background, Supply, draw_setting
-from rovval.blind.plant.equivalent_wrench import EVERY, Recorder, channel_change, realised
+from rovval.blind.plant.equivalent_wrench import ROWS_A_LOOK, Recorder, channel_change, realised
 from rovval.blind.plant.motor import motor
 from rovval.blind.plant.nominal_vehicle import NominalVehicle, read_vehicle
 from rovval.blind.plant.parameters import perturbed
@@ -125,7 +125,7 @@ def _loop(plant: Plant, pilot: Mission, nominal: NominalVehicle, setting: Settin
         length = paid_out(setting.anchor, np.array([k.x, k.y, k.z]), length)
         head = [k.x, k.y, k.z, nav.phi, nav.theta, psi, *k.vel, k.altitude, supply.volts, length]
         rows.append(head + k.n.tolist() + plant.set_point.tolist())
-        if i % EVERY == 0 and i:
+        if i % ROWS_A_LOOK == 0 and i:
             recorder.look(t, y)
         if max(map(abs, k.vel[:3])) > SANE_SPEED or not np.isfinite(y).all():
             raise RuntimeError(f"the flight left sane limits at {t:.1f} s")

@@ -18,7 +18,7 @@ from rovval.blind.plant.spec import Planted, stream
 from rovval.blind.planted.catalogue import catalogue, names
 from rovval.core.errors import UsageProblem
 
-DECOYS = 0.25  # share of the ordinary questions that have an effect taken out that is not there
+DECOY_SHARE = 0.25  # share of the ordinary questions that have an effect taken out that is not there
 SMALL_S = 240.0
 WEAK = ("thruster_degraded", "thruster_fault_onset", "thruster_reversed", "thruster_interaction")
 SAME_LAW = {  # taken out together: one is the other at some value, or closes nine tenths of what the other does (Merlin, no slop)
@@ -135,4 +135,4 @@ def _decoy(case: Case, rng: np.random.Generator) -> tuple[str, ...]:
     there = {law for e in case.effects for law in same_law(e.name)}
     free = [n for n in names(foreign=False) if not there & set(same_law(n))]
     drawn, chosen = float(rng.random()), str(rng.choice(free))
-    return same_law(chosen) if drawn < DECOYS else ()
+    return same_law(chosen) if drawn < DECOY_SHARE else ()

@@ -16,7 +16,7 @@ from rovval.blind.plant.dynamics import BASE, Plant
 from rovval.blind.plant.rotation import to_body
 from rovval.blind.plant.spec import AXES, Array
 
-EVERY = 10  # rows between two looks: one a second
+ROWS_A_LOOK = 10  # rows between two looks: one a second
 
 
 def _acceleration(plant: Plant, t: float, y: Array) -> Array:

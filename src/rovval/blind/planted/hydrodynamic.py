@@ -9,7 +9,7 @@ from rovval.blind.plant.parameters import Params
 from rovval.blind.plant.spec import AXES, Array
 
 TURN = 0.5  # rad/s, the working rate of roll, pitch and yaw drag (chosen)
-SURE = 0.8  # of a coefficient of the file, four standard deviations of 5 % slop below it
+LEAST_COEFFICIENT = 0.8  # of a coefficient of the file, four standard deviations of 5 % slop below it
 
 
 def working_drag(plan: Planting, axis: int) -> tuple[float, float]:
@@ -22,7 +22,7 @@ def working_drag(plan: Planting, axis: int) -> tuple[float, float]:
 def passive(own: float, coefficient: float) -> float:
     """What is added to an axis's ``own`` coefficient of drag. Where more would be taken away than a vehicle within slop is sure to have, so
     that the water would push it on, as much is added."""
-    return coefficient if SURE * own + coefficient >= 0.0 else abs(coefficient)
+    return coefficient if LEAST_COEFFICIENT * own + coefficient >= 0.0 else abs(coefficient)
 
 
 class QuadraticDrag(Effect):

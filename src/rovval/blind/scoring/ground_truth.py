@@ -16,8 +16,8 @@ Row = Mapping[str, Any]  # one effect of a label
 TARGETED = {"added_mass", "linear_drag", "quadratic_drag", "inertia_error", "thruster_degraded", "thruster_fault_onset"}
 TARGETED |= {"thruster_reversed", "thruster_misaligned", "thruster_interaction"}  # by axis or thruster, as the library has them
 EARLY_S = 10.0  # an onset within the first window is no onset to a diagnosis in windows of 10 s
-MAIN = 0.5  # an axis belongs to an effect that pushes it at least half as hard as its hardest
-ABOUT = {"added_mass": "inertia_error", "inertia_error": "added_mass"}  # one law about roll, pitch and yaw
+MAIN_AXIS = 0.5  # an axis belongs to an effect that pushes it at least half as hard as its hardest
+SAME_INERTIA = {"added_mass": "inertia_error", "inertia_error": "added_mass"}  # one law about roll, pitch and yaw
 CHANNEL_AXIS = {"LinVelX": "surge", "LinVelY": "sway", "LinVelZ": "heave", "Depth": "heave", "AngVelX": "roll", "Roll": "roll"}
 CHANNEL_AXIS |= {"AngVelY": "pitch", "Pitch": "pitch", "AngVelZ": "yaw", "Heading": "yaw"}
 VELOCITY = dict(zip(AXES, "uvwpqr", strict=True))
@@ -75,7 +75,7 @@ def alias(effect: Row, cause: Said) -> str | None:
     elif effect["name"] == "thruster_degraded" and said == f"thruster_fault_onset{on}":
         if cause.onset_s is not None and cause.onset_s < EARLY_S:
             return "a loss from the first window on is a loss all the time"
-    elif effect["name"] in ABOUT and effect["target"] in ("roll", "pitch", "yaw") and said == ABOUT[effect["name"]] + on:
+    elif effect["name"] in SAME_INERTIA and effect["target"] in ("roll", "pitch", "yaw") and said == SAME_INERTIA[effect["name"]] + on:
         return "about an axis of rotation the motion shows the sum of inertia and added inertia and nothing of either"
     return None
 
@@ -89,7 +89,7 @@ def axes(effect: Row, vehicle: Path) -> set[str]:
     mass = [nominal.mass + float(nominal.added_mass[i, i]) for i in range(3)]
     turn = [(float(nominal.inertia[i, i]) + float(nominal.added_mass[i + 3, i + 3])) / scales(nominal).length for i in range(3)]
     push = {axis: size["wrench_rms"][axis] / m for axis, m in zip(AXES, [*mass, *turn], strict=True)}
-    return {axis for axis, value in push.items() if value >= MAIN * max(push.values())}
+    return {axis for axis, value in push.items() if value >= MAIN_AXIS * max(push.values())}
 
 
 def goes_with(effect: Row) -> str | None:

@@ -16,8 +16,8 @@ from rovval.diagnose.result.diagnosis import Cause
 from rovval.vehicle.model import Vehicle
 
 IN_GROUP = 0.8  # of what the first name leaves: the share of probability that the other members of its group are given
-LEAST = 1e-3  # probability on the truth is never counted lower, so that a log score stays finite
-GROUP = 3  # names of a confusion group that count
+LEAST_PROBABILITY = 1e-3  # probability on the truth is never counted lower, so that a log score stays finite
+LARGEST_GROUP = 3  # names of a confusion group that count
 
 
 def score_log(
@@ -33,7 +33,7 @@ def score_log(
     pairs = _paired(known, causes)
     first = causes[0] if causes else ground_truth.Member(ranking[0].effect if ranking else "")
     one = known[0] if len(known) == 1 else None
-    group = [ground_truth.Member(n, causes[0].onset_s if n == causes[0].effect else None) for n in causes[0].group[:GROUP]] if causes else []
+    group = [ground_truth.Member(n, causes[0].onset_s if n == causes[0].effect else None) for n in causes[0].group[:LARGEST_GROUP]] if causes else []
     shrinkage, best = diagnosis.shrinkage.total, oracle.get("dynamic")
     found: dict[str, Any] = {
         "verdict": diagnosis.verdict,
@@ -63,7 +63,7 @@ def score_log(
         "of_oracle": min(shrinkage / best, 1.5) if best is not None and best >= 0.1 and known and causes else None,
         "cpu_s": answer["cpu_s"],
     }
-    found["log_score"] = log(max(found["p_truth"], LEAST)) if found["p_truth"] is not None else None
+    found["log_score"] = log(max(found["p_truth"], LEAST_PROBABILITY)) if found["p_truth"] is not None else None
     found["parameters"] = [row for e, c in pairs for row in _numbers(e, c, vehicle)]
     found["floors"] = {
         method: any(ground_truth.accepts(e, ground_truth.Member(name)) for e in known) if known else bool(name)

@@ -10,7 +10,7 @@ import numpy as np
 from rovval.core.channels import AXES
 from rovval.effects.effect import Effect, Parameter, Tolerance
 from rovval.effects.lanes import Array, Lanes, reference_drag
-from rovval.vehicle.model import Vehicle, square
+from rovval.vehicle.model import Vehicle, as_matrix
 
 SPLIT = 0.1  # m/s, rad/s: drag is known as a whole at this speed; how much of it is linear is off by as much as that (chosen)
 UNKNOWN = 0.5  # m/s, rad/s: the same for an axis without linear drag in the file, where nobody has measured it (chosen)
@@ -19,7 +19,7 @@ UNKNOWN = 0.5  # m/s, rad/s: the same for an axis without linear drag in the fil
 def _tolerance(parameter: Parameter, vehicle: Vehicle, axis: str) -> float:
     """Relative, of the linear drag that ``scale`` refers to."""
     i, (linear, quadratic) = AXES.index(axis), reference_drag(vehicle)
-    known = np.diag(square(vehicle.body.linear_drag))[i] > 0
+    known = np.diag(as_matrix(vehicle.body.linear_drag))[i] > 0
     return float(1.0 + (SPLIT if known else UNKNOWN) * quadratic[i] / linear[i])
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from rovval.plant.inputs import Inputs
 from rovval.plant.model import MODELS, Plant
-from rovval.vehicle.model import Vehicle, allocation, rigid_body_mass, square
+from rovval.vehicle.model import Vehicle, allocation, as_matrix, rigid_body_mass
 
 RPM = 70.0
 # Thesis table 6.1, N (printed "Nm"), thrusters T0 to T6.
@@ -19,7 +19,7 @@ PRINTED = {
     "MATLAB": (82.7, 31.3, 83.8, 87.0, 35.2, 86.7, 31.4),
     "ROS": (80.5, 30.4, 78.7, 82.1, 31.7, 80.3, 29.5),
 }
-MOMENT = 1e-6  # s, short enough that drag has done nothing yet
+STEP_S = 1e-6  # s, short enough that drag has done nothing yet
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,9 +50,9 @@ def _thrusts(vehicle: Vehicle, model: str) -> list[float]:
     speed = np.repeat(np.concatenate([np.eye(k), np.zeros((1, k))]) * RPM / 60.0, 2, axis=0)
     plant = Plant(vehicle, model)
     start, zero = 2 * np.arange(k + 1), np.zeros((k + 1, 6))
-    motion = plant.simulate(Inputs(MOMENT, speed, hold=True), start, 1, zero, zero, np.tile(plant.null, (k + 1, 1)))
-    mass = rigid_body_mass(vehicle.body) + (square(vehicle.body.added_mass) if model == "fossen" else 0.0)
-    force = (motion.nu[:k, 1] - motion.nu[k, 1]) / MOMENT @ mass.T
+    motion = plant.simulate(Inputs(STEP_S, speed, hold=True), start, 1, zero, zero, np.tile(plant.null, (k + 1, 1)))
+    mass = rigid_body_mass(vehicle.body) + (as_matrix(vehicle.body.added_mass) if model == "fossen" else 0.0)
+    force = (motion.nu[:k, 1] - motion.nu[k, 1]) / STEP_S @ mass.T
     return [float(f[:3] @ d) for f, d in zip(force, allocation(vehicle)[:3].T, strict=True)]
 
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from rovval.core.data import Array, RawLog
 from rovval.core.errors import BadInput, Finding, RovvalError, UsageProblem, all_at_once
-from rovval.ingest.clock import settle
+from rovval.ingest.clock import increasing_stamps
 from rovval.ingest.files import sha256
 from rovval.ingest.profile import ATTITUDE, Profile, Source
 
@@ -70,7 +70,7 @@ def read(path: Path, profile: Profile) -> RawLog:
     signals: dict[str, Any] = {}
     for key, m in logged.items():
         try:
-            rows, t, found = settle(stamps[key] - t0, np.arange(1, len(m.record) + 1), key[0])
+            rows, t, found = increasing_stamps(stamps[key] - t0, np.arange(1, len(m.record) + 1), key[0])
         except BadInput as error:
             findings.append(Finding("unusable_topic", key[0], error.message))
             continue

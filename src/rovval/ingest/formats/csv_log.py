@@ -13,7 +13,7 @@ from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, all_at_once
 from rovval.core.units import SI
 from rovval.ingest import text as _text
-from rovval.ingest.clock import DAY_S, settle
+from rovval.ingest.clock import DAY_S, increasing_stamps
 from rovval.ingest.files import sha256
 from rovval.ingest.profile import Profile, Source
 
@@ -55,7 +55,7 @@ def read(path: Path, profile: Profile) -> RawLog:
     text = frame(table, {c: at for _, columns in where.values() for c, at in columns.items()} | _clock_columns(profile, table))
     values, found = numbers(_only_numbers(text, profile), table, str(path))
     logged, t0_ns = stamps(path, profile, text, values)
-    rows, t, clock_found = settle(logged, np.array(table.lines), str(path))
+    rows, t, clock_found = increasing_stamps(logged, np.array(table.lines), str(path))
     start = {"time_of_day_s_at_start": f"{float(t[0]) % DAY_S:.3f}"} if profile.time.kind == "time_of_day" else {}
     signals = {}
     for name, (source, columns) in where.items():
@@ -124,8 +124,8 @@ _HINT = "rename the columns, give --profile for another source, or write a profi
 
 
 def _near(column: str, header: Sequence[str]) -> str:
-    close = difflib.get_close_matches(_text.bare(column), [_text.bare(h) for h in header], n=3, cutoff=0.6)
-    names = [h for h in header if _text.bare(h) in close]
+    close = difflib.get_close_matches(_text.plain_name(column), [_text.plain_name(h) for h in header], n=3, cutoff=0.6)
+    names = [h for h in header if _text.plain_name(h) in close]
     return f"{column!r}" + (f" (near: {', '.join(repr(n) for n in names)})" if names else "")
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from rovval.core.data import Array, RawLog
 from rovval.core.errors import BadInput, Finding, RovvalError, all_at_once
-from rovval.ingest.clock import settle
+from rovval.ingest.clock import increasing_stamps
 from rovval.ingest.files import sha256
 from rovval.ingest.profile import ATTITUDE, Profile, Source
 
@@ -133,7 +133,7 @@ def _signals(path: Path, topic: _Topic, t0: int, findings: list[Finding]) -> dic
     ns = np.array(topic.header if topic.stamp == "header" else topic.record, dtype=np.int64)
     where = f"{path}: {topic.name}"
     try:
-        rows, t, found = settle(np.asarray((ns - t0) * 1e-9, dtype=np.float64), np.arange(1, len(ns) + 1), where)
+        rows, t, found = increasing_stamps(np.asarray((ns - t0) * 1e-9, dtype=np.float64), np.arange(1, len(ns) + 1), where)
     except BadInput as error:
         findings.append(Finding("unusable_topic", topic.name, error.message.removeprefix(f"{where}: ")))
         return {}
