@@ -1,4 +1,4 @@
-"""All that one pass of the algorithm finds: the problem, what was searched in it, and the decision; and which of two passes is told."""
+"""All that one pass of the algorithm finds: the problem, what was searched in it, and the decision; and which of two passes is reported."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """The verdict: explained, partly explained, unknown, or no gap. It is decided here and nowhere else.
 
-What was found is named if no reason speaks against it (`rejection`). Causes whose value does not hold still along the log are left out and told as what is
+What was found is named if no reason speaks against it (`rejection`). Causes whose value is not constant along the log are left out and reported as what is
 left; faults of sensors that the parity residuals isolate by themselves stay, whatever speaks against the others.
 """
 
@@ -112,7 +112,7 @@ def _not_isolated(problem: Problem, selection: Selection, assessed: Assessment |
 def _constant(
     problem: Problem, selection: Selection, assessed: Assessment, general: GenericForces, residuals: list[Array]
 ) -> tuple[Selection, Assessment]:
-    """The causes without those that are not constant, which are told as what is left."""
+    """The causes without those that are not constant, which are reported as what is left."""
     kept = tuple(n for n in selection.causes if n.hypothesis.name not in assessed.inconstant)
     if not kept:
         return selection, replace(assessed, rejected=True)

@@ -49,19 +49,21 @@ class Detection:
         return self.evidence[self.best]
 
 
-def detect(data: NormalEquations, base: Prior, slop: Prior, hypotheses: Mapping[str, Prior], design_effect: float, everything: Array, seed: int) -> Detection:
+def detect(
+    data: NormalEquations, base: Prior, tolerance: Prior, hypotheses: Mapping[str, Prior], design_effect: float, everything: Array, seed: int
+) -> Detection:
     """Evidence of every hypothesis, in the log and in null logs.
 
     Args:
         data: normal equations of the library, linearised at the baseline.
         base: prior of what is free in the baseline.
-        slop: tolerances, by which the coefficients of null logs are off.
+        tolerance: prior of healthy coefficients, by which those of null logs are off.
         hypotheses: prior of what each hypothesis sets free, by label.
         design_effect: design effect of autocorrelated residuals.
         everything: (k,) step that fits the whole library: what it leaves is the disturbance of the null logs.
         seed: of their draws.
     """
-    b = np.concatenate([data.b.sum(axis=0)[None], _draws(data, slop, everything, np.random.default_rng(seed))])
+    b = np.concatenate([data.b.sum(axis=0)[None], _draws(data, tolerance, everything, np.random.default_rng(seed))])
     A, real = data.A.sum(axis=0), np.array([1.0, *np.zeros(DRAWS)])[:, None]
     ground = _evidence(data, A, b, real, base, design_effect)
     evidence, best = dict[str, float](), np.full(DRAWS, -np.inf)
@@ -86,13 +88,13 @@ def _evidence(data: NormalEquations, A: Array, b: Array, real: Array, prior: Pri
     return np.asarray(explained - volume)
 
 
-def _draws(data: NormalEquations, slop: Prior, everything: Array, rng: np.random.Generator) -> Array:
+def _draws(data: NormalEquations, tolerance: Prior, everything: Array, rng: np.random.Generator) -> Array:
     """Right-hand sides (d, k) of null logs, summed over windows."""
     m = len(data.c)
     left = data.b - np.einsum("wij,j->wi", data.A, everything)
     sign = rng.choice([-1.0, 1.0], size=(DRAWS, m // BLOCK + 1)).repeat(BLOCK, axis=1)[:, :m]
     delta = np.zeros((DRAWS, len(data.columns)))
-    if slop.sd:
-        free = data.place(tuple(slop.sd))
-        delta[:, free] = rng.normal(size=(DRAWS, len(free))) * np.array(list(slop.sd.values()))
+    if tolerance.sd:
+        free = data.place(tuple(tolerance.sd))
+        delta[:, free] = rng.normal(size=(DRAWS, len(free))) * np.array(list(tolerance.sd.values()))
     return np.asarray(delta @ data.A.sum(axis=0) + sign @ left)

@@ -93,7 +93,7 @@ def _merit(rest: Baseline, nothing: Baseline) -> float:
 
 
 def _exchanged(problem: Problem, found: list[SelectedCause], i: int, healthy: Posterior, seed: int) -> list[SelectedCause]:
-    """The causes with the i-th under the name that fits best beside the others, and with those that are not told from it there."""
+    """The causes with the i-th under the name that fits best beside the others, and with the group that this log cannot tell from it there."""
     one, whole = found[i], found[-1].fit
     taken, rest = {n.hypothesis.name for n in found}, [n.hypothesis for n in found if n is not one]
     others = [c for c in one.candidates if c.hypothesis.name not in taken and c.evidence > ALTERNATIVE_EVIDENCE * one.candidates[0].evidence]

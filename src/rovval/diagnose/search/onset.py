@@ -41,9 +41,9 @@ class Stretch:
     b: Array
 
     @classmethod
-    def of(cls, data: NormalEquations, windows: slice, slop: Prior, design_effect: float) -> Stretch:
+    def of(cls, data: NormalEquations, windows: slice, tolerance: Prior, design_effect: float) -> Stretch:
         """Coefficients are fitted on these windows alone."""
-        free, ridge, offset = free_columns(data, slop, design_effect)
+        free, ridge, offset = free_columns(data, tolerance, design_effect)
         return cls(*eliminated(data.A[windows].sum(axis=0), data.b[windows].sum(axis=0), free, ridge, ridge @ offset))
 
     def explained(self, at: np.ndarray, prior: Prior, design_effect: float) -> tuple[float, Array]:
