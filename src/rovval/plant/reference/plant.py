@@ -1,7 +1,7 @@
 """The same plant in plain NumPy, one array a quantity: what the compiled kernel is tested against, lane by lane.
 
-Written from the equations (`oracle_motion`, `oracle_log`), not from the kernel's text. It shares the lowering of the effects and their
-functions of the state, and nothing of the integration.
+Written from the equations (`motion`, `inputs`), not from the kernel. It shares the lowering of the effects and their functions of the state, and
+nothing of the integration.
 """
 
 from __future__ import annotations

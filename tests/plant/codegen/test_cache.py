@@ -1,0 +1,22 @@
+"""Where compiled kernels are kept, and what whoever waits for one is told."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+
+@pytest.mark.slow
+def test_a_kernel_cache_that_cannot_be_written_is_no_hindrance(tmp_path):
+    """And whoever waits for a compilation is told so on stderr."""
+    code = "import plant_cases as c; from rovval.plant import Plant; print(c.run(Plant(c.merlin())).nu.shape)"
+    blocked = tmp_path / "file"
+    blocked.write_text("")
+    environment = {**os.environ, "ROVVAL_CACHE": str(blocked / "below"), "PYTHONPATH": str(Path(__file__).parents[2] / "cases")}
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "(1, 11, 6)" and "compiling" in done.stderr
+    assert "once for this machine" not in done.stderr and "ROVVAL_CACHE" in done.stderr
