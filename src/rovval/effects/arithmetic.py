@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-Number = Any  # a float in the compiled kernel, an array of lanes in the oracle
+Number = Any  # a float in the compiled kernel, an array of lanes in the reference plant
 
 
 def positive(x: Number) -> Number:

@@ -51,7 +51,7 @@ EFFECT = Effect(
     stage="delay",
 )
 FULL_KERNEL = True
-# Parameters by whose sum a sensor is late, and what it writes of u v w p q r x y z phi theta psi (`plant.late`).
+# Parameters by whose sum a sensor is late, and what it writes of u v w p q r x y z phi theta psi (`plant.sensor_delay`).
 LATE = {("delay[velocity]",): (0, 1, 2), ("delay[attitude]",): (3, 4, 5, 9, 10, 11), ("delay[depth]",): (8,)}
 
 

@@ -41,7 +41,7 @@ EFFECT = Effect(
     far=(3.0,),  # a lag of half a second is no multiple of a short one (chosen)
     stage="filter",
 )
-LATE = {("tau", "dead"): (0, 1, 2)}  # by their sum it is late for a motion that changes slowly, and it writes u v w (`plant.late`)
+LATE = {("tau", "dead"): (0, 1, 2)}  # by their sum it is late for a motion that changes slowly, and it writes u v w (`plant.sensor_delay`)
 
 
 def observe(log: Log, p: Mapping[str, Array]) -> Log:
