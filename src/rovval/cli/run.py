@@ -38,13 +38,14 @@ def command(
       rovval run pipelines/nightly.toml
       rovval run pipelines/nightly.toml --workers 8 --json
     """
-    from rovval.pipeline import batch, config, summary
+    from rovval.pipeline import batch, config
+    from rovval.report.batch.terminal import text
 
     if dry_run:
         _say_plan(batch.dry_run(pipeline, retry), json_)
         return
     document = batch.run(pipeline, workers, scheduler, retry, output.progress(quiet))
-    output.result_json(document) if json_ else output.result(summary.text(document))
+    output.result_json(document) if json_ else output.result(text(document))
     output.say(f"every run of it on one page: {config.load(pipeline).reports / batch.INDEX}", quiet)
     raise typer.Exit(document["exit_code"])
 

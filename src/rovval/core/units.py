@@ -65,3 +65,8 @@ def to_si(unit: str) -> float:
 def in_degrees(value: float, unit: str) -> tuple[float, str]:
     """The value as people read it: radians become degrees, all else stays."""
     return (value * DEGREES, DEGREE_UNITS[unit]) if unit in DEGREE_UNITS else (value, unit)
+
+
+def integral_unit(unit: str) -> str:
+    """Unit of the integral over time of something in ``unit``: m for m/s, m*s for m."""
+    return unit.removesuffix("/s") if unit.endswith("/s") else f"{unit}*s"

@@ -13,6 +13,7 @@ from rovval.pipeline import cluster, config, lock, summary
 from rovval.pipeline.plan import Plan, Task, plan
 from rovval.pipeline.processes import execute
 from rovval.pipeline.worker import Outcome, set_aside, work
+from rovval.report.batch.terminal import reasons
 from rovval.storage.atomic import json_text, sweep
 
 SUMMARY, INDEX = "summary.json", "index.html"
@@ -39,7 +40,7 @@ def run(
         progress("plan", 0.0)
         todo = plan(pipeline, path.resolve().parent, retry)
         why = todo.why  # before the work changes it
-        progress(summary.reasons(why) or "plan", 0.0)
+        progress(reasons(why) or "plan", 0.0)
         finished: list[Mapping[str, Any]] = []
         aside = list(todo.set_aside)
         count = len(todo.todo)

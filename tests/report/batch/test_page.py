@@ -9,6 +9,7 @@ from page_case import Balance
 
 from rovval.pipeline import batch, summary
 from rovval.report.batch import html as batch_html
+from rovval.report.batch import terminal
 
 
 def record(number: int = 0, **steps: Any) -> dict[str, Any]:
@@ -49,7 +50,7 @@ def test_what_needs_attention_comes_first():
     text = said([record(0), record(1), stopped], aside)
     document = summary.summarise("nightly", [record(0), stopped], (), (), (), (), 3.0, {})
     assert document["left_sane_limits"] == [{"log": stopped["log"], "run": stopped["run"], "stops": ["stretch from 0.0 s stopped at 4.1 s"]}]
-    assert f"left limits  {stopped['log']}: stretch from 0.0 s" in summary.text(document)
+    assert f"left limits  {stopped['log']}: stretch from 0.0 s" in terminal.text(document)
     assert "2 beyond a tolerance, 1 failed, 1 quarantined and 1 left sane limits" in text
     order = [text.index(word) for word in ("Tolerance exceeded (2)", "Failed (1)", "Quarantined (1)", "left sane limits (1)", "Runs (3)")]
     assert order == sorted(order)

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval.core.errors import BadInput, UsageProblem
+from rovval.core.units import integral_unit
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -42,7 +43,7 @@ class Metric:
             return "1"
         if self.unit == "same":
             return channel_unit
-        return channel_unit.removesuffix("/s") if channel_unit.endswith("/s") else f"{channel_unit}*s"
+        return integral_unit(channel_unit)
 
 
 def kept(error: Array, ok: Flags, measured: Array | None = None) -> tuple[Array, Array]:

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import floor, isfinite, log10
 
-from rovval.comparison import metrics
 from rovval.core.units import in_degrees
 
 MISSING = "-"  # what is printed for a value that is not known
@@ -52,11 +51,6 @@ def estimate(value: float | None, low: float | None, high: float | None, unit: s
     if value is None or low is None or high is None:
         return quantity(value, unit)
     return f"{number(in_degrees(value, unit)[0])} {interval(low, high, unit)}"
-
-
-def iae_unit(unit: str) -> str:
-    """Unit of the integral over time of an absolute error in ``unit``: m for m/s, m*s for m."""
-    return metrics.get("iae").unit_of(unit)
 
 
 def per_cent(share: float | None) -> str:

@@ -15,9 +15,8 @@ from urllib.parse import quote
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from rovval.core.units import DEGREE_UNITS, DEGREES
+from rovval.core.units import DEGREE_UNITS, DEGREES, integral_unit
 from rovval.report.common import numbers
-from rovval.report.common.numbers import iae_unit
 
 ROOM = Path(__file__).parent.parent
 FORMATS = (numbers.number, numbers.signed, numbers.quantity, numbers.interval, numbers.per_cent, numbers.per_cents, numbers.share,
@@ -36,7 +35,7 @@ def _environment() -> Environment:
         loader=FileSystemLoader(ROOM / "templates"), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     environment.filters |= {f.__name__: f for f in FORMATS} | {"path": quote}
-    environment.globals |= {"asset": _asset, "MISSING": numbers.MISSING, "DEGREES": DEGREES, "DEGREE_UNITS": DEGREE_UNITS, "iae_unit": iae_unit}
+    environment.globals |= {"asset": _asset, "MISSING": numbers.MISSING, "DEGREES": DEGREES, "DEGREE_UNITS": DEGREE_UNITS, "integral_unit": integral_unit}
     return environment
 
 

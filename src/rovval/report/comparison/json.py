@@ -10,7 +10,7 @@ from typing import Any
 from rovval.comparison import CORE, metrics
 from rovval.comparison.error_growth import HORIZONS_S, error_growth
 from rovval.core.data import ChannelError, Comparison
-from rovval.core.units import DEGREE_UNITS, DEGREES
+from rovval.core.units import DEGREE_UNITS, DEGREES, integral_unit
 from rovval.report.common.versions import versions
 from rovval.report.comparison import words
 
@@ -66,7 +66,7 @@ def _row(row: ChannelError) -> dict[str, Any]:
         **{name: getattr(row, name) for name in CORE},
         "n": row.n,
         "coverage": row.coverage,
-        "iae_unit": metrics.get("iae").unit_of(row.unit),
+        "iae_unit": integral_unit(row.unit),
         "baseline_mae": row.baseline_mae,
         "baseline_rmse": row.baseline_rmse,
         "skill": row.skill,

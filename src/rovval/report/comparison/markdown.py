@@ -5,9 +5,9 @@ from __future__ import annotations
 from rovval.comparison.error_growth import HORIZONS_S, error_growth
 from rovval.core.channels import AXES
 from rovval.core.data import ChannelError, Comparison
-from rovval.core.units import in_degrees
+from rovval.core.units import in_degrees, integral_unit
 from rovval.report.common.markdown import bullets, grid
-from rovval.report.common.numbers import MISSING, iae_unit, number, per_cent, quantity, signed
+from rovval.report.common.numbers import MISSING, number, per_cent, quantity, signed
 from rovval.report.comparison import words
 
 
@@ -79,6 +79,6 @@ def _both(row: ChannelError | None, name: str) -> str:
         return MISSING
     value, time = getattr(row, name), name == "iae"
     shown, unit = in_degrees(value, row.unit)
-    own = iae_unit(row.unit) if time else row.unit
-    degrees = f" ({number(shown)} {iae_unit(unit) if time else unit})" if unit != row.unit else ""
+    own = integral_unit(row.unit) if time else row.unit
+    degrees = f" ({number(shown)} {integral_unit(unit) if time else unit})" if unit != row.unit else ""
     return f"{number(value)} {own}{degrees}"

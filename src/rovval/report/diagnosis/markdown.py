@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from rovval.core.units import integral_unit
 from rovval.diagnose.result.diagnosis import AxisGap, Cause, Diagnosis, ScheduleLeg, Shrinkage
 from rovval.report.common.markdown import bullets, grid, under
 from rovval.report.common.numbers import (
     MISSING,
     estimate,
-    iae_unit,
     interval,
     number,
     per_cent,
@@ -46,7 +46,7 @@ def text(d: Diagnosis) -> str:
 def _axes(d: Diagnosis) -> str:
     rows = []
     for axis, row in d.gap.axes.items():
-        values = [quantity(row.rms, row.unit), quantity(row.floor_rms, row.unit), quantity(row.iae, iae_unit(row.unit))]
+        values = [quantity(row.rms, row.unit), quantity(row.floor_rms, row.unit), quantity(row.iae, integral_unit(row.unit))]
         rows.append([axis, *values, per_cent(row.share)])
     return grid(["axis", "rms", "sensor noise", "IAE", "share"], rows) if rows else ""
 
