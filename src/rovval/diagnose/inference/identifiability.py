@@ -45,11 +45,11 @@ def identifiable(problem: Problem, wanted: Sequence[int]) -> tuple[tuple[int, ..
             break
         worst = left.pop(int(shown.argmin()))
         why = f"not told apart: a typical size shows with {shown.min():.1f} standard errors while the others move"
-        out[worst] = _confused(problem, worst, (*left, *slop), why)
+        out[worst] = confused_with(problem, worst, (*left, *slop), why)
     return tuple(left), out
 
 
-def _confused(problem: Problem, slot: int, others: Sequence[int], why: str) -> dict[str, Any]:
+def confused_with(problem: Problem, slot: int, others: Sequence[int], why: str) -> dict[str, Any]:
     """What a slot that is excited is confused with: tuned ones and coefficients within slop, by coherence; what only a start elsewhere shows (an
     onset, a period) has no signature of its own."""
     others = [s for s in others if s != slot and s in problem.likelihood.total.columns]
@@ -77,7 +77,7 @@ def fit_identifiable(
             return fitted, low, high, out
         worst = slots[int(half.argmax())]
         why = f"not told apart: its 90 % interval with slop of the others is +-{half.max():.1f} typical sizes"
-        out[worst] = _confused(problem, worst, tuple(dict.fromkeys((*slots, *problem.tolerance.sd))), why)
+        out[worst] = confused_with(problem, worst, tuple(dict.fromkeys((*slots, *problem.tolerance.sd))), why)
         slots = tuple(s for s in slots if s != worst)
     return None, np.zeros(0), np.zeros(0), out
 
