@@ -10,7 +10,7 @@ import polars as pl
 
 from rovval.core.data import Array
 from rovval.core.errors import BadInput, Finding, all_at_once
-from rovval.ingest.text import Table, cells, first_few
+from rovval.ingest.text_table import Table, cells, first_few
 
 BLANK = ("", "nan", "-", "--", "null", "none", "n/a", "na", "#n/a", "-nan", "nan(ind)", "-nan(ind)")
 DECIMAL_COMMA = r"^[+-]?\d+,\d*([eE][+-]?\d+)?$"

@@ -12,7 +12,7 @@ import numpy as np
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, all_at_once
 from rovval.core.units import SI
-from rovval.ingest import text as _text
+from rovval.ingest import text_table
 from rovval.ingest.clock import DAY_S, increasing_stamps
 from rovval.ingest.files import sha256
 from rovval.ingest.profile import Profile, Source
@@ -38,10 +38,10 @@ def sniff(path: Path) -> bool:
 
 def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     """Required columns of ``profile`` that the file has not, and `absent` ones that it has."""
-    table = _text.split(_text.decode(path, HEAD), _wanted(profile))
+    table = text_table.split(text_table.decode(path, HEAD), _wanted(profile))
     header = table.header if table else ()
-    gone = [c for c in _wanted(profile, required=True) if not any(_text.fits(c, h) for h in header)]
-    return (*gone, *(f"not {c}" for c in profile.absent if any(_text.fits(c, h) for h in header)))
+    gone = [c for c in _wanted(profile, required=True) if not any(text_table.fits(c, h) for h in header)]
+    return (*gone, *(f"not {c}" for c in profile.absent if any(text_table.fits(c, h) for h in header)))
 
 
 def read(path: Path, profile: Profile) -> RawLog:
@@ -71,17 +71,17 @@ def _wanted(profile: Profile, required: bool = False) -> list[str]:
     return [*profile.time.columns, *(c for s in sources for c in ((s.column,) if s.column else s.columns))]
 
 
-def _table(path: Path, profile: Profile) -> _text.Table:
-    table = _text.split(_text.decode(path), _wanted(profile))
+def _table(path: Path, profile: Profile) -> text_table.Table:
+    table = text_table.split(text_table.decode(path), _wanted(profile))
     if table is None:
         wanted = ", ".join(_wanted(profile, required=True))
         hint = "give --profile for another source, or write a profile (a TOML file) for this one"
-        raise BadInput(f"{path}: no header of profile {profile.name!r} in its first {_text.HEADER_WITHIN} lines; wanted: {wanted}", hint)
+        raise BadInput(f"{path}: no header of profile {profile.name!r} in its first {text_table.HEADER_WITHIN} lines; wanted: {wanted}", hint)
     return table
 
 
 def _find(path: Path, pattern: str, header: Sequence[str]) -> list[int]:
-    hits = [i for i, name in enumerate(header) if _text.fits(pattern, name)]
+    hits = [i for i, name in enumerate(header) if text_table.fits(pattern, name)]
     exact = [i for i in hits if header[i] == pattern]
     if "*" not in pattern and len(hits) > 1 and len(exact) != 1:
         names = ", ".join(repr(header[i]) for i in hits)
@@ -89,7 +89,7 @@ def _find(path: Path, pattern: str, header: Sequence[str]) -> list[int]:
     return exact if exact and "*" not in pattern else hits
 
 
-def _columns(path: Path, profile: Profile, table: _text.Table) -> dict[str, tuple[Source, dict[str, int]]]:
+def _columns(path: Path, profile: Profile, table: text_table.Table) -> dict[str, tuple[Source, dict[str, int]]]:
     """Channel -> its source and columns (name -> position). Raises `BadInput` with every missing column and near matches."""
     where: dict[str, tuple[Source, dict[str, int]]] = {}
     gone, units = [], []
@@ -102,7 +102,7 @@ def _columns(path: Path, profile: Profile, table: _text.Table) -> dict[str, tupl
         units += [u for _, found in hits for i in found if (u := _unit_clash(table.header[i], source))]
         if "*" in name:
             for at in hits[0][1]:
-                member = _text.member(patterns[0], table.header[at]) or ""
+                member = text_table.member(patterns[0], table.header[at]) or ""
                 key = name.replace("*", member)
                 if key in where:
                     first = next(iter(where[key][1]))
@@ -124,27 +124,27 @@ _HINT = "rename the columns, give --profile for another source, or write a profi
 
 
 def _near(column: str, header: Sequence[str]) -> str:
-    close = difflib.get_close_matches(_text.plain_name(column), [_text.plain_name(h) for h in header], n=3, cutoff=0.6)
-    names = [h for h in header if _text.plain_name(h) in close]
+    close = difflib.get_close_matches(text_table.plain_name(column), [text_table.plain_name(h) for h in header], n=3, cutoff=0.6)
+    names = [h for h in header if text_table.plain_name(h) in close]
     return f"{column!r}" + (f" (near: {', '.join(repr(n) for n in names)})" if names else "")
 
 
 def _unit_clash(cell: str, source: Source) -> str:
-    stated = (_text.stated_unit(cell) or "").strip()
+    stated = (text_table.stated_unit(cell) or "").strip()
     unit = stated if stated in SI else SPELLINGS.get(stated.casefold(), stated)
     if unit not in SI or source.unit not in SI or SI[unit] == SI[source.unit]:
         return ""
     return f"column {cell!r} says {stated!r}, the profile says {source.unit!r}"
 
 
-def _clock_columns(profile: Profile, table: _text.Table) -> dict[str, int]:
-    return {f"time.{c}": i for c in profile.time.columns for i in [next(i for i, h in enumerate(table.header) if _text.fits(c, h))]}
+def _clock_columns(profile: Profile, table: text_table.Table) -> dict[str, int]:
+    return {f"time.{c}": i for c in profile.time.columns for i in [next(i for i, h in enumerate(table.header) if text_table.fits(c, h))]}
 
 
 def _only_numbers(text: pl.DataFrame, profile: Profile) -> pl.DataFrame:
     return text.select([c for c in text.columns if not (profile.time.kind == "datetime" and c.startswith("time."))])
 
 
-def _unused(profile: Profile, table: _text.Table, where: dict[str, tuple[Source, dict[str, int]]]) -> list[str]:
+def _unused(profile: Profile, table: text_table.Table, where: dict[str, tuple[Source, dict[str, int]]]) -> list[str]:
     used = {c for _, columns in where.values() for c in columns}
-    return [h for h in table.header if h and h not in used and not any(_text.fits(c, h) for c in profile.time.columns)]
+    return [h for h in table.header if h and h not in used and not any(text_table.fits(c, h) for c in profile.time.columns)]
