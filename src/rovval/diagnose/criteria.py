@@ -6,11 +6,60 @@ development logs with a known answer (`rovval blind`). What belongs to one effec
 
 # -- windows: what of a log is measurement, and how it is cut -----------------------------------------------------------------------
 
+LEAST_NOISE = {  # m/s, rad/s, rad, m: standard deviation below which no sensor of an ROV is believed (chosen; a noise-free log divides by nothing)
+    "u": 1e-3, "v": 1e-3, "w": 1e-3, "p": 1e-3, "q": 1e-3, "r": 1e-3, "phi": 1e-3, "theta": 1e-3, "psi": 2e-3, "x": 5e-3, "y": 5e-3, "z": 5e-3,
+}  # fmt: skip
+OUTLIER_SIGMA = 8.0  # standard deviations: a sample this far from the mean of its neighbours is an outlier of the sensor (chosen)
+QUANTISED_LEVELS, QUANTISED_REPEATS = 3, 5  # values that repeat themselves, and how often each does on average, in a channel of coarse steps (chosen)
+QUANTISED_ROUNDING = 1e-6  # of the largest step between values: a smaller one is rounding (chosen)
+QUANTISED_MISFIT = 0.1  # of a step: by how much values may miss the grid of steps (chosen)
+SATURATED_SAMPLES = 8  # samples at the end of a range that are no coincidence (chosen)
+SATURATED_PROMINENCE = 5  # times as many as at any of the next three values (chosen)
+SATURATED_LEVELS = 100  # values that a channel takes at least: with fewer the log is written in coarse steps (chosen)
+SATURATED_RISE = 3.0  # times the sensor's noise by which the end of a range is reached in one sample: a steady state is neared slowly (chosen)
+SATURATED_LEAST_RISE = 1e-3  # m/s, rad/s: the same of a log without noise (chosen)
+HELD_SHARE = 0.3  # of the samples that repeat the one before: more is a slow sensor, written at the log's rate (chosen)
+SLOWEST_PING, PING_REGULARITY = 30, 0.9  # samples between pings at most, and share of the pings that keep such a period (chosen)
+AT_REST_S, AT_REST_M = 3.0, 0.03  # s, m: aground is at rest so long within the noise of a depth sensor (chosen)
+CONTACT_DEPTH_RANGE = 0.3  # m: contact is looked for in logs that change depth by more (chosen)
+CONTACT_DEPTH_MARGIN = 0.08  # m: within this of the ends of the depth range that the log covers (chosen)
+LOOP_EXPLAINED = 0.05  # share of a moment's variance that angle and rate must account for, for an autopilot to be seen (chosen)
+FEWEST_WINDOWS = 3  # windows of a run: one to hold out, two to fit on
+MANY_WINDOWS = 6  # windows of a run: with fewer, shorter windows are tried (chosen)
+MEASURED_SHARE = 0.6  # of a window's samples: with fewer measured it is left out (chosen)
+
 
 # -- residuals: sensitivities, parity and normal equations --------------------------------------------------------------------------
 
+UNLOGGED_START_SD = 0.3  # m/s, rad/s, rad: start of what was neither logged nor follows from the pose: anything slow is possible (chosen)
+SLOPE_START_SD = 0.01  # m/s, rad/s: least error of a start taken as the slope of the logged pose over a second (chosen)
+ATTITUDE_DRIFT_SD = 0.004  # rad: slow error of an AHRS within a window, 0.2 degrees (MTi class data sheets)
+SIGN_SMOOTHING = 0.1  # of a velocity's rms: from there on a generic force that depends on its sign has reached its size (chosen)
+LEAST_AXIS_FORCE = 0.01  # of the largest axis's force, and that of the weight: no axis is held to have less, so that none is mute (chosen)
+PARITY_LEAST_SD = (0.005, 0.005, 0.002, 0.001, 0.001, 0.001)  # m, rad: noise of a parity relation below which no sensor is believed (chosen)
+DEAD_RECKONED_SHARE = 0.5  # of its noise: a position that follows the integrated velocity closer was integrated from it (chosen)
+FAULT_SPARE_WINDOWS = 5  # windows more than parameters, from which their scatter says how sure a sensor fault is: six for one
+
 
 # -- inference: prior, noise model, disturbance, MAP fit, cross-validation, intervals -----------------------------------------------
+
+HEALTHY_DEPARTURE = 3.5  # standard deviations of tolerance that healthy coefficients reach (tuning set: 3.3 of some hundred)
+OUT_OF_TOLERANCE = 5.0  # standard deviations of tolerance from which a coefficient is off by more than a tolerance of the stated size
+HELD_OUT_BLOCK = 2  # neighbouring windows that are held out together: 20 s, beyond the memory of hull and thrusters
+DISTURBANCE_WINDOWS = 6  # in fewer windows a steady force and a disturbance cannot be told apart, and none is fitted
+STEADY_FORCE_SD = 0.1  # prior of a steady force of the environment, as a share of the thrusters' rms on its axis
+SEGMENT_CORRELATION = (0.02, 0.98)  # limits of a disturbance's correlation from one segment of a window to the next
+COVERED_BY_NOISE = 0.05  # of the noise's variance: a component of a disturbance that does less than this changes no weight
+MAP_STEPS, QUICK_STEPS = 5, 3  # damped steps of a MAP fit, and of one that only has to show whether it is worth more
+STEP_WORTH = 1.0  # twice the log posterior: for a smaller gain no further step is taken
+RELINEARISED_FROM, RELINEARISED_TIMES = 10.0, 2  # twice the log posterior gained, from which frozen sensitivities are made anew; and how often at most
+PROGRESSIVE_S = (2.5, 5.0)  # s of each window that are fitted before the whole of it (chosen)
+INTERVAL_PROBABILITY = 0.90  # of every interval that is stated
+HARMED_AXIS = 0.05  # an axis whose squared error grows by this share is named (chosen)
+MOST_REFITS = 5  # fits without a part of the logs: of more logs than that, a fifth is left out at a time
+IDENTIFIABLE_ALONE = 3.0  # standard errors with which a typical size shows while nothing else moves (chosen)
+IDENTIFIABLE_JOINTLY = 1.5  # the same while all that is tuned, and every tolerance, moves with it (chosen: a 90 % interval within a typical size)
+WIDEST_INTERVAL = 2.0  # typical sizes: a half interval beyond it, at the fitted point, is no answer (chosen)
 
 PRIOR_WIDTH = 4.0  # wide prior, in typical sizes: keeps a parameter that the log does not see from running away
 FEW_WINDOWS = 6  # chosen: windows that are too few to average the form of an equation over

@@ -50,7 +50,7 @@ def test_size_and_memory_of_what_was_put_in_are_found(quiet, memory_s):
     f[..., 0] = rng.normal(size=f.shape[:2])
     for i in range(1, SEGMENTS):
         f[..., i] = keep * f[..., i - 1] + np.sqrt(1 - keep**2) * rng.normal(size=f.shape[:2])
-    moved = np.einsum("wtci,wi->wtc", to.pushed[0], (f * share[:, None]).reshape(len(f), -1))
+    moved = np.einsum("wtci,wi->wtc", to.segments[0], (f * share[:, None]).reshape(len(f), -1))
     one = linearise(parts[0], origin, ())
     left = [replace(one, r=np.where(parts[0].ok, moved + 0.002 * rng.normal(size=moved.shape), 0.0))]
     found = initial_disturbance(to)
@@ -73,7 +73,7 @@ def test_nothing_is_found_where_nothing_was_put_in(quiet):
 
 def test_fewer_columns_hold_the_same_covariance(quiet):
     parts, _, to, variance = quiet
-    whole, (fewer,) = 0.05 * to.pushed[0], principal_parts(parts, [0.05 * to.pushed[0]], variance)
+    whole, (fewer,) = 0.05 * to.segments[0], principal_parts(parts, [0.05 * to.segments[0]], variance)
     assert fewer.shape[-1] < whole.shape[-1]
     for w in (0, 7):
         a, b = (np.where(parts[0].ok[w], 1 / np.sqrt(variance), 0.0)[..., None] * x[w] for x in (whole, fewer))

@@ -21,9 +21,11 @@ from rovval.diagnose.criteria import (
     GENERIC_BETTER,
     GENERIC_EVIDENCE,
     GENERIC_LEFT,
+    HEALTHY_DEPARTURE,
     INCOMPLETE_EVIDENCE,
     LEAST_EVIDENCE,
     MOST_CAUSES,
+    OUT_OF_TOLERANCE,
     SINGLE_FORCE_EVIDENCE,
     SINGLE_FORCE_SHARE,
     STRAINED_DEPARTURE,
@@ -43,7 +45,6 @@ from rovval.diagnose.decision.consistency import inconsistencies
 from rovval.diagnose.decision.constancy import drifting, variation
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
-from rovval.diagnose.problem.prior import STRAINED, WITHIN
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.search.baseline import SelectedCause
 from rovval.diagnose.search.confusion import form_share
@@ -210,7 +211,7 @@ def assess(
         followed=not case.many or case.sensors or any(benefit.followed for benefit in case.benefits),
         by_parity=any(of_sensor(n) for n in causes) and parity_isolates(problem, fit),
         rejected=any(reason(case) for reason in REASONS),
-        remainder=not case.benefits[0].sure or case.departure > STRAINED or left,
+        remainder=not case.benefits[0].sure or case.departure > OUT_OF_TOLERANCE or left,
         inconstant=_inconstant(problem, causes, fit, case.variation) if case.many else (),
         forces=case.beside_forces,
     )
@@ -220,7 +221,7 @@ def _case(problem: Problem, causes: tuple[SelectedCause, ...], fit: HypothesisFi
     """What speaks for the causes and against them."""
     evidence = laplace_evidence(problem, fit.posterior) - laplace_evidence(problem, healthy)
     filed = benefit_as_filed(problem, fit, residuals)
-    beside = [benefit_beside(problem, fit, healthy, residuals)] if fit.posterior.largest_departure() <= STRAINED else []
+    beside = [benefit_beside(problem, fit, healthy, residuals)] if fit.posterior.largest_departure() <= OUT_OF_TOLERANCE else []
     sensors = all(of_sensor(n) for n in causes) and parity_supports(problem, fit)
     varies = variation(problem, fit, causes) if problem.window_count >= FEW_WINDOWS else {}
     rest = generic_forces(problem, fit.posterior)
@@ -257,4 +258,4 @@ def _prior_cost(problem: Problem, point: Posterior, axes: tuple[str, ...]) -> fl
         here = np.array([axis in axes for axis in part.axes], dtype=bool)
         moves += by_channel[here].sum(axis=0), by_channel.sum(axis=0)
     share = moves[0] / np.maximum(moves[1], 1e-300)
-    return float((np.maximum(point.standardised_departures() ** 2 - WITHIN**2, 0.0) * share[point.effect_count :]).sum())
+    return float((np.maximum(point.standardised_departures() ** 2 - HEALTHY_DEPARTURE**2, 0.0) * share[point.effect_count :]).sum())

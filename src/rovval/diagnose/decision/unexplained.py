@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 from rovval.core.channels import AXES
 from rovval.core.data import Array
-from rovval.diagnose.criteria import ACTING_FORCE, MOST_ACTING, MOST_VARYING, OPEN_GAP, VARYING_FORCE
+from rovval.diagnose.criteria import ACTING_FORCE, MOST_ACTING, MOST_VARYING, OPEN_GAP, OUT_OF_TOLERANCE, VARYING_FORCE
 from rovval.diagnose.inference.gap import noise_floor_loss, weighted_errors
 from rovval.diagnose.inference.laplace import Posterior
-from rovval.diagnose.problem.prior import STRAINED
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.search.discrepancy import GenericForces
 from rovval.diagnose.windows.windows import axis_channels
@@ -33,7 +32,7 @@ class Accounted:
     @property
     def share(self) -> float:
         """Noise and tolerance together; a fit with a coefficient far beyond its tolerance is no healthy vehicle and accounts for nothing."""
-        return self.noise + (0.0 if self.departure > STRAINED else self.tolerance)
+        return self.noise + (0.0 if self.departure > OUT_OF_TOLERANCE else self.tolerance)
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +70,7 @@ def unexplained(problem: Problem, forces: GenericForces, point: Posterior, incon
     by_feature = sorted(((f, forces.evidence([axes[0]], f)) for f in forces.features), key=lambda item: -item[1])
     depends = [f for f, gain in by_feature if gain > VARYING_FORCE * by_feature[0][1] and gain > 0][:MOST_VARYING]
     departures = zip(point.columns[point.effect_count :], point.standardised_departures(), strict=True)
-    beyond = [(problem.plant.slots[c].key, float(z)) for c, z in departures if abs(z) > STRAINED]
+    beyond = [(problem.plant.slots[c].key, float(z)) for c, z in departures if abs(z) > OUT_OF_TOLERANCE]
     strained = max(beyond, key=lambda one: abs(one[1]), default=None)
     return Unexplained(tuple(axes), tuple(depends), forces.held_out_gain(problem.folds), strained, tuple(inconstant))
 

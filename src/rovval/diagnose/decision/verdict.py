@@ -19,11 +19,11 @@ from rovval.diagnose.criteria import (
     GENERIC_EVIDENCE,
     NEAR_GAIN,
     NEAR_LITTLE,
+    OUT_OF_TOLERANCE,
 )
 from rovval.diagnose.decision.rejection import Assessment, assess, of_sensor
 from rovval.diagnose.decision.unexplained import Accounted, Unexplained, accounted, open_gap, unexplained
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
-from rovval.diagnose.problem.prior import STRAINED
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.search.baseline import SelectedCause
 from rovval.diagnose.search.discrepancy import GenericForces, generic_forces, nominal_forces
@@ -125,7 +125,7 @@ def _constant(
 def without_inconstant(again: Assessment, inconstant: tuple[str, ...]) -> Assessment:
     """The assessment ``again`` of causes after those named ``inconstant`` went. They are rejected as well where another is inconstant now, or where what went
     had kept a coefficient within its tolerance: another cause is there."""
-    rejected = again.rejected or bool(again.inconstant) or again.departure > STRAINED
+    rejected = again.rejected or bool(again.inconstant) or again.departure > OUT_OF_TOLERANCE
     return replace(again, remainder=True, rejected=rejected, inconstant=inconstant)
 
 

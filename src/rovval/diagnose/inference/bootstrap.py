@@ -1,4 +1,4 @@
-"""TODO Can this log tell hypotheses apart? Coherence of their signatures, and groups that a paired bootstrap cannot split."""
+"""Intervals of a shrinkage by a circular block bootstrap over windows (Kuensch 1989; Politis and Romano 1992)."""
 
 from __future__ import annotations
 

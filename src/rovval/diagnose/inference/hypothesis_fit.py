@@ -13,14 +13,14 @@ import numpy as np
 from scipy import stats
 
 from rovval.core.data import Array
+from rovval.diagnose.criteria import INTERVAL_PROBABILITY, QUICK_STEPS
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
-from rovval.diagnose.inference.map_fit import QUICK_STEPS, map_fit, moved_to
+from rovval.diagnose.inference.map_fit import map_fit, moved_to
 from rovval.diagnose.problem.cross_validation import Fold
 from rovval.diagnose.problem.problem import Problem, gap_equations_at
 from rovval.diagnose.residuals.normal_equations import Whitened
 from rovval.diagnose.residuals.ridge import losses
 
-INTERVAL = 0.90
 ONSET_SEARCH_S = (-12.0, -6.0, -3.0, -1.5, 1.5, 3.0, 6.0, 12.0)
 
 
@@ -124,6 +124,6 @@ def only_places(problem: Problem, slot: int) -> bool:
 
 
 def confidence_interval(value: float, error: float, blocks: int) -> tuple[float, float]:
-    """Two-sided interval at `INTERVAL` with Student's t on half as many degrees of freedom as windows."""
-    t = float(stats.t.ppf(0.5 + INTERVAL / 2, max(blocks // 2 - 1, 2)))
+    """Two-sided interval at `INTERVAL_PROBABILITY` with Student's t on half as many degrees of freedom as windows."""
+    t = float(stats.t.ppf(0.5 + INTERVAL_PROBABILITY / 2, max(blocks // 2 - 1, 2)))
     return value - t * error, value + t * error

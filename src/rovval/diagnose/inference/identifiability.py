@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import PRIOR_WIDTH
+from rovval.diagnose.criteria import IDENTIFIABLE_ALONE, IDENTIFIABLE_JOINTLY, PRIOR_WIDTH, WIDEST_INTERVAL
 from rovval.diagnose.inference.hypothesis_fit import (
     HypothesisFit,
     confidence_interval,
@@ -20,10 +20,6 @@ from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.coherence import coherence
 
-EXCITED = 3.0  # a typical size shows with this many standard errors while nothing else moves (chosen; near the detection limit of Currie 1968, 3.3)
-TOLD_APART = 1.5  # the same while everything else that is tuned, and slop, moves with it (chosen: a 90 % interval within a typical size)
-WIDEST = 2.0  # typical sizes: a half interval beyond it, at the fitted point, is no answer
-
 
 def identifiable(problem: Problem, wanted: Sequence[int]) -> tuple[tuple[int, ...], dict[int, dict[str, Any]]]:
     """Which slots these logs can determine, and why not the others; the least determined leaves first."""
@@ -32,16 +28,17 @@ def identifiable(problem: Problem, wanted: Sequence[int]) -> tuple[tuple[int, ..
     typical = {s: problem.plant.slots[s].parameter.typical for s in (*wanted, *problem.tolerance.sd)}
     for slot in wanted:
         at = int(problem.likelihood.total.place((slot,))[0])
-        if (seen := float(np.sqrt(information[at, at])) * typical[slot]) < EXCITED:
+        if (seen := float(np.sqrt(information[at, at])) * typical[slot]) < IDENTIFIABLE_ALONE:
             left.remove(slot)
-            out[slot] = unidentified_row(f"not excited: a typical size would show with {seen:.1f} standard errors in these logs, {EXCITED:g} are needed")
+            why = f"not excited: a typical size would show with {seen:.1f} standard errors in these logs, {IDENTIFIABLE_ALONE:g} are needed"
+            out[slot] = unidentified_row(why)
     while left:
         slop = [c for c in problem.tolerance.sd if c not in left]
         free = problem.likelihood.total.place((*left, *slop))
         prior = [PRIOR_WIDTH * typical[s] for s in left] + [problem.tolerance.sd[c] for c in slop]
         covariance = np.linalg.inv(information[np.ix_(free, free)] + np.diag(1.0 / np.array(prior) ** 2))
         shown = np.array([typical[s] for s in left]) / np.sqrt(np.diag(covariance)[: len(left)])
-        if shown.min() >= TOLD_APART:
+        if shown.min() >= IDENTIFIABLE_JOINTLY:
             break
         worst = left.pop(int(shown.argmin()))
         why = f"not told apart: a typical size shows with {shown.min():.1f} standard errors while the others move"
@@ -73,7 +70,7 @@ def fit_identifiable(
         low, high = np.array(bounds).T
         half = 0.5 * (high - low) / [problem.plant.slots[s].parameter.typical for s in slots]
         half[[s in kept for s in slots]] = 0.0
-        if half.max() <= WIDEST:
+        if half.max() <= WIDEST_INTERVAL:
             return fitted, low, high, out
         worst = slots[int(half.argmax())]
         why = f"not told apart: its 90 % interval with slop of the others is +-{half.max():.1f} typical sizes"

@@ -13,32 +13,36 @@ import numpy as np
 
 from rovval import effects
 from rovval.core.data import Array
-from rovval.diagnose.criteria import PRIOR_WIDTH
+from rovval.diagnose.criteria import (
+    MAP_STEPS,
+    PRIOR_WIDTH,
+    PROGRESSIVE_S,
+    QUICK_STEPS,
+    RELINEARISED_FROM,
+    RELINEARISED_TIMES,
+    STEP_WORTH,
+)
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem, equations_of, equations_with_frozen, whitened
 from rovval.diagnose.residuals.normal_equations import Whitened, with_frozen_columns
 from rovval.diagnose.residuals.sensitivities import linearise
 from rovval.plant import Plant
 
-ROUNDS, QUICK_STEPS = 5, 3  # damped steps of a fit, and of one that only has to show whether it is worth more
-LITTLE = 1.0  # twice the log posterior: a smaller gain is not worth another step
-FAR, ANEW = 10.0, 2  # the same, from which slop's slopes are made anew, and how often at most
 SHORTER = (1.0, 0.4, 0.1)  # shares of the Gauss-Newton step that are tried
-EARLY = (2.5, 5.0)  # s of each window that are fitted before the whole of it (chosen)
 
 
-def map_fit(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[Whitened, ...] | None = None, rounds: int = ROUNDS) -> Posterior:
+def map_fit(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[Whitened, ...] | None = None, rounds: int = MAP_STEPS) -> Posterior:
     """Fit ``slots`` and slop jointly from ``start``.
 
     With ``near``, the slopes of slop and of the windows' starts are taken from a linearisation nearby; else they are made at ``start``, and
-    made anew, `ANEW` times at most, where the fit ends far from it. Slop moves in the simulation all the same.
+    made anew, `RELINEARISED_TIMES` times at most, where the fit ends far from it. Slop moves in the simulation all the same.
     """
     if near is not None:
         return _descended(problem, posterior_at(problem, start, _columns(problem, slots), len(slots), near), near, rounds)
     point = posterior_at(problem, start, _columns(problem, slots), len(slots))
-    for _ in range(ANEW):
+    for _ in range(RELINEARISED_TIMES):
         reached = _descended(problem, point, point.whitened, rounds)
-        if point.cost() - reached.cost() < FAR * problem.design_effect:
+        if point.cost() - reached.cost() < RELINEARISED_FROM * problem.design_effect:
             return reached
         point = posterior_at(problem, reached.beta, point.columns, point.effect_count)
     return _descended(problem, point, point.whitened, rounds)
@@ -53,7 +57,7 @@ def progressive_start(problem: Problem, start: Array, slots: tuple[int, ...]) ->
     """Where ``slots`` and slop (k,) settle from ``start`` on the beginning of each window. Over ten seconds a vehicle that rolls freely, or that something
     holds, forgets how it began, and a fit of the whole window from far away ends in the first of many valleys."""
     beta = start
-    for seconds in EARLY:
+    for seconds in PROGRESSIVE_S:
         beta = map_fit(_begun(problem, seconds), beta, slots).beta
     return beta
 
@@ -90,7 +94,7 @@ def _descended(problem: Problem, point: Posterior, slopes: tuple[Whitened, ...],
         if better is None:
             break
         gain, point = point.cost() - better.cost(), better
-        if gain < LITTLE * problem.design_effect:
+        if gain < STEP_WORTH * problem.design_effect:
             break
     return point
 
@@ -130,7 +134,7 @@ def _point(problem: Problem, beta: Array, own: int, there: tuple[Whitened, ...])
 
 
 def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...]) -> Posterior | None:
-    """The next point of a damped Gauss-Newton iteration, None where no step gains more than a `LITTLE`."""
+    """The next point of a damped Gauss-Newton iteration, None where no step gains more than a `STEP_WORTH`."""
     step = np.where(point.tangent_only, 0.0, point.solve(point.curvature, point.descent))
     for share in SHORTER:
         beta = _clipped(problem, point, share * step)
@@ -138,7 +142,7 @@ def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...]) -> P
         if data is None:
             continue
         trial = replace(point, beta=beta, total=data, departure=point.departure + (beta - point.beta)[list(point.columns)])
-        if trial.cost() < point.cost() - LITTLE * problem.design_effect:
+        if trial.cost() < point.cost() - STEP_WORTH * problem.design_effect:
             return posterior_at(problem, beta, point.columns, point.effect_count, near)
     return None
 

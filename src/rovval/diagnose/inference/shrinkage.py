@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from rovval.core.data import Array
+from rovval.diagnose.criteria import HARMED_AXIS, MOST_REFITS
 from rovval.diagnose.inference.bootstrap import shrinkage_interval
 from rovval.diagnose.inference.gap import noise_floor_loss, squared_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, held_out_steps
@@ -26,9 +27,7 @@ from rovval.diagnose.residuals.sensitivities import linearise
 from rovval.diagnose.windows.windows import Windows
 
 T = TypeVar("T")
-MOST = 5  # refits: of more logs than that, a fifth is left out at a time
 
-HARM = 0.05  # an axis that gets this much worse is named (chosen)
 NO_SHRINKAGE = {"total": 0.0, "low": 0.0, "high": 0.0, "of_explainable": 0.0, "axes": {}, "axes_interval": {}, "held_out": True}
 
 
@@ -60,8 +59,8 @@ def shrinkage_of(problem: Problem, loss: Array, after: list[Array], before: list
 
 
 def worsened_axes(shrunk: dict[str, Any]) -> list[dict[str, Any]]:
-    """Axes that get more than `HARM` worse with the effects added."""
-    return [{"axis": axis, "change": -share} for axis, share in shrunk["axes"].items() if share < -HARM]
+    """Axes that get more than `HARMED_AXIS` worse with the effects added."""
+    return [{"axis": axis, "change": -share} for axis, share in shrunk["axes"].items() if share < -HARMED_AXIS]
 
 
 def held_out_residuals(problem: Problem, fitted: HypothesisFit) -> list[Array]:
@@ -103,7 +102,7 @@ def refitted_shrinkage(problem: Problem, fitted: HypothesisFit, before: Sequence
 
 def _folds(problem: Problem) -> tuple[Fold, ...]:
     """The problem's own folds, or of many logs as many groups as may be refitted."""
-    return problem.folds if len(problem.folds) <= MOST else make_folds(problem.run_of_window * MOST // len(problem.runs))
+    return problem.folds if len(problem.folds) <= MOST_REFITS else make_folds(problem.run_of_window * MOST_REFITS // len(problem.runs))
 
 
 def _without(problem: Problem, fitted: HypothesisFit, fold: Fold, slop: float) -> Array:

@@ -12,12 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.data import Array
+from rovval.diagnose.criteria import HELD_OUT_BLOCK
 from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.residuals.ridge import Prior, free_columns, losses
-
-PAIR = 2  # neighbouring windows that are held out together: 20 s, beyond the memory of hull and thrusters
-
-
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +31,7 @@ def make_folds(run_of_window: np.ndarray, count: int = 5) -> tuple[Fold, ...]:
     runs, m = np.unique(run_of_window), len(run_of_window)
     if len(runs) >= 3:
         return tuple(Fold(run_of_window != r, run_of_window == r) for r in runs)
-    part = np.arange(m) // PAIR % count if m >= PAIR * count else np.arange(m) * count // m
+    part = np.arange(m) // HELD_OUT_BLOCK % count if m >= HELD_OUT_BLOCK * count else np.arange(m) * count // m
     return tuple(Fold(part != p, part == p) for p in np.unique(part))
 
 

@@ -18,6 +18,7 @@ from scipy.linalg import block_diag
 
 from rovval.core.channels import AXES
 from rovval.core.data import Array
+from rovval.diagnose.criteria import COVERED_BY_NOISE, SEGMENT_CORRELATION, STEADY_FORCE_SD
 from rovval.diagnose.residuals.external_forces import force_sensitivities, generic_force_responses, typical_wrench
 from rovval.diagnose.residuals.normal_equations import Linearisation, NormalEquations, concatenated, normal_equations
 from rovval.diagnose.residuals.nuisances import initial_state_sd
@@ -27,10 +28,7 @@ from rovval.diagnose.windows.windows import Windows
 SEGMENTS = 12  # of a window in which a force holds still: 0.8 s of 10 s, well below the period at which a small ROV rolls
 ROUNDS = 10  # of expectation and maximisation
 FIRST, FIRST_S = 0.1, 1.0  # guesses: of the thrusters' own rms on an axis, and the time in which a force forgets itself
-CORRELATION = (0.02, 0.98)  # limits of the latter
 ENVIRONMENT = ("constant", "cos heading", "sin heading", "depth", "time")  # systematic forces that are no disturbance
-GENERIC = 0.1  # prior size of a generic force, as a share of the same
-COVERED = 0.05  # of the noise's variance: a part of a disturbance that does less than this changes no weight
 LEAST = 1e-6  # of the same: smaller is none
 
 
@@ -86,7 +84,7 @@ def estimate_disturbance(
     """Fit the disturbances to what the residuals of ``left`` hold beyond steady forces and white noise of ``variance`` (n, c), beginning with those
     of ``before``."""
     steady = _equations(runs, left, responses.steady, variance)
-    strength = ridge_step(steady, Prior(dict.fromkeys(steady.columns, GENERIC)), design_effect)
+    strength = ridge_step(steady, Prior(dict.fromkeys(steady.columns, STEADY_FORCE_SD)), design_effect)
     less = [
         replace(one, r=np.where(windows.ok, one.r - S @ strength, 0.0))
         for windows, one, S in zip(runs, left, responses.steady, strict=True)
@@ -120,7 +118,7 @@ def principal_parts(runs: Sequence[Windows], response: Sequence[Array], variance
         for w in range(windows.count):
             weighted = np.where(windows.ok[w], 1.0 / np.sqrt(variance), 0.0)[..., None] * one[w]
             power, way = np.linalg.eigh(np.einsum("tci,tcj->ij", weighted, weighted, optimize=True))
-            found[-1].append(one[w] @ way[:, power > COVERED])
+            found[-1].append(one[w] @ way[:, power > COVERED_BY_NOISE])
             most = max(most, found[-1][-1].shape[-1])
     return tuple(np.stack([np.pad(x, ((0, 0), (0, 0), (0, most - x.shape[-1]))) for x in one]) for one in found)
 
@@ -144,7 +142,7 @@ def _expectation_maximisation(data: NormalEquations, share: Array, correlation: 
         square = (cover + mean[:, :, None] * mean[:, None, :]).mean(axis=0).reshape(len(AXES), SEGMENTS, len(AXES), SEGMENTS)
         own = np.einsum("aiaj->aij", square)
         alone, next_one = np.einsum("aii->a", own) / SEGMENTS, np.einsum("aii->a", own[:, :-1, 1:]) / (SEGMENTS - 1)
-        share, correlation = np.sqrt(alone), np.clip(next_one / alone, *CORRELATION)
+        share, correlation = np.sqrt(alone), np.clip(next_one / alone, *SEGMENT_CORRELATION)
     return share, correlation
 
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rovval.core.data import Array
+from rovval.diagnose.criteria import DISTURBANCE_WINDOWS, LEAST_NOISE
 from rovval.diagnose.problem.cross_validation import Fold, FoldSums, cross_validate
 from rovval.diagnose.problem.disturbance import (
     Disturbance,
@@ -31,11 +32,9 @@ from rovval.diagnose.residuals.normal_equations import (
 )
 from rovval.diagnose.residuals.nuisances import initial_state_sd, nuisance_sd
 from rovval.diagnose.residuals.ridge import Prior, estimated_design_effect
-from rovval.diagnose.windows.noise import LEAST_NOISE
 from rovval.diagnose.windows.windows import Windows
 
 PASSES = 5  # then sizes stand to within a few per cent
-ENOUGH = 6  # windows: in fewer, a steady force and a disturbance cannot be told apart, and none is fitted
 SMOOTH = 11  # samples over which the unexplained variance is smoothed along the window (1 s at 10 Hz)
 FIRST_DESIGN_EFFECT = 10.0  # of the first fit of the library, before anything is known of the residuals' autocorrelation
 
@@ -75,7 +74,7 @@ def fit_noise_model(
     best = cross_validate(FoldSums.of(first, folds), library, design_effect).step
     white = expected + _form_variance(runs, plain, expected, best)
     total = white * channel_factor
-    if sum(windows.count for windows in runs) < ENOUGH:
+    if sum(windows.count for windows in runs) < DISTURBANCE_WINDOWS:
         design_effect, _ = _library_fit(runs, linear, total, library, folds, design_effect)
         return NoiseModel(runs, linear, total, total, design_effect, no_disturbance())
     responses = unit_responses(runs, origin)

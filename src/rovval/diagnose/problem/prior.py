@@ -11,9 +11,6 @@ from collections.abc import Mapping
 from rovval.diagnose.residuals.ridge import Prior
 from rovval.plant import Plant
 
-WITHIN = 3.5  # standard deviations of tolerance that healthy coefficients reach (tuning set: 3.3 of some hundred)
-STRAINED = 5.0  # standard deviations from which a coefficient is off by more than slop of the stated size
-
 
 def tolerance_prior(plant: Plant, slop: float) -> Prior:
     """Standard deviation by plant slot of what a healthy simulator and log may be off by, as each effect states it; empty where ``slop``, the relative

@@ -14,6 +14,7 @@ import numpy as np
 
 from rovval.core.data import Array
 from rovval.core.errors import BadInput
+from rovval.diagnose.criteria import FEWEST_WINDOWS
 from rovval.diagnose.problem.cross_validation import Fold, make_folds
 from rovval.diagnose.problem.disturbance import Disturbance
 from rovval.diagnose.problem.noise_model import equations_of_runs, fit_noise_model
@@ -32,7 +33,6 @@ from rovval.diagnose.residuals.perturbations import Columns, DisplacedColumn
 from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.residuals.sensitivities import linearise, residual
 from rovval.diagnose.windows.closed_loop import loop_gains, variance_factors
-from rovval.diagnose.windows.multiple_shooting import FEWEST_WINDOWS
 from rovval.diagnose.windows.windows import Windows
 from rovval.plant import Plant, parse_settings
 from rovval.simulation import carried_effects

@@ -1,4 +1,4 @@
-"""TODO Can this log tell hypotheses apart? Coherence of their signatures, and groups that a paired bootstrap cannot split."""
+"""Coherence of two hypotheses: the largest canonical correlation of their sensitivities (Hotelling 1936)."""
 
 from __future__ import annotations
 

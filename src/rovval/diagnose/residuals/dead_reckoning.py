@@ -13,14 +13,14 @@ RELATIONS = ("x", "y", "z", "phi", "theta", "psi")
 MARGIN = 15  # samples before and after a window that a sensor's memory needs: the longest delay of the library, 1.5 s
 
 
-def measured_motion(stretches: Windows) -> tuple[Array, Array, Flags]:
+def measured_motion(windows: Windows) -> tuple[Array, Array, Flags]:
     """Velocities and poses of the windows and the `MARGIN` before and after them (m, MARGIN + n + MARGIN, 6), gaps bridged linearly, and which relations
     the log can serve (6,). Beyond the log's ends the vehicle moves on as it does there."""
-    run = stretches.run
+    run = windows.run
     nu = np.stack([_bridged(run.get(c)) for c in ("u", "v", "w", "p", "q", "r")], axis=-1)
     eta = np.stack([_bridged(run.get(c), angle=c in RELATIONS[3:]) for c in RELATIONS], axis=-1)
     nu, eta = _gone_on(nu, eta, run.dt)
-    at = stretches.start[:, None] + np.arange(stretches.steps + 1 + 2 * MARGIN)[None, :]
+    at = windows.start[:, None] + np.arange(windows.steps + 1 + 2 * MARGIN)[None, :]
     nu, eta = nu[at], eta[at]
     attitude = all(run.measured(c) for c in RELATIONS[3:])
     linear = attitude and all(run.measured(c) for c in ("u", "v", "w"))
@@ -33,10 +33,10 @@ def without_margin(samples: Array) -> Array:
     return samples[:, MARGIN:-MARGIN]
 
 
-def fully_measured(stretches: Windows) -> Flags:
+def fully_measured(windows: Windows) -> Flags:
     """Windows (m,) in which velocity and attitude were measured nearly throughout (bridged gaps would look like faults)."""
-    run = stretches.run
-    at = stretches.start[:, None] + np.arange(stretches.steps + 1)[None, :]
+    run = windows.run
+    at = windows.start[:, None] + np.arange(windows.steps + 1)[None, :]
     needed = [c for c in ("u", "v", "w", "p", "q", "r", "phi", "theta", "psi") if run.measured(c)]
     return np.asarray(np.all([run.ok(c)[at].mean(axis=1) > 0.9 for c in needed], axis=0))
 

@@ -9,13 +9,12 @@ import numpy as np
 
 from rovval.core.channels import AXES
 from rovval.core.data import Array
+from rovval.diagnose.criteria import LEAST_AXIS_FORCE, SIGN_SMOOTHING
 from rovval.diagnose.residuals.sensitivities import LANES, simulate_windows
 from rovval.diagnose.windows.windows import Windows, channel_difference, predicted_channels
 from rovval.vehicle.model import allocation
 
 STEP = 0.05  # of a force, for its finite difference
-SLOW = 0.1  # of a velocity's rms: more has a side that it goes to (chosen)
-LEAST = 0.01  # of the largest force, that an axis is held to have at least, so that none is mute
 
 
 def generic_force_responses(parts: Sequence[Windows], beta: Array, features: Sequence[str] = ()) -> tuple[tuple[tuple[str, str], ...], list[Array]]:
@@ -26,9 +25,9 @@ def generic_force_responses(parts: Sequence[Windows], beta: Array, features: Seq
     return names, [force_sensitivities(part, beta, [(a, bank[f] * wrench[AXES.index(a)]) for a, f in names]) for part, bank in zip(parts, banks, strict=True)]
 
 
-def force_features(stretches: Windows) -> dict[str, Array]:
+def force_features(windows: Windows) -> dict[str, Array]:
     """What a generic force may depend on, on the run's grid (n,), each of unit rms."""
-    run = stretches.run
+    run = windows.run
     got = {c: np.nan_to_num(run.get(c)) for c in ("u", "v", "w", "p", "q", "r", "z", "phi", "theta", "psi") if run.measured(c)}
     found: dict[str, Array] = {"constant": np.ones(len(run))}
     for c in ("u", "v", "w", "p", "q", "r"):
@@ -37,7 +36,7 @@ def force_features(stretches: Windows) -> dict[str, Array]:
             found[f"|{c}|"] = np.abs(got[c])
     for c in ("u", "v", "w"):
         if c in got and (rms := float(np.sqrt(np.mean(got[c] ** 2)))) > 0.0:
-            found[f"sign of {c}"] = np.tanh(got[c] / (SLOW * rms))
+            found[f"sign of {c}"] = np.tanh(got[c] / (SIGN_SMOOTHING * rms))
     for a, b in (("u", "v"), ("u", "r"), ("v", "r"), ("u", "w")):
         if a in got and b in got:
             found[f"{a}{b}"] = got[a] * got[b]
@@ -49,8 +48,8 @@ def force_features(stretches: Windows) -> dict[str, Array]:
     found["time"] = run.t - run.t.mean()
     if run.measured("altitude"):
         found["closeness to the bottom"] = np.exp(-np.maximum(np.nan_to_num(run.get("altitude"), nan=1e3), 0.0))
-    thrust = stretches.plant.thrust(stretches.actuation.inputs.speed)
-    for i, name in enumerate(stretches.plant.vehicle.thrusters):
+    thrust = windows.plant.thrust(windows.actuation.inputs.speed)
+    for i, name in enumerate(windows.plant.vehicle.thrusters):
         found[f"thrust of {name}"], found[f"|thrust of {name}|"] = thrust[:, i], np.abs(thrust[:, i])
     scaled = {n: f / np.sqrt(np.mean(f**2)) for n, f in found.items() if np.mean(f**2) > 1e-12}
     return {n: f for n, f in scaled.items() if n == "constant" or np.std(f) > 1e-3}
@@ -84,10 +83,10 @@ def wrench_sensitivities(part: Windows, beta: Array, bank: Array) -> Array:
 
 
 def typical_wrench(parts: Sequence[Windows]) -> Array:
-    """Rms force of the thrusters on each axis (6,), N and N m; at least `LEAST` of the largest."""
+    """Rms force of the thrusters on each axis (6,), N and N m; at least `LEAST_AXIS_FORCE` of the largest."""
     total = np.zeros(6)
     for part in parts:
         wrench = part.plant.thrust(part.actuation.inputs.speed) @ allocation(part.plant.vehicle).T
         total += np.mean(wrench**2, axis=0) / len(parts)
     weight = part.plant.vehicle.weight
-    return np.asarray(np.maximum(np.sqrt(total), LEAST * max(float(np.sqrt(total.max())), LEAST * weight)))
+    return np.asarray(np.maximum(np.sqrt(total), LEAST_AXIS_FORCE * max(float(np.sqrt(total.max())), LEAST_AXIS_FORCE * weight)))

@@ -24,7 +24,7 @@ class FaultSignatures:
     """Smooth measured motion ``nu`` and ``eta`` (m, margin + n + margin, 6) of the windows, ``usable`` (m,) of them, its drift ``as_is`` (m, rows, 6), and
     what sensors make of it (`traced`)."""
 
-    stretches: Windows
+    windows: Windows
     nu: Array
     eta: Array
     usable: Flags
@@ -46,20 +46,20 @@ class FaultSignatures:
         return _of_places(self.as_is - undone), slopes
 
     def _step(self, column: int) -> float:
-        return STEP * self.stretches.plant.slots[column].parameter.typical
+        return STEP * self.windows.plant.slots[column].parameter.typical
 
     def _drift(self, faults: dict[int, float]) -> Array:
         """Drift of the motion as sensors with ``faults`` (column: value) would have logged it."""
-        plant, beta = self.stretches.plant, self.stretches.plant.null.copy()
+        plant, beta = self.windows.plant, self.windows.plant.null.copy()
         beta[list(faults)] += list(faults.values())
-        log = Log(self.nu, self.eta, self.stretches.run.dt, self.nu[:, 0], self.eta[:, 0])
+        log = Log(self.nu, self.eta, self.windows.run.dt, self.nu[:, 0], self.eta[:, 0])
         seen = observe(plant.vehicle, plant.index, plant.null, np.tile(beta, (len(self.nu), 1)), log)
-        return _drift_of(seen.nu, seen.eta, self.stretches.run.dt, self.usable)
+        return _drift_of(seen.nu, seen.eta, self.windows.run.dt, self.usable)
 
 
-def fault_signatures(stretches: Windows, nu: Array, eta: Array, usable: Flags) -> FaultSignatures:
+def fault_signatures(windows: Windows, nu: Array, eta: Array, usable: Flags) -> FaultSignatures:
     """Traces of a smooth motion."""
-    return FaultSignatures(stretches, nu, eta, usable, _drift_of(nu, eta, stretches.run.dt, usable))
+    return FaultSignatures(windows, nu, eta, usable, _drift_of(nu, eta, windows.run.dt, usable))
 
 
 def _drift_of(nu: Array, eta: Array, dt: float, usable: Flags) -> Array:

@@ -14,15 +14,14 @@ import numpy as np
 from scipy import signal
 
 from rovval.core.data import Array, Flags
+from rovval.diagnose.criteria import DEAD_RECKONED_SHARE, PARITY_LEAST_SD
 from rovval.diagnose.residuals.dead_reckoning import RELATIONS, fully_measured, measured_motion, pose_drift, without_margin
 from rovval.diagnose.residuals.fault_signatures import FaultSignatures, fault_signatures
 from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.windows.windows import Windows
 from rovval.effects import load
 
-LEAST_SIGMA = (0.005, 0.005, 0.002, 0.001, 0.001, 0.001)  # m, rad: no sensor is believed below these (chosen)
 SMOOTH = 11  # samples of the quadratic by which motion is smoothed for traces: a delay's is a slope, which noise would drown and correlate
-DEAD_RECKONED = 0.5  # a position that follows the integrated velocity closer than half its noise allows was integrated from it
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,15 +90,15 @@ class ParityResiduals:
         return np.asarray((relations / np.array(self.sigma)).reshape(self.rows.shape))
 
 
-def parity_residuals(stretches: Windows, columns: tuple[int, ...]) -> ParityResiduals:
+def parity_residuals(windows: Windows, columns: tuple[int, ...]) -> ParityResiduals:
     """Parity rows of every window and the trace that each sensor parameter among ``columns`` leaves in them."""
-    nu, eta, whole = measured_motion(stretches)
-    nominal, usable = pose_drift(without_margin(nu), without_margin(eta), stretches.run.dt), fully_measured(stretches)
+    nu, eta, whole = measured_motion(windows)
+    nominal, usable = pose_drift(without_margin(nu), without_margin(eta), windows.run.dt), fully_measured(windows)
     nu, eta = (signal.savgol_filter(a, SMOOTH, 2, axis=1) for a in (nu, eta))
-    of = fault_signatures(stretches, nu, eta, usable)
+    of = fault_signatures(windows, nu, eta, usable)
     traces = np.zeros((*nominal.shape, len(columns)))
     for i, column in enumerate(columns):
-        if load(stretches.plant.slots[column].effect).place == "sensor":
+        if load(windows.plant.slots[column].effect).place == "sensor":
             traces[..., i] = of.of(column)
     keep = [i for i, name in enumerate(RELATIONS) if whole[i]]
     nominal[~usable] = 0.0
@@ -108,13 +107,13 @@ def parity_residuals(stretches: Windows, columns: tuple[int, ...]) -> ParityResi
 
 def _weighted(of: FaultSignatures, nominal: Array, traces: Array, columns: tuple[int, ...], keep: list[int]) -> ParityResiduals:
     """Rows and traces in standard errors: what all sensor faults together leave is the noise of each relation."""
-    stretches, m, k = of.stretches, len(nominal), len(columns)
+    windows, m, k = of.windows, len(nominal), len(columns)
     if not keep:
         return _none(m, columns, ("no pose beside velocity in this log",))
     seen = np.flatnonzero(np.abs(traces).max(axis=(0, 1, 2)) > 0)
-    slots = [stretches.plant.slots[c] for c in columns]
+    slots = [windows.plant.slots[c] for c in columns]
     free = np.array([i for i in seen if not load(slots[i].effect).of_one_axis(slots[i].parameter.name)], dtype=int)  # not needed to find the noise
-    sigma = np.array([max(1.4826 * float(np.median(np.abs(nominal[..., i]))), LEAST_SIGMA[i]) for i in keep])
+    sigma = np.array([max(1.4826 * float(np.median(np.abs(nominal[..., i]))), PARITY_LEAST_SD[i]) for i in keep])
     notes: list[str] = []
     left = nominal[..., keep]
     for _ in range(2 if len(free) else 0):  # noise from what the joint fit leaves, the fit weighted by that noise
@@ -124,8 +123,8 @@ def _weighted(of: FaultSignatures, nominal: Array, traces: Array, columns: tuple
         typical = np.array([slots[i].parameter.typical for i in free])
         fitted = np.linalg.lstsq(np.vstack([X, np.diag(0.1 / typical)]), np.concatenate([y, np.zeros(len(free))]), rcond=None)[0]
         left = (nominal[..., keep] / sigma - G @ fitted) * sigma
-        sigma = np.maximum(left.std(axis=(0, 1)), [LEAST_SIGMA[i] for i in keep])
-    keep, sigma = _independent(stretches, keep, sigma, notes)
+        sigma = np.maximum(left.std(axis=(0, 1)), [PARITY_LEAST_SD[i] for i in keep])
+    keep, sigma = _independent(windows, keep, sigma, notes)
     if not keep:
         return _none(m, columns, tuple(notes))
     rows = (nominal[..., keep] / sigma).reshape(m, -1)
@@ -149,14 +148,14 @@ def _gram(rows: Array, traces: Array, columns: tuple[int, ...]) -> NormalEquatio
     return NormalEquations(turned @ traces, (turned @ rows[..., None])[..., 0], (rows**2).sum(axis=1), columns)
 
 
-def _independent(stretches: Windows, keep: list[int], sigma: Array, notes: list[str]) -> tuple[list[int], Array]:
+def _independent(windows: Windows, keep: list[int], sigma: Array, notes: list[str]) -> tuple[list[int], Array]:
     """Leave out horizontal positions that were integrated from the velocities they would check."""
-    noise = dict(zip(stretches.channels, stretches.noise, strict=True))
-    seconds = stretches.steps * stretches.run.dt
+    noise = dict(zip(windows.channels, windows.noise, strict=True))
+    seconds = windows.steps * windows.run.dt
     out = []
     for i, s in zip(keep, sigma, strict=True):
-        expected = noise.get("u", 0.0) * np.sqrt(stretches.run.dt * seconds / 6.0)  # random walk of integrated white noise, mean taken out
-        if i < 2 and s < DEAD_RECKONED * expected:
+        expected = noise.get("u", 0.0) * np.sqrt(windows.run.dt * seconds / 6.0)  # random walk of integrated white noise, mean taken out
+        if i < 2 and s < DEAD_RECKONED_SHARE * expected:
             notes.append(f"{RELATIONS[i]} follows the integrated velocity within {s:.3g} m: it is dead-reckoned and checks nothing")
             continue
         out.append(i)

@@ -50,7 +50,7 @@ class Perturbation:
 
 
 def perturbations(
-    stretches: Windows, beta: Array, states: list[tuple[int, float]], columns: tuple[int, ...], directions: Sequence[DisplacedColumn]
+    windows: Windows, beta: Array, states: list[tuple[int, float]], columns: tuple[int, ...], directions: Sequence[DisplacedColumn]
 ) -> list[Perturbation]:
     """Nominal first, then start states, then parameters (central differences inside the bounds), then directions."""
     still = np.zeros(6)
@@ -60,10 +60,10 @@ def perturbations(
         unit[index if index < 6 else POSE_INDEX[index]] = step
         lanes.append(Perturbation(beta, unit if index < 6 else still, still if index < 6 else unit, state=i, step=step))
     for column in columns:
-        up, down = _both_ways(stretches, beta, column)
+        up, down = _both_ways(windows, beta, column)
         lanes.append(Perturbation(_moved(beta, [(column, beta[column] + down)]), still, still) if down else lanes[0])
         lanes.append(Perturbation(_moved(beta, [(column, beta[column] + up)]), still, still, column=column, step=up - down, against=len(lanes) - 1))
-    bases = dict.fromkeys(_idle(stretches, beta, directions), 0)
+    bases = dict.fromkeys(_idle(windows, beta, directions), 0)
     for d in directions:
         there = _moved(beta, list(d.at))
         if d.slot < 0:
@@ -72,32 +72,32 @@ def perturbations(
         if d.at not in bases:
             bases[d.at] = len(lanes)
             lanes.append(Perturbation(there, still, still))
-        up, _ = _both_ways(stretches, there, d.slot)
+        up, _ = _both_ways(windows, there, d.slot)
         lanes.append(Perturbation(_moved(there, [(d.slot, there[d.slot] + up)]), still, still, column=d.id, step=up, against=bases[d.at]))
     return lanes
 
 
-def _idle(stretches: Windows, beta: Array, directions: Sequence[DisplacedColumn]) -> set[tuple[tuple[int, float], ...]]:
+def _idle(windows: Windows, beta: Array, directions: Sequence[DisplacedColumn]) -> set[tuple[tuple[int, float], ...]]:
     """Points at which nothing is there yet: what stands elsewhere only places an effect of no size, and the simulation is the nominal one."""
     sized: dict[tuple[tuple[int, float], ...], list[int]] = {}
     for d in directions:
         sized.setdefault(d.at, []).append(d.slot)
-    slots = stretches.plant.slots
+    slots = windows.plant.slots
     return {at for at, own in sized.items() if all(s >= 0 and beta[s] == slots[s].parameter.null for s in own)}
 
 
-def forward_differences(stretches: Windows, beta: Array, columns: tuple[int, ...]) -> list[Perturbation]:
+def forward_differences(windows: Windows, beta: Array, columns: tuple[int, ...]) -> list[Perturbation]:
     """One lane a parameter, the way that its bounds leave open."""
     still, lanes = np.zeros(6), []
     for column in columns:
-        up, down = _both_ways(stretches, beta, column)
+        up, down = _both_ways(windows, beta, column)
         lanes.append(Perturbation(_moved(beta, [(column, beta[column] + (up or down))]), still, still, column=column, step=up or down))
     return lanes
 
 
-def _both_ways(stretches: Windows, beta: Array, column: int) -> tuple[float, float]:
+def _both_ways(windows: Windows, beta: Array, column: int) -> tuple[float, float]:
     """Steps up and down of a parameter that stay within its bounds; 0 for the way that is barred."""
-    parameter = stretches.plant.slots[column].parameter
+    parameter = windows.plant.slots[column].parameter
     step = STEP * parameter.typical
     up = step if beta[column] + step <= parameter.high else 0.0
     down = -step if beta[column] - step >= parameter.low else 0.0

@@ -1,4 +1,4 @@
-"""TODO What a healthy simulator and healthy sensors may be off by, before anything is blamed: the prior that detection stands on."""
+"""Ridge regression: normal equations solved under a Gaussian prior (Hoerl and Kennard 1970), and what is left after the solution."""
 
 from __future__ import annotations
 

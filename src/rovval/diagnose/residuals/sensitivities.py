@@ -22,30 +22,30 @@ LANES = 2_000  # lanes a call: 20 MB, which stay with the process; larger arrays
 
 
 
-def simulate_windows(stretches: Windows, beta: Array, nu0: Array, eta0: Array, which: np.ndarray) -> tuple[Array, np.ndarray]:
+def simulate_windows(windows: Windows, beta: Array, nu0: Array, eta0: Array, which: np.ndarray) -> tuple[Array, np.ndarray]:
     """Predicted channels (b, n, c) of lanes: parameters ``beta`` (b, k), start states (b, 6), windows ``which`` (b,)."""
-    out = np.empty((len(which), stretches.steps + 1, len(stretches.channels)))
+    out = np.empty((len(which), windows.steps + 1, len(windows.channels)))
     fine = np.empty(len(which), dtype=bool)
     for begin in range(0, len(which), LANES):
         part = slice(begin, begin + LANES)
-        motion = stretches.plant.simulate(
-            stretches.actuation.inputs, stretches.start[which[part]], stretches.steps, nu0[part], eta0[part], beta[part]
+        motion = windows.plant.simulate(
+            windows.actuation.inputs, windows.start[which[part]], windows.steps, nu0[part], eta0[part], beta[part]
         )
-        predicted_channels(stretches, motion.nu, motion.eta, out[part])
+        predicted_channels(windows, motion.nu, motion.eta, out[part])
         fine[part] = motion.stopped < 0
     return out, fine
 
 
 def linearise(
-    stretches: Windows, beta: Array, columns: tuple[int, ...], directions: Sequence[DisplacedColumn] = (), coarse: tuple[int, ...] = (),
+    windows: Windows, beta: Array, columns: tuple[int, ...], directions: Sequence[DisplacedColumn] = (), coarse: tuple[int, ...] = (),
     starts: bool = True,
 ) -> Linearisation:  # fmt: skip
     """Residual and sensitivities about ``beta`` (k,) for every window; columns ``coarse``, behind the others, by one-sided differences; without
     ``starts`` nothing about the windows' initial states."""
-    states, drifting, m = initial_states(stretches) if starts else [], drifting_channels(stretches), stretches.count
-    lanes = perturbations(stretches, beta, states, columns, directions) + forward_differences(stretches, beta, coarse)
+    states, drifting, m = initial_states(windows) if starts else [], drifting_channels(windows), windows.count
+    lanes = perturbations(windows, beta, states, columns, directions) + forward_differences(windows, beta, coarse)
     ids = (*columns, *(d.id for d in directions), *coarse)
-    shape = (m, stretches.steps + 1, len(stretches.channels))
+    shape = (m, windows.steps + 1, len(windows.channels))
     r, J, valid = np.zeros(shape), np.zeros((*shape, len(states) + len(drifting))), np.zeros(m, dtype=bool)
     S = np.moveaxis(np.zeros((len(ids), *shape)), 0, -1)  # a column in one piece, as it is made
     for i, channel in enumerate(drifting):
@@ -53,37 +53,37 @@ def linearise(
     place = {column: i for i, column in enumerate(ids)}
     for begin in range(0, m, AT_ONCE):
         which = np.arange(begin, min(begin + AT_ONCE, m))
-        out, ran = _simulated(stretches, lanes, which)
+        out, ran = _simulated(windows, lanes, which)
         valid[which] = ran[0]
         for i, lane in enumerate(lanes):
             if lane.step and (lane.state >= 0 or lane.column >= 0):
-                slope = channel_difference(stretches, out[i], out[lane.against]) / lane.step
+                slope = channel_difference(windows, out[i], out[lane.against]) / lane.step
                 slope[~(ran[0] & ran[i] & ran[lane.against])] = 0.0
                 if lane.state >= 0:
                     J[which, ..., lane.state] = slope
                 else:
                     S[which, ..., place[lane.column]] = slope
-        r[which] = np.where(stretches.ok[which], channel_difference(stretches, stretches.y[which], out[0]), 0.0)
-    if stretches.disturbance_response is not None:
-        J = np.concatenate([J, stretches.disturbance_response], axis=-1)
+        r[which] = np.where(windows.ok[which], channel_difference(windows, windows.y[which], out[0]), 0.0)
+    if windows.disturbance_response is not None:
+        J = np.concatenate([J, windows.disturbance_response], axis=-1)
     J[~valid] = 0.0
     return Linearisation(r, S, J, ids, valid)
 
 
-def _simulated(stretches: Windows, lanes: Sequence[Perturbation], which: np.ndarray) -> tuple[Array, np.ndarray]:
+def _simulated(windows: Windows, lanes: Sequence[Perturbation], which: np.ndarray) -> tuple[Array, np.ndarray]:
     """Every lane of the windows ``which``: predicted channels (lanes, windows, n, c), and which did not stop (lanes, windows)."""
     b = np.repeat(np.stack([lane.beta for lane in lanes]), len(which), axis=0)
-    nu = np.concatenate([stretches.nu0[which] + lane.nu for lane in lanes])
-    eta = np.concatenate([stretches.eta0[which] + lane.eta for lane in lanes])
-    out, fine = simulate_windows(stretches, b, nu, eta, np.tile(which, len(lanes)))
+    nu = np.concatenate([windows.nu0[which] + lane.nu for lane in lanes])
+    eta = np.concatenate([windows.eta0[which] + lane.eta for lane in lanes])
+    out, fine = simulate_windows(windows, b, nu, eta, np.tile(which, len(lanes)))
     return out.reshape(len(lanes), len(which), *out.shape[1:]), fine.reshape(len(lanes), len(which))
 
 
-def residual(stretches: Windows, beta: Array) -> tuple[Array, np.ndarray]:
+def residual(windows: Windows, beta: Array) -> tuple[Array, np.ndarray]:
     """Measured - simulated (m, n, c) at ``beta`` (k,), and which windows did not stop."""
-    which = np.arange(stretches.count)
-    out, fine = simulate_windows(stretches, np.tile(beta, (stretches.count, 1)), stretches.nu0, stretches.eta0, which)
-    return np.where(stretches.ok, channel_difference(stretches, stretches.y, out), 0.0), fine
+    which = np.arange(windows.count)
+    out, fine = simulate_windows(windows, np.tile(beta, (windows.count, 1)), windows.nu0, windows.eta0, which)
+    return np.where(windows.ok, channel_difference(windows, windows.y, out), 0.0), fine
 
 
 

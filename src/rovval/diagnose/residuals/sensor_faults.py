@@ -6,16 +6,16 @@ import numpy as np
 from scipy import stats
 
 from rovval.core.data import Array
+from rovval.diagnose.criteria import FAULT_SPARE_WINDOWS
 from rovval.diagnose.residuals.parity import ParityResiduals
 from rovval.diagnose.windows.windows import Windows
 from rovval.effects import load
 from rovval.plant.slots import Slot
 
 STEPS, SETTLED = 6, 1e-9  # Gauss-Newton steps at most, and the share of the loss below which they end
-FREEDOM = 5  # windows more than parameters, from which their scatter says how sure a fault is: six for one (as `separate.FEW`)
 
 
-def sensor_faults(parity_rows: ParityResiduals, stretches: Windows, origin: Array) -> list[dict[str, object]]:
+def sensor_faults(parity_rows: ParityResiduals, windows: Windows, origin: Array) -> list[dict[str, object]]:
     """Each sensor effect, and the factor of each axis, fitted to the parity rows alone: value with 90 % interval, and whether it differs from
     ``origin`` (k,), what the vehicle's file says of the sensors (``was``), significantly on its own. One that has hardly fewer parameters than
     there are windows to check it fits whatever it likes, and is not told."""
@@ -23,19 +23,19 @@ def sensor_faults(parity_rows: ParityResiduals, stretches: Windows, origin: Arra
     by_effect: dict[tuple[str, str], list[int]] = {}
     for i, column in enumerate(parity_rows.columns):
         if np.abs(parity_rows.traces[..., i]).max(initial=0.0) > 0:
-            by_effect.setdefault(_together(stretches.plant.slots[column]), []).append(i)
-    total, windows = float((_about(parity_rows, origin)[0] ** 2).sum()), int((np.abs(parity_rows.traces).max(axis=(1, 2), initial=0.0) > 0).sum())
+            by_effect.setdefault(_together(windows.plant.slots[column]), []).append(i)
+    total, count = float((_about(parity_rows, origin)[0] ** 2).sum()), int((np.abs(parity_rows.traces).max(axis=(1, 2), initial=0.0) > 0).sum())
     for places in by_effect.values():
-        if windows < len(places) + FREEDOM:
+        if count < len(places) + FAULT_SPARE_WINDOWS:
             continue
         value, score, H, loss = _fitted(parity_rows, origin, places)
         bread = np.linalg.inv(H)
         error = np.sqrt(np.diag(bread @ (score.T @ score) @ bread))
-        t = float(stats.t.ppf(0.95, windows - len(places)))
+        t = float(stats.t.ppf(0.95, count - len(places)))
         share = 1.0 - loss / total if total > 0 else 0.0
         for j, place in enumerate(places):
             slot_id = parity_rows.columns[place]
-            slot = stretches.plant.slots[slot_id]
+            slot = windows.plant.slots[slot_id]
             low, high, was = float(value[j] - t * error[j]), float(value[j] + t * error[j]), float(origin[slot_id])
             found.append(
                 {

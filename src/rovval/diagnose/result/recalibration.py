@@ -16,6 +16,8 @@ from rovval.core.data import Array
 from rovval.diagnose.criteria import (
     FEW_WINDOWS,
     FURTHER_GAIN,
+    HEALTHY_DEPARTURE,
+    OUT_OF_TOLERANCE,
     PARAMETER_FORM_ERROR,
     RECALIBRATION_LEAST,
     RECALIBRATION_ROUNDS,
@@ -32,7 +34,6 @@ from rovval.diagnose.inference.hypothesis_fit import (
 from rovval.diagnose.inference.identifiability import fit_identifiable, identifiable
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.inference.shrinkage import refitted_shrinkage, shrinkage, worsened_axes
-from rovval.diagnose.problem.prior import STRAINED, WITHIN
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.result.diagnosis import AxisHarm, Coefficient, Recalibration, Shrinkage
 from rovval.diagnose.search.forward import Selection
@@ -93,7 +94,7 @@ def _asked(problem: Problem, selection: Selection, decision: Decision) -> bool:
     rest, point = decision.unexplained, decision.fit.posterior if decision.fit else selection.healthy
     if rest is None or rest.accounted is not None or problem.window_count < FEW_WINDOWS:
         return False
-    return len(departing(problem, point, STRAINED)) >= RECALIBRATION_LEAST
+    return len(departing(problem, point, OUT_OF_TOLERANCE)) >= RECALIBRATION_LEAST
 
 
 def _fitted(problem: Problem, selection: Selection, decision: Decision) -> HypothesisFit | None:
@@ -104,7 +105,7 @@ def _fitted(problem: Problem, selection: Selection, decision: Decision) -> Hypot
     beta[list(causes)] = point.beta[list(causes)]
     near, free, refused = replace(selection.healthy, beta=beta), tuple[int, ...](), set[int]()
     for _ in range(RECALIBRATION_ROUNDS):
-        more = [s for s in departing(problem, point, WITHIN) if s not in refused and not _effect(problem, s).searched]
+        more = [s for s in departing(problem, point, HEALTHY_DEPARTURE) if s not in refused and not _effect(problem, s).searched]
         able, out = identifiable(problem, (*free, *more))
         refused |= out.keys()
         if set(able) == set(free):

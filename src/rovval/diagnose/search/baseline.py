@@ -16,13 +16,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import COUNTED_REDUCTION, ONSET_LEAST_WINDOWS, PARITY_CONTRADICTED, STRONG_EVIDENCE
+from rovval.diagnose.criteria import (
+    COUNTED_REDUCTION,
+    HEALTHY_DEPARTURE,
+    ONSET_LEAST_WINDOWS,
+    OUT_OF_TOLERANCE,
+    PARITY_CONTRADICTED,
+    QUICK_STEPS,
+    STRONG_EVIDENCE,
+)
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.bootstrap import shrinkage_interval
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
-from rovval.diagnose.inference.map_fit import QUICK_STEPS, map_fit
-from rovval.diagnose.problem.prior import STRAINED, WITHIN
+from rovval.diagnose.inference.map_fit import map_fit
 from rovval.diagnose.problem.problem import Problem, gap_equations_at
 from rovval.diagnose.residuals.ridge import Prior
 
@@ -120,7 +127,8 @@ def compared(problem: Problem, h: Hypothesis, fit: HypothesisFit, baseline: Base
     if evidence >= STRONG_EVIDENCE and gain < COUNTED_REDUCTION:
         others = healthy_without(problem, baseline.posterior, h.slots)
         beside = reduction(_losses(problem, others), _losses(problem, fit.posterior))[0]
-    restores = evidence >= STRONG_EVIDENCE and gain > 0.0 and baseline.posterior.largest_departure() > STRAINED and fit.posterior.largest_departure() <= WITHIN
+    before, after = baseline.posterior.largest_departure(), fit.posterior.largest_departure()
+    restores = evidence >= STRONG_EVIDENCE and gain > 0.0 and before > OUT_OF_TOLERANCE and after <= HEALTHY_DEPARTURE
     return Candidate(h, fit, evidence, gain, parity_gain, beside, restores, since)
 
 

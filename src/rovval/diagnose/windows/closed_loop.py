@@ -12,11 +12,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from rovval.core.data import Array
+from rovval.diagnose.criteria import LOOP_EXPLAINED
 from rovval.diagnose.windows.windows import Windows
 from rovval.vehicle.model import allocation
 
 TILTS = {"roll": ("phi", "p", 3), "pitch": ("theta", "q", 4)}  # angle, its rate and the axis of the moment
-SHOWN = 0.05  # chosen: share of the moment's variance that angle and rate must account for
 
 
 def loop_gains(parts: Sequence[Windows]) -> dict[str, float]:
@@ -50,4 +50,4 @@ def loop_gain(part: Windows, angle: str, rate: str, axis: int) -> float:
     shown = 1.0 - float(np.var(moment[use] - X @ found) / np.var(moment[use]))
     height = abs(vehicle.body.centre_of_gravity[2] - vehicle.body.centre_of_buoyancy[2])
     righting = vehicle.weight * height
-    return max(-float(found[1]), 0.0) / righting if shown > SHOWN and righting > 0 else 0.0
+    return max(-float(found[1]), 0.0) / righting if shown > LOOP_EXPLAINED and righting > 0 else 0.0

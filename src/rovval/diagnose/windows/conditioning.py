@@ -12,18 +12,21 @@ import numpy as np
 
 from rovval.core.data import Array, Flags, Reason, Resampled, Run
 from rovval.core.errors import Finding
+from rovval.diagnose.criteria import (
+    HELD_SHARE,
+    PING_REGULARITY,
+    SATURATED_LEAST_RISE,
+    SATURATED_LEVELS,
+    SATURATED_PROMINENCE,
+    SATURATED_RISE,
+    SATURATED_SAMPLES,
+    SLOWEST_PING,
+)
 from rovval.diagnose.windows.noise import white_noise
 
 NO_MEASUREMENT = ("saturated", "held")  # codes of the findings
 RATES = ("u", "v", "w", "p", "q", "r")  # channels that can reach the end of a sensor's range
 PINGED = ("u", "v", "w")  # one instrument measures them, so that they are new together
-FEWEST = 8  # samples at a stop that are no coincidence (chosen)
-OUTSTANDING = 5  # times as many as at any of the next three values (chosen)
-FINE = 100  # values that a channel takes at least: fewer, and the log is written in coarse steps (chosen)
-STEEP = 3.0  # times the sensor's noise by which a stop is reached in one sample: a steady state is neared slowly (chosen)
-LEAST_STEP = 1e-3  # m/s, rad/s: the same of a log without noise (chosen)
-REPEATED = 0.3  # of the samples: more is a slow sensor, written at the log's rate (chosen)
-SLOWEST, STEADY = 30, 0.9  # samples between pings, and share of the pings that keep such a beat (chosen)
 
 
 def condition(run: Run) -> tuple[Run, tuple[Finding, ...]]:
@@ -62,12 +65,12 @@ def saturated(values: Array) -> Flags:
     noise = white_noise(known, np.ones(len(known), dtype=bool))
     for sign in (1.0, -1.0):
         levels, counts = np.unique(sign * known, return_counts=True)
-        if len(levels) < FINE or counts[-1] < max(FEWEST, OUTSTANDING * counts[-4:-1].max()):
+        if len(levels) < SATURATED_LEVELS or counts[-1] < max(SATURATED_SAMPLES, SATURATED_PROMINENCE * counts[-4:-1].max()):
             continue
         here: Flags = np.asarray(sign * values == levels[-1])
         first = np.flatnonzero(here[1:] & ~here[:-1])
         rise = sign * (values[first + 1] - values[first])
-        if len(first) and float(np.nanmedian(rise)) > max(STEEP * noise, LEAST_STEP):
+        if len(first) and float(np.nanmedian(rise)) > max(SATURATED_RISE * noise, SATURATED_LEAST_RISE):
             stop |= here
     return stop
 
@@ -85,11 +88,11 @@ def ping_period(values: Array) -> tuple[int, int]:
     """
     change = np.diff(values, axis=0)
     new = np.flatnonzero(((change != 0.0) & np.isfinite(change)).any(axis=1)) + 1
-    if len(new) < FEWEST or len(new) > (1.0 - REPEATED) * len(values):
+    if len(new) < SATURATED_SAMPLES or len(new) > (1.0 - HELD_SHARE) * len(values):
         return 1, 0
-    beats = range(SLOWEST, 1, -1)
+    beats = range(SLOWEST_PING, 1, -1)
     on = {k: np.bincount(new % k, minlength=k) for k in beats}
-    return next(((k, int(count.argmax())) for k, count in on.items() if count.max() >= STEADY * len(new)), (1, 0))
+    return next(((k, int(count.argmax())) for k, count in on.items() if count.max() >= PING_REGULARITY * len(new)), (1, 0))
 
 
 def _between(values: Array, beat: int, first: int) -> Array:

@@ -5,10 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from rovval.core.data import Flags, Run
+from rovval.diagnose.criteria import AT_REST_M, AT_REST_S, CONTACT_DEPTH_MARGIN, CONTACT_DEPTH_RANGE
 from rovval.simulation.actuation import Actuation
-
-STILL_S, STILL_M = 3.0, 0.03  # chosen: at rest for 3 s within the noise of a depth sensor
-DEPTH_COVERED, AT_END = 0.3, 0.08  # m, chosen: contact is looked for only in logs that dive, near their ends of depth
 
 
 def in_contact(run: Run, driven: Actuation) -> Flags:
@@ -19,12 +17,12 @@ def in_contact(run: Run, driven: Actuation) -> Flags:
     """
     still = np.zeros(len(run), dtype=bool)
     depth = run.get("z")
-    if not run.measured("z") or np.nanmax(depth) - np.nanmin(depth) < DEPTH_COVERED:
+    if not run.measured("z") or np.nanmax(depth) - np.nanmin(depth) < CONTACT_DEPTH_RANGE:
         return still
-    span = round(STILL_S / run.dt)
+    span = round(AT_REST_S / run.dt)
     idle: Flags = np.asarray((np.abs(driven.inputs.speed) < 1e-9).all(axis=1))
-    deep: Flags = np.asarray(depth > np.nanmax(depth) - AT_END)
+    deep: Flags = np.asarray(depth > np.nanmax(depth) - CONTACT_DEPTH_MARGIN)
     for at in range(0, len(run) - span, span // 5):
-        if idle[at : at + span].all() and deep[at : at + span].all() and np.ptp(depth[at : at + span]) < STILL_M:
+        if idle[at : at + span].all() and deep[at : at + span].all() and np.ptp(depth[at : at + span]) < AT_REST_M:
             still[at : at + span] = True
-    return still | (idle & (depth < np.nanmin(depth) + AT_END))
+    return still | (idle & (depth < np.nanmin(depth) + CONTACT_DEPTH_MARGIN))

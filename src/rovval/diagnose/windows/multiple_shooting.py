@@ -1,4 +1,4 @@
-"""The windows that a diagnosis works on: short stretches restarted from the measured state (multiple shooting).
+"""The windows that a diagnosis works on: short windows restarted from the measured state (multiple shooting).
 
 A window of 10 s is three to five time constants of surge of an observation-class ROV: long enough for a missing force to show as a
 velocity error, short enough that the initial state does not decide the outcome.
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from rovval.core.data import Flags, Run
 from rovval.core.errors import BadInput, all_at_once
+from rovval.diagnose.criteria import FEWEST_WINDOWS, MANY_WINDOWS, MEASURED_SHARE
 from rovval.diagnose.windows.conditioning import condition
 from rovval.diagnose.windows.contact import in_contact
 from rovval.diagnose.windows.noise import clean_channels, sample_strides
@@ -20,12 +21,6 @@ from rovval.diagnose.windows.windows import Windows, residual_channels
 from rovval.plant import Plant
 from rovval.simulation.actuation import recorded_actuation, start_states, startable
 from rovval.vehicle.model import Vehicle
-
-FEWEST_WINDOWS = 3  # one to hold out, two to fit on
-MANY_WINDOWS = 6  # fewer, and shorter windows are tried (chosen)
-SHORTEST_SHARE = 0.6  # chosen: a window with fewer of its samples measured is left out
-
-
 
 
 def cut(runs: Sequence[Run], vehicle: Vehicle, model: str, window_s: float) -> tuple[tuple[Windows, ...], tuple[str, ...]]:
@@ -61,11 +56,11 @@ def cut_run(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Windows:
     """
     for share in (1.0, 0.5):
         try:
-            stretches = _cut(run, vehicle, model, share * window_s)
+            windows = _cut(run, vehicle, model, share * window_s)
         except BadInput:
             continue
-        if stretches.count >= MANY_WINDOWS:
-            return stretches
+        if windows.count >= MANY_WINDOWS:
+            return windows
     return _cut(run, vehicle, model, 0.25 * window_s)
 
 
@@ -78,7 +73,7 @@ def _cut(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Windows:
     start = _starts(driven.known & ~touching, startable(run) & ~wild, steps)
     inside = start[:, None] + np.arange(steps + 1)[None, :]
     possible = np.mean([1.0 / stride for stride in sample_strides(run, channels)])
-    enough = good[inside].mean(axis=(1, 2)) >= SHORTEST_SHARE * possible if len(start) else np.zeros(0, dtype=bool)
+    enough = good[inside].mean(axis=(1, 2)) >= MEASURED_SHARE * possible if len(start) else np.zeros(0, dtype=bool)
     start = start[enough]
     if len(start) < FEWEST_WINDOWS:
         raise BadInput(

@@ -8,13 +8,16 @@ import numpy as np
 
 from rovval.core.data import Array, Flags, Run
 from rovval.core.frames import wrap
+from rovval.diagnose.criteria import (
+    LEAST_NOISE,
+    OUTLIER_SIGMA,
+    QUANTISED_LEVELS,
+    QUANTISED_MISFIT,
+    QUANTISED_REPEATS,
+    QUANTISED_ROUNDING,
+)
 
 ANGLES = ("phi", "theta", "psi")
-LEAST_NOISE = {"u": 1e-3, "v": 1e-3, "w": 1e-3, "p": 1e-3, "q": 1e-3, "r": 1e-3, "phi": 1e-3, "theta": 1e-3, "psi": 2e-3, "x": 5e-3, "y": 5e-3, "z": 5e-3}
-# m/s, rad/s, rad, m: below these no ROV sensor is believed (chosen; keeps a noise-free log from dividing by zero)
-FEWEST_LEVELS, REPEATS = 3, 5  # values of a channel that repeat themselves, and how often each does on the average, in coarse steps (chosen)
-ROUNDING, OFF_GRID = 1e-6, 0.1  # of the largest step: a smaller one is rounding; and of a step, by which levels may miss their grid (chosen)
-OUTLIER_SIGMA = 8.0  # chosen: a sample this far from its neighbours' line is an outlier of the sensor
 
 
 def clean_channels(run: Run, channels: Sequence[str]) -> tuple[Array, Flags, Array, Flags]:
@@ -70,9 +73,9 @@ def quantisation_step(values: Array) -> float:
     a variance of a twelfth of its square (Widrow 1956)."""
     held = values[1:][values[1:] == values[:-1]]
     levels = np.unique(held)
-    if len(levels) < FEWEST_LEVELS or len(levels) * REPEATS > len(held):
+    if len(levels) < QUANTISED_LEVELS or len(levels) * QUANTISED_REPEATS > len(held):
         return 0.0
     steps = np.diff(levels)
-    steps = steps[steps > ROUNDING * steps.max()]
+    steps = steps[steps > QUANTISED_ROUNDING * steps.max()]
     multiples = steps / steps.min()
-    return float(steps.min()) if (np.abs(multiples - np.round(multiples)) < OFF_GRID).all() else 0.0
+    return float(steps.min()) if (np.abs(multiples - np.round(multiples)) < QUANTISED_MISFIT).all() else 0.0

@@ -1,4 +1,4 @@
-"""TODO The windows that a diagnosis works on: short stretches restarted from the measured state (multiple shooting)."""
+"""The windows of a run: measured start states, measured channels, and what a simulation predicts of these."""
 
 from __future__ import annotations
 
@@ -65,29 +65,29 @@ def residual_channels(run: Run) -> tuple[str, ...]:
     return tuple(c for c in chosen if run.measured(c))
 
 
-def predicted_channels(stretches: Windows, nu: Array, eta: Array, out: Array | None = None) -> Array:
+def predicted_channels(windows: Windows, nu: Array, eta: Array, out: Array | None = None) -> Array:
     """The residual channels of simulated motions: (b, steps + 1, 6) twice -> (b, steps + 1, c), into ``out`` where it is given."""
     names = (*VELOCITY_CHANNELS, "x", "y", "z", "phi", "theta", "psi")
-    at = [names.index(channel) for channel in stretches.channels]
+    at = [names.index(channel) for channel in windows.channels]
     begins = [i for i in range(len(at)) if i == 0 or at[i] != at[i - 1] + 1 or at[i] == 6]  # neighbours are copied at once
     blocks = [(at[i], j - i) for i, j in zip(begins, [*begins[1:], len(at)], strict=True)]
     return np.concatenate([(nu, eta)[first // 6][..., first % 6 : first % 6 + size] for first, size in blocks], axis=-1, out=out)
 
 
-def channel_difference(stretches: Windows, a: Array, b: Array) -> Array:
+def channel_difference(windows: Windows, a: Array, b: Array) -> Array:
     """a - b per channel, angles wrapped."""
     out = a - b
-    for i, name in enumerate(stretches.channels):
+    for i, name in enumerate(windows.channels):
         if name in ANGLES and (np.abs(out[..., i]) > np.pi).any():
             out[..., i] = wrap(out[..., i])
     return np.asarray(out)
 
 
-def axis_channels(stretches: Windows) -> dict[str, int]:
+def axis_channels(windows: Windows) -> dict[str, int]:
     """Channel that carries the gap of each measured axis: its velocity, or its pose where that is all there is."""
     carrier = {}
     for axis, velocity in zip(AXES, VELOCITY_CHANNELS, strict=True):
-        name = velocity if velocity in stretches.channels else POSE_OF[velocity]
-        if name in stretches.channels:
-            carrier[axis] = stretches.channels.index(name)
+        name = velocity if velocity in windows.channels else POSE_OF[velocity]
+        if name in windows.channels:
+            carrier[axis] = windows.channels.index(name)
     return carrier

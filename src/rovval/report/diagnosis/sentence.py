@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from rovval.diagnose.problem.prior import STRAINED
+from rovval.diagnose.criteria import OUT_OF_TOLERANCE
 from rovval.diagnose.result.diagnosis import Cause, Diagnosis, Shrinkage
 from rovval.report.common.numbers import number, per_cent, probability, quantity, share
 from rovval.report.diagnosis import recalibration
@@ -116,7 +116,7 @@ def _most(s: Shrinkage) -> str:
 def _beside_tolerance(d: Diagnosis) -> str:
     """What the causes take away once healthy coefficients move, where with those as filed the gap does not surely shrink and it then does."""
     eased = d.within_tolerance
-    overdrawn = d.detection is not None and d.detection.largest_departure > STRAINED
+    overdrawn = d.detection is not None and d.detection.largest_departure > OUT_OF_TOLERANCE
     if not d.causes or overdrawn or d.shrinkage.low > 0 or eased is None or eased.low <= 0:
         return ""
     return (
