@@ -14,9 +14,20 @@ from rovval.diagnose.residuals.ridge import losses
 
 @dataclass(frozen=True, slots=True)
 class Posterior:
-    """Parameters ``beta`` (k,), slop moved; ``columns`` the ``own`` slots of the effects, then slop; the linearisations and their products there;
-    ``precision`` of each column's prior, ``offset`` from where that stands, ``side``: -1 and 1 on a lower and upper bound, else 0, and
-    ``still``: which columns stay in the tangent."""
+    """Quadratic expansion of the log posterior about ``beta``, effects and tolerances together (Laplace approximation: MacKay 1992).
+
+    Cost is twice the negative log posterior times the design effect: squared residuals plus precision times squared departures.
+
+    Attributes:
+        beta: parameters (p,) of the plant.
+        columns: the k slots that move: first the ``effect_count`` of the effects, then those that have a tolerance.
+        whitened: linearisation of each run in the metric of the likelihood; empty where it was dropped.
+        dynamics, total: normal equations without and with parity.
+        precision: of each column's prior (k,), times the design effect.
+        departure: of each column from the mean of its prior (k,).
+        bound_side: -1 and 1 for a column on its lower and upper bound, else 0 (k,).
+        tangent_only: columns that are moved in the linearisation and not in the simulation (k,).
+    """
 
     beta: Array
     columns: tuple[int, ...]

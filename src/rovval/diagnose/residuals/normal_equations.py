@@ -17,8 +17,15 @@ from rovval.core.data import Array
 
 @dataclass(frozen=True, slots=True)
 class NormalEquations:
-    """Per window: ``A`` (m, k, k), ``b`` (m, k), ``c`` (m,); ``columns`` are the plant's slot numbers of the k parameters; ``offset`` (k,)
-    how far each is from where its prior stands (None: all at it)."""
+    """Normal equations of m windows in k parameters: a step d costs c - 2 b.d + d.A d.
+
+    Attributes:
+        A: S^T V^-1 S of each window (m, k, k).
+        b: S^T V^-1 r of each window (m, k).
+        c: r^T V^-1 r of each window (m,).
+        columns: the plant's slot numbers of the k parameters.
+        offset: how far each parameter is from the mean of its prior (k,); None where all are at it.
+    """
 
     A: Array
     b: Array
@@ -153,10 +160,18 @@ def nuisance_corrected(linear: Linearisation, ok: np.ndarray, variance: Array, s
 
 @dataclass(frozen=True, slots=True)
 class Linearisation:
-    """At one parameter point: residual measured - simulated ``r`` (m, n, c), sensitivities of the prediction to parameters ``S`` (m, n, c, k)
-    of ``columns`` and to nuisances ``J`` (m, n, c, s): initial states, then disturbances once these are known. A simulation that stops
-    (`plant`) holds its last state: a window where that happens at the point itself has ``valid`` (m,) False and no slopes, so that it costs what it
-    errs; where it happens a step away, that slope is nothing in that window."""
+    """A linear model of the residuals of m windows of n samples of c channels about one parameter point: r - S d - J x for a step d.
+
+    A simulation that stops holds its last state. A window in which that happens at the point itself costs what it errs and has no sensitivities;
+    where it happens a finite difference away, that sensitivity is zero in that window.
+
+    Attributes:
+        r: residuals, measured minus simulated (m, n, c), in the channel's unit.
+        S: sensitivity of the simulation to each parameter (m, n, c, k).
+        J: sensitivity of the simulation to each nuisance parameter (m, n, c, s): initial states, sensor drift, then disturbances.
+        columns: the plant's slot numbers of the k parameters.
+        valid: windows (m,) in which the simulation does not stop.
+    """
 
     r: Array
     S: Array
