@@ -1,7 +1,7 @@
-"""Confirm a hypothesis by re-simulation: settle its parameters with slop beside them, its evidence, its held-out losses.
+"""Confirm a hypothesis by re-simulation: settle its parameters with coefficients within tolerance beside them, its evidence, its held-out losses.
 
-The evidence is twice the log Bayes factor over nothing at all (Laplace): slop that a hypothesis needs beside it costs what its prior
-says, so a hypothesis that leaves a coefficient eight sigma off does not win by letting slop do the work.
+The evidence is twice the log Bayes factor over nothing at all (Laplace): a departure of coefficients that a hypothesis needs beside it costs what its prior
+says, so a hypothesis that leaves a coefficient eight sigma off does not win by letting the coefficients do the work.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ ONSET_SEARCH_S = (-12.0, -6.0, -3.0, -1.5, 1.5, 3.0, 6.0, 12.0)
 
 @dataclass(frozen=True, slots=True)
 class HypothesisFit:
-    """``beta`` (k,) the vehicle with the effects and no slop; ``point`` where effects and slop settled; ``evidence``; held-out losses per
-    window (m,) about ``beta``: ``loss`` of dynamics and parity, ``dynamic_loss`` of the dynamics alone, as shrinkage is reported."""
+    """``beta`` (k,) the vehicle with the effects and nominal coefficients; ``posterior`` where both were fitted; ``evidence``; held-out losses per
+    window (m,) about ``beta``: ``loss`` of dynamics and parity, ``dynamics_loss`` of the dynamics alone, as shrinkage is reported."""
 
     slots: tuple[int, ...]
     beta: Array
@@ -48,7 +48,7 @@ def fit_hypothesis(problem: Problem, start: Array, slots: tuple[int, ...]) -> Hy
 
 
 def fit_quickly(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[Whitened, ...]) -> HypothesisFit:
-    """As `confirm`, quicker: slop's slopes from nearby, few rounds, an onset where it began."""
+    """As `fit_hypothesis`, quicker: frozen sensitivities of the tolerances from nearby, few rounds, an onset where it began."""
     return _scored(problem, map_fit(problem, start, slots, near, QUICK_STEPS), slots)
 
 
@@ -93,10 +93,10 @@ def held_out_steps(problem: Problem, fitted: HypothesisFit) -> list[tuple[Fold, 
 
 
 def standard_errors(problem: Problem, fitted: HypothesisFit, fixed: Sequence[int] = ()) -> Array:
-    """Standard errors (k,) of the fitted slots that hold under autocorrelated residuals and calibration slop: the sandwich of the joint fit.
+    """Standard errors (k,) of the fitted slots that hold under autocorrelated residuals and coefficients within tolerance: the sandwich of the joint fit.
 
     Scores are summed over pairs of windows; where these are few, never less than the inflated covariance. The other coefficients are
-    off by the declared slop, of which the joint fit takes out what the log shows. Slots that are ``fixed`` stand where they are: no error.
+    off by the declared tolerance, of which the joint fit takes out what the log shows. Slots that are ``fixed`` stand where they are: no error.
     """
     point, k = fitted.posterior, len(fitted.slots)
     free, bread = np.array([c not in fixed for c in point.columns]), np.zeros_like(point.curvature)
@@ -106,12 +106,12 @@ def standard_errors(problem: Problem, fitted: HypothesisFit, fixed: Sequence[int
     pairs = score[: len(score) // 2 * 2].reshape(-1, 2, len(bread)).sum(axis=1)
     half = bread[:k] @ pairs.T
     sandwich = (half**2).sum(axis=1) * (len(score) / max(2 * len(pairs), 1)) * len(pairs) / max(len(pairs) - k, 1)
-    slop = problem.design_effect * (bread[:k, k:] ** 2 @ point.precision[k:])
-    return np.asarray(np.sqrt(np.maximum(sandwich + slop, problem.design_effect * np.diag(bread)[:k])))
+    by_tolerance = problem.design_effect * (bread[:k, k:] ** 2 @ point.precision[k:])
+    return np.asarray(np.sqrt(np.maximum(sandwich + by_tolerance, problem.design_effect * np.diag(bread)[:k])))
 
 
 def significance(problem: Problem, fitted: HypothesisFit, slots: tuple[int, ...]) -> float:
-    """Largest departure of ``slots`` from where the vehicle stands, in standard errors that include calibration slop. Parameters that only
+    """Largest departure of ``slots`` from where the vehicle stands, in standard errors that include coefficients within tolerance. Parameters that only
     place an effect (an onset, a period) have no null of their own: they do not count, and stand where they are."""
     sized = [s for s in slots if not only_places(problem, s)]
     error = standard_errors(problem, fitted, [s for s in slots if s not in sized])

@@ -33,21 +33,21 @@ def identifiable(problem: Problem, wanted: Sequence[int]) -> tuple[tuple[int, ..
             why = f"not excited: a typical size would show with {seen:.1f} standard errors in these logs, {IDENTIFIABLE_ALONE:g} are needed"
             out[slot] = unidentified_row(why)
     while left:
-        slop = [c for c in problem.tolerance.sd if c not in left]
-        free = problem.likelihood.total.place((*left, *slop))
-        prior = [PRIOR_WIDTH * typical[s] for s in left] + [problem.tolerance.sd[c] for c in slop]
+        tolerated = [c for c in problem.tolerance.sd if c not in left]
+        free = problem.likelihood.total.place((*left, *tolerated))
+        prior = [PRIOR_WIDTH * typical[s] for s in left] + [problem.tolerance.sd[c] for c in tolerated]
         covariance = np.linalg.inv(information[np.ix_(free, free)] + np.diag(1.0 / np.array(prior) ** 2))
         shown = np.array([typical[s] for s in left]) / np.sqrt(np.diag(covariance)[: len(left)])
         if shown.min() >= IDENTIFIABLE_JOINTLY:
             break
         worst = left.pop(int(shown.argmin()))
         why = f"not told apart: a typical size shows with {shown.min():.1f} standard errors while the others move"
-        out[worst] = confused_with(problem, worst, (*left, *slop), why)
+        out[worst] = confused_with(problem, worst, (*left, *tolerated), why)
     return tuple(left), out
 
 
 def confused_with(problem: Problem, slot: int, others: Sequence[int], why: str) -> dict[str, Any]:
-    """What a slot that is excited is confused with: tuned ones and coefficients within slop, by coherence; what only a start elsewhere shows (an
+    """What a slot that is excited is confused with: tuned ones and coefficients within tolerance, by coherence; what only a start elsewhere shows (an
     onset, a period) has no signature of its own."""
     others = [s for s in others if s != slot and s in problem.likelihood.total.columns]
     beside = sorted(((problem.plant.slots[s].key, coherence(problem.likelihood.total, (slot,), (s,))) for s in others), key=lambda x: -x[1])
@@ -60,7 +60,7 @@ def fit_identifiable(
 ) -> tuple[HypothesisFit | None, Array, Array, dict[int, dict[str, Any]]]:
     """The joint fit with its 90 % intervals; slots whose interval says nothing at the fitted point are put back and the rest refitted.
 
-    With ``near``, quickly, from there and with slop's slopes there; ``kept`` are fitted whatever their interval.
+    With ``near``, quickly, from there and with frozen sensitivities of the tolerances there; ``kept`` are fitted whatever their interval.
     """
     out = dict[int, dict[str, Any]]()
     while slots:

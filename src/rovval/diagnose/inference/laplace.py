@@ -1,4 +1,4 @@
-"""A point in parameter space where effects and calibration slop stand together: cost, step and evidence there, by its linearisation."""
+"""A point in parameter space where effects and coefficients within tolerance are fitted: cost, step and evidence there, by its linearisation."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class Posterior:
         return step
 
     def standardised_departures(self) -> Array:
-        """Departure of each slop column in standard deviations of its tolerance, one linear step ahead."""
+        """Departure of each coefficient that has a tolerance in standard deviations of its tolerance, one linear step ahead."""
         step = self.solve(self.curvature, self.descent)
         return np.asarray((self.departure + step)[self.effect_count :] * np.sqrt(self.precision[self.effect_count :]))
 

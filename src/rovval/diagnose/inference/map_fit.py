@@ -1,4 +1,4 @@
-"""Settle effects and calibration slop together by re-simulation: the most probable point of both, linearised there.
+"""MAP fit of effects and coefficients within tolerance together by re-simulation: the most probable point of both, linearised there.
 
 Slop moves in the simulation itself, not only in its tangent: a coefficient that has to go far from its tolerance is seen to, and what a
 hypothesis then still gains is gained over a vehicle whose coefficients are as good as a careful calibration makes them. The sensors'
@@ -32,9 +32,10 @@ SHORTER = (1.0, 0.4, 0.1)  # shares of the Gauss-Newton step that are tried
 
 
 def map_fit(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[Whitened, ...] | None = None, rounds: int = MAP_STEPS) -> Posterior:
-    """Fit ``slots`` and slop jointly from ``start``.
+    """Fit ``slots`` and coefficients within tolerance jointly from ``start``.
 
-    With ``near``, the slopes of slop and of the windows' starts are taken from a linearisation nearby; else they are made at ``start``, and
+    With ``near``, the sensitivities of coefficients within tolerance and of the windows' starts are taken from a linearisation nearby; else
+    they are made at ``start``, and
     made anew, `RELINEARISED_TIMES` times at most, where the fit ends far from it. Slop moves in the simulation all the same.
     """
     if near is not None:
@@ -49,12 +50,13 @@ def map_fit(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[
 
 
 def healthy_fit(problem: Problem) -> Posterior:
-    """Where slop settles by itself."""
+    """The MAP fit of coefficients within tolerance alone."""
     return map_fit(problem, progressive_start(problem, problem.origin, ()), ())
 
 
 def progressive_start(problem: Problem, start: Array, slots: tuple[int, ...]) -> Array:
-    """Where ``slots`` and slop (k,) settle from ``start`` on the beginning of each window. Over ten seconds a vehicle that rolls freely, or that something
+    """Parameters (k,) of the MAP fit from ``start`` to the beginning of each window, and from there to more of it. Over ten seconds
+    a vehicle that rolls freely, or that something
     holds, forgets how it began, and a fit of the whole window from far away ends in the first of many valleys."""
     beta = start
     for seconds in PROGRESSIVE_S:
@@ -63,7 +65,7 @@ def progressive_start(problem: Problem, start: Array, slots: tuple[int, ...]) ->
 
 
 def refit_healthy(problem: Problem, before: Posterior, point: Posterior, slots: tuple[int, ...]) -> Posterior:
-    """The healthy vehicle, settled again from where slop stands at ``point``, its ``slots`` gone, or as it was ``before`` where that is better:
+    """The healthy vehicle, settled again from where they are at ``point``, its ``slots`` gone, or as it was ``before`` where that is better:
     every search is local, and no cause is to gain by another start."""
     start = point.beta.copy()
     start[list(slots)] = problem.origin[list(slots)]
@@ -88,7 +90,7 @@ def _columns(problem: Problem, slots: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def _descended(problem: Problem, point: Posterior, slopes: tuple[Whitened, ...], rounds: int) -> Posterior:
-    """The point that damped steps reach, slop's ``slopes`` kept."""
+    """The point that damped steps reach, the tolerances' ``slopes`` kept."""
     for _ in range(rounds):
         better = _better(problem, point, slopes)
         if better is None:
@@ -100,19 +102,19 @@ def _descended(problem: Problem, point: Posterior, slopes: tuple[Whitened, ...],
 
 
 def moved_to(problem: Problem, point: Posterior, slot: int, value: float) -> Posterior:
-    """The point with one slot elsewhere, slop's slopes kept."""
+    """The point with one slot elsewhere, frozen sensitivities of the tolerances kept."""
     beta = point.beta.copy()
     beta[slot] = value
     return posterior_at(problem, beta, point.columns, point.effect_count, point.whitened)
 
 
 def tangent_slots(plant: Plant) -> frozenset[int]:
-    """Slots that stay in the tangent as long as they are slop: those of the sensors."""
+    """Slots that stay in the tangent as long as they are within tolerance: those of the sensors."""
     return frozenset(i for i, slot in enumerate(plant.slots) if effects.load(slot.effect).place == "sensor")
 
 
 def posterior_at(problem: Problem, beta: Array, columns: tuple[int, ...], own: int, near: tuple[Whitened, ...] | None = None) -> Posterior:
-    """Linearise about ``beta``: all columns, or the own ones with the slopes of slop and of the windows' starts from ``near``."""
+    """Linearise about ``beta``: all columns, or the effects' own with frozen sensitivities of all others and of the windows' starts from ``near``."""
     if near is None:
         there = whitened(problem, [linearise(part, beta, columns[:own], coarse=columns[own:]) for part in problem.runs])
     else:

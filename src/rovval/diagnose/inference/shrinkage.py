@@ -1,7 +1,7 @@
 """How far the gap shrinks with effects added: in all and per axis, on windows that the parameters were not fitted on.
 
 Every window is scored with the parameters that the other folds give, in the model linearised about the fitted point, as the held-out
-losses of `confirm` are; intervals are 90 % block bootstraps over windows.
+losses of `fit_hypothesis` are; intervals are 90 % block bootstraps over windows.
 """
 
 from __future__ import annotations
@@ -88,12 +88,12 @@ def _explainable(problem: Problem, loss: Array) -> float:
     return float(min((gap - float(loss.sum())) / max(gap - floor, 1e-12), 1.0))
 
 
-def refitted_shrinkage(problem: Problem, fitted: HypothesisFit, before: Sequence[Array], slop: float, seed: int) -> dict[str, Any]:
+def refitted_shrinkage(problem: Problem, fitted: HypothesisFit, before: Sequence[Array], tolerance: float, seed: int) -> dict[str, Any]:
     """As `shrinkage.shrinkage`, each fold scored with the parameters that a fit without its windows gives; the gap is told in ``problem``'s
     metric, as every other shrinkage is."""
     loss, now = np.zeros(problem.window_count), [residual.copy() for residual in before]
     for fold in _folds(problem):
-        beta = _without(problem, fitted, fold, slop)
+        beta = _without(problem, fitted, fold, tolerance)
         loss[fold.test] = gap_equations_at(problem, beta, ())[0].c[fold.test]
         for own, (new, test) in zip(now, _by_run(problem, corrected_residuals(problem, beta), fold.test), strict=True):
             own[test] = new[test]
@@ -105,11 +105,11 @@ def _folds(problem: Problem) -> tuple[Fold, ...]:
     return problem.folds if len(problem.folds) <= MOST_REFITS else make_folds(problem.run_of_window * MOST_REFITS // len(problem.runs))
 
 
-def _without(problem: Problem, fitted: HypothesisFit, fold: Fold, slop: float) -> Array:
-    """Parameters (k,) of the fitted slots that the other windows give, from where all of them stood; slop's slopes stay."""
+def _without(problem: Problem, fitted: HypothesisFit, fold: Fold, tolerance: float) -> Array:
+    """Parameters (k,) of the fitted slots that the other windows give, from where all of them stood; frozen sensitivities of the tolerances stay."""
     parts = [_some(part, which) for part, which in _by_run(problem, problem.runs, fold.train) if which.any()]
     slopes = [(one.S[which], one.columns) for one, which in _by_run(problem, fitted.posterior.linear, fold.train) if which.any()]
-    less = pose(tuple(parts), Columns(), slop)
+    less = pose(tuple(parts), Columns(), tolerance)
     near = [replace(one, S=S, columns=columns) for one, (S, columns) in zip(less.nominal, slopes, strict=True)]
     point = map_fit(less, fitted.posterior.beta, fitted.slots, whitened(less, near))
     beta = problem.origin.copy()

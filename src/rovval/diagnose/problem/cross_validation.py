@@ -1,6 +1,6 @@
 """Held-out contest of hypotheses in the linearised model: each is fitted on some windows and scored on the others.
 
-A hypothesis is a set of parameters set free on top of a base. The base may hold calibration slop: nominal coefficients that move within
+A hypothesis is a set of parameters set free on top of a base. The base may hold coefficients within tolerance: nominal coefficients that move within
 a stated relative prior. Fits are ridge fits; the data is discounted by ``design_effect``, since residuals are autocorrelated.
 """
 

@@ -12,13 +12,13 @@ from rovval.diagnose.residuals.ridge import Prior
 from rovval.plant import Plant
 
 
-def tolerance_prior(plant: Plant, slop: float) -> Prior:
-    """Standard deviation by plant slot of what a healthy simulator and log may be off by, as each effect states it; empty where ``slop``, the relative
-    calibration tolerance, is zero."""
-    if slop <= 0:
+def tolerance_prior(plant: Plant, relative: float) -> Prior:
+    """Standard deviation by plant slot of what a healthy simulator and log may be off by, as each effect states it; empty where ``relative``, the
+    relative calibration tolerance, is zero."""
+    if relative <= 0:
         return Prior({})
     stated = ((i, slot, slot.parameter.tolerance) for i, slot in enumerate(plant.slots))
-    return Prior({i: t.of(slot.parameter, plant.vehicle, slot.target, slop) for i, slot, t in stated if t is not None})
+    return Prior({i: t.of(slot.parameter, plant.vehicle, slot.target, relative) for i, slot, t in stated if t is not None})
 
 
 

@@ -1,6 +1,6 @@
 """Inner products of residual and sensitivities per window, in a weighted metric with the initial states marginalised.
 
-With V = diag(variance) + J Sigma0 J^T (variance: noise, slop and unexplained residual of a channel at a time in the window), every
+With V = diag(variance) + J Sigma0 J^T (variance: noise, tolerance and unexplained residual of a channel at a time in the window), every
 linear question, held-out gains, coherence, bootstrap, is answered from A = S^T V^-1 S, b = S^T V^-1 r and c = r^T V^-1 r of
 each window (Woodbury identity; where the prior on the initial state is flat, the efficient score of van der Vaart 1998, 25.4).
 """
@@ -56,7 +56,7 @@ def concatenated(parts: list[NormalEquations]) -> NormalEquations:
 
 @dataclass(frozen=True, slots=True)
 class Whitened:
-    """A linearisation in the metric: residual ``r``, nuisances ``J``, ``columns`` and ``valid`` as in `Linear`; slopes ``x`` (m, n c, k) over the
+    """A linearisation in the metric: residual ``r``, nuisances ``J``, ``columns`` and ``valid`` as in `Linearisation`; slopes ``x`` (m, n c, k) over the
     standard errors, of which ``root`` (m, n c) is the inverse (0: no measurement); nuisances ``q`` (m, n c, s) turned so that
     S^T V^-1 S = x^T x - y^T y =: ``A`` (m, k, k) with ``y`` = q^T x (m, s, k)."""
 
