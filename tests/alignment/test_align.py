@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rovval.alignment import align
+from rovval.alignment.series import longest_bridge
 from rovval.core.channels import Rule
 from rovval.core.data import RawLog, Reason, Series
 from rovval.core.errors import BadInput, UsageProblem
@@ -171,7 +172,9 @@ def test_every_log_keeps_the_promises(steps, method, bad):
     values = np.sin(t)
     values[:bad] = 1e3
     every = np.arange(t[0], t[-1] + 0.1, 0.1)  # the grid's own channel
-    run = align(log(u=(t, values), z=(every, every * 0)), methods={"u": method})
+    raw = log(u=(t, values), z=(every, every * 0))
+    run = align(raw, methods={"u": method})
+    bridged, _ = longest_bridge(raw, "u")
     ok = run.ok("u")
     assert np.isfinite(run.values["u"][ok]).all() and np.isnan(run.values["u"][~ok]).all()
     assert (np.abs(run.values["u"][ok]) <= 1.0 + 1e-9).all()
@@ -180,4 +183,25 @@ def test_every_log_keeps_the_promises(steps, method, bad):
     for i in np.flatnonzero(ok):
         near = np.abs(t - at[i]).min()
         width = t[min(before[i] + 1, len(t) - 1)] - t[max(before[i], 0)]
-        assert near <= 0.05 + 1e-6 or (method == "hold" and at[i] > t[-1]) or width <= 0.5 + 1e-5
+        assert near <= 0.05 + 1e-6 or (method == "hold" and at[i] > t[-1]) or width <= bridged + 1e-5
+
+
+@pytest.mark.parametrize(("period", "coverage"), [(0.5, 1.0), (1.0, 1.0), (2.0, 1.0), (2.5, 0.05)])
+def test_a_slow_channel_is_bridged_over_its_own_period(period, coverage):
+    """A log at 1 Hz was compared on the one row in ten that holds a sample; at 0.4 Hz it says nothing about an ROV."""
+    t = np.arange(0, 100, period)
+    run = align(log(u=(t, np.sin(0.1 * t)), v=(grid(1000), grid(1000) * 0)))
+    assert run.ok("u")[: int(t[-1] * 10)].mean() == pytest.approx(coverage, abs=0.02)
+    assert run.resampled["u"].bridged_gap_s == (1.5 * period if 0.5 <= period <= 2.0 else 0.5)
+
+
+def test_a_lost_sample_of_a_slow_channel_stays_a_gap():
+    t = np.delete(np.arange(0, 100, 1.0), 50)
+    run = align(log(u=(t, np.sin(0.1 * t)), v=(grid(1000), grid(1000) * 0)))
+    assert not run.ok("u")[491:509].any() and run.ok("u")[:490].all()
+
+
+def test_what_the_profile_says_of_gaps_is_kept_for_a_slow_channel():
+    t = np.arange(0, 100, 1.0)
+    raw = log({"u": Rule(longest_gap_s=0.7)}, u=(t, np.sin(0.1 * t)), v=(grid(1000), grid(1000) * 0))
+    assert align(raw).ok("u").mean() < 0.11

@@ -88,3 +88,9 @@ def test_a_thruster_far_from_its_set_point_has_a_wrong_unit_or_sign(factor, code
     found = check(log(n_cmd__HFP=(t, wanted), n__HFP=(t, factor * wanted)))
     assert [f.code for f in found] == [code] * bool(code)
     assert all(says in f.detail and f.where == "n:HFP, n_cmd:HFP" for f in found)
+
+
+def test_a_slow_channel_says_what_is_interpolated_over():
+    t = np.arange(0, 100, 1.0)
+    (finding,) = check(log(u=(t, np.sin(0.1 * t))))
+    assert finding.code == "slow_channel" and "every 1 s" in finding.detail and "1.5 s are interpolated over instead of 0.5 s" in finding.detail

@@ -151,3 +151,27 @@ def test_rows_outside_any_window_are_left_out() -> None:
     c = compare(run, replace(sim, windowed=replace(sim.windowed, stretch=stretch, reasons=reasons)))
     assert c.windowed["surge"].n == 200 and c.free["surge"].n == 300
     assert error_growth(c)["surge"].n[0] == 2
+
+
+@pytest.mark.parametrize(("every", "enough"), [(1, True), (9, True), (11, False)])
+def test_a_comparison_of_less_than_a_tenth_of_the_rows_is_refused(every: int, enough: bool) -> None:
+    """A log with one row in a hundred was compared at exit 0; rows that a stretch starts on have no error by construction."""
+    run = make_run(1200)
+    sim = make_sim(run)
+    kept = (np.arange(len(run)) // 10) % every == 0
+    reasons = np.where(kept, Reason.OK, Reason.STOPPED).astype(np.uint8)
+    sparse = replace(sim, free=replace(sim.free, reasons=reasons), windowed=replace(sim.windowed, reasons=reasons))
+    if enough:
+        assert compare(run, sparse).free["surge"].n == kept.sum()
+        return
+    with pytest.raises(BadInput, match="less than 10 %"):
+        compare(run, sparse)
+
+
+def test_rows_that_every_stretch_starts_on_are_no_comparison() -> None:
+    """Of a log at 1 Hz every row was the start of its own stretch: skill +1.00 on every axis."""
+    run = make_run(1200)
+    sim = make_sim(run)
+    alone = replace(sim.free, stretch=np.arange(len(run)))
+    with pytest.raises(BadInput, match=r"0\.0 % of its 1200 rows"):
+        compare(run, replace(sim, free=alone, windowed=alone))

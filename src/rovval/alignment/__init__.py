@@ -3,7 +3,7 @@
 A log that is on such a grid already (within 20 ms at 10 Hz) comes through bit for bit. Else: a channel with ``mean`` that is
 faster than the grid is averaged over the bin around each grid point, a slower one is interpolated linearly between neighbours;
 ``circular`` does the same on the unit circle; ``linear`` interpolates; ``hold`` keeps the previous value, since a command acts
-until the next one. Nothing is bridged beyond a channel's longest gap and nothing extrapolated.
+until the next one. Nothing is bridged beyond a channel's longest gap (`rovval.alignment.series.longest_bridge`) and nothing extrapolated.
 """
 
 from __future__ import annotations
@@ -18,12 +18,11 @@ import numpy as np
 
 from rovval.alignment.clock_offset import estimated_offset
 from rovval.alignment.resampling import ON_GRID, resample
-from rovval.alignment.series import bad_samples
-from rovval.core.channels import POSE, VELOCITIES, Resampling, Rule, channel
+from rovval.alignment.series import bad_samples, longest_bridge
+from rovval.core.channels import DRIVING, Resampling, Rule, channel
 from rovval.core.data import RATE_HZ, Array, ClockReport, Codes, RawLog, Reason, Resampled, Run, Series
 from rovval.core.errors import BadInput, UsageProblem, all_at_once
 
-DRIVING = (*VELOCITIES, *POSE, "n", "n_cmd", "pwm", "stick")  # the channels that span the grid
 SHARED_PHASE = 0.6  # mean resultant length: uniform jitter of a quarter step has 0.64
 LONGEST_S = 30 * 86400.0  # a log longer than a month is a broken clock
 
@@ -67,7 +66,7 @@ def _methods(raw: RawLog, rate_hz: float, methods: Mapping[str, str]) -> dict[st
     for name in raw.channels:
         row, rule = channel(name), raw.rules.get(name, Rule())
         said = methods.get(name, methods.get(row.name, rule.resampling or row.resampling))
-        out[name] = (cast(Resampling, said), rule.longest_gap_s or row.longest_gap_s, rule.stuck_s)
+        out[name] = (cast(Resampling, said), longest_bridge(raw, name)[0], rule.stuck_s)
     return out
 
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from rovval.alignment.series import bad_samples, still_runs
+from rovval.alignment.series import bad_samples, longest_bridge, still_runs
 from rovval.core.channels import channel
 from rovval.core.data import Array, Flags, RawLog, Series
 from rovval.core.errors import Finding
@@ -40,18 +40,27 @@ def _merged(found: list[Finding]) -> list[Finding]:
 
 
 def _gaps(raw: RawLog, name: str, series: Series) -> list[Finding]:
-    rule = raw.rules.get(name)
-    limit = (rule.longest_gap_s if rule else None) or channel(name).longest_gap_s
+    limit, own = longest_bridge(raw, name)
     steps = np.diff(series.t)
+    slow = [_slow(name, float(np.median(steps)), limit)] if own else []
     wide = np.flatnonzero(steps > limit + 1e-6)
     if not len(wide):
-        return []
+        return slow
     longest = wide[np.argmax(steps[wide])]
     detail = (
         f"{len(wide)} gaps longer than {limit:g} s, {steps[wide].sum():.1f} s in all; "
         f"the longest {steps[longest]:.2f} s from t = {series.t[longest]:.1f} s; not bridged"
     )
-    return [Finding("gap", name, detail)]
+    return [*slow, Finding("gap", name, detail)]
+
+
+def _slow(name: str, period_s: float, limit_s: float) -> Finding:
+    """What a reader must know of a channel that is bridged over its own period instead of the channel table's limit."""
+    detail = (
+        f"logged every {period_s:.3g} s, so that up to {limit_s:.3g} s are interpolated over instead of {channel(name).longest_gap_s:g} s; "
+        f"motion quicker than {2 * period_s:.3g} s does not show in it"
+    )
+    return Finding("slow_channel", name, detail)
 
 
 def _stuck(raw: RawLog, name: str, series: Series) -> list[Finding]:

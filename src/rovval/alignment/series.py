@@ -5,11 +5,28 @@ from __future__ import annotations
 import numpy as np
 
 from rovval.core.channels import channel
-from rovval.core.data import Codes, Reason, Series
+from rovval.core.data import Codes, RawLog, Reason, Series
 from rovval.core.errors import Finding
 
+STEPS_BRIDGED = 1.5  # of a slow channel's own period: its neighbours are joined, a lost sample is not made up
+SLOWEST_BRIDGED_S = 2.0  # period (s): a slower channel passes over the motion of an ROV, whose time constants are 2 to 3 s
 MOST_OUTSIDE = 0.5  # a channel that moves mostly outside its sane range is not what the profile says: its rest is no measurement either
 FILL_VALUES = 3  # distinct values: no more than these are what an instrument writes while it has nothing to say (-32.768, 9999)
+
+
+def longest_bridge(raw: RawLog, name: str) -> tuple[float, bool]:
+    """Longest gap of a channel that is interpolated over (s), and whether it follows from the channel's own rate.
+
+    The profile's limit, else the channel table's; where a channel is logged more slowly than the table's limit allows, one and a half of its
+    periods, as long as these are no longer than `SLOWEST_BRIDGED_S`.
+    """
+    rule = raw.rules.get(name)
+    if rule is not None and rule.longest_gap_s is not None:
+        return rule.longest_gap_s, False
+    table, t = channel(name).longest_gap_s, raw.channels[name].t
+    period = float(np.median(np.diff(t))) if len(t) > 2 else 0.0
+    own = STEPS_BRIDGED * period
+    return (own, True) if own > table and period <= SLOWEST_BRIDGED_S * 1.01 else (table, False)
 
 
 def still_runs(series: Series, longer_than_s: float) -> list[tuple[int, int]]:

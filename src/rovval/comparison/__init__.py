@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rovval.comparison import metrics
-from rovval.core.channels import AXES, POSE, VELOCITIES, channel
+from rovval.core.channels import AXES, DRIVING, POSE, VELOCITIES, channel
 from rovval.core.data import Array, ChannelError, Comparison, Flags, Run, SimResult
 from rovval.core.errors import BadInput, SimulationStopped
 from rovval.core.frames import wrap
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 POSE_COMPARED = ("z", "phi", "theta", "psi")
+LEAST_COVERAGE = 0.1  # of a run's rows, beside those that a stretch starts on: fewer are no comparison of that run
 CORE = ("mean_error", "iae", "mae", "rmse")
 
 
@@ -40,7 +41,7 @@ def compare(
     stand beside them in ``extra`` (``ours_mae`` and so on), so that the two are compared like with like.
 
     Raises:
-        BadInput: the three do not have the same number of rows, or have none in common.
+        BadInput: the three do not have the same number of rows, have none in common, or less than a tenth of the run could be compared.
         SimulationStopped: the simulation left sane limits before any row could be compared.
     """
     if sim.free.nu.shape != (len(run), 6) or sim.windowed.nu.shape != (len(run), 6):
@@ -59,6 +60,8 @@ def compare(
         if sim.stops and len(absent) < 6:
             raise SimulationStopped(f"run {run.id}: no row to compare: {sim.stops[0]}", "look at the run's first samples")
         raise BadInput(f"run {run.id}: neither a velocity nor a pose was both measured and simulated", f"not measured: {', '.join(absent)}")
+    if not sim.stops:
+        _refuse_sparse(run, sim)
     nu = None if other is None else _velocities(other, len(run), other_name)
     return Comparison(
         run=run,
@@ -71,6 +74,25 @@ def compare(
         other_name=other_name or ("other" if nu is not None else ""),
         other_nu=nu,
     )
+
+
+def _refuse_sparse(run: Run, sim: SimResult) -> None:
+    """Raises `BadInput` where hardly a row was both measured and simulated for longer than the sample that it was started from."""
+    measured = np.any([run.ok(n) for n in (*VELOCITIES, *POSE_COMPARED)], axis=0)
+    share = max(float((measured & t.ok & ~_starts(t.stretch)).mean()) for t in (sim.free, sim.windowed))
+    if share >= LEAST_COVERAGE:
+        return
+    slowest = max((r.period_s for n, r in run.resampled.items() if n.partition(":")[0] in DRIVING), default=run.dt)
+    raise BadInput(
+        f"run {run.id}: {100 * share:.1f} % of its {len(run)} rows can be compared, less than {100 * LEAST_COVERAGE:.0f} %: "
+        f"the thrusters and the motion are hardly ever known together (slowest channel: one sample in {slowest:.3g} s)",
+        "see the gaps among its findings; a profile may bridge longer ones with longest_gap_s, or give a log of a higher rate",
+    )
+
+
+def _starts(stretch: NDArray[np.int64]) -> Flags:
+    """The rows on which a stretch starts (n,): there the simulated state is the measured one and the error is zero by construction."""
+    return np.asarray(np.r_[True, stretch[1:] != stretch[:-1]])
 
 
 def _first_kept(stretch: NDArray[np.int64], keep: Flags) -> NDArray[np.int64]:

@@ -17,6 +17,7 @@ Resampling = Literal["mean", "hold", "circular", "linear"]
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 VELOCITIES = ("u", "v", "w", "p", "q", "r")
 POSE = ("x", "y", "z", "phi", "theta", "psi")
+DRIVING = (*VELOCITIES, *POSE, "n", "n_cmd", "pwm", "stick")  # what drives a vehicle and how it moves: the channels that span the grid
 STICKS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 
 

@@ -204,3 +204,9 @@ def test_broken_stretches_shorter_than_a_window_are_said() -> None:
     stretch = np.arange(600) // 40
     c = replace(c, sim=replace(c.sim, windowed=replace(c.sim.windowed, stretch=stretch)))
     assert "windows of at most 3.9 s" in words.verdict(c) and "No unbroken stretch" in words.verdict(c)
+
+
+def test_a_log_of_less_than_a_minute_says_so_first() -> None:
+    """Three seconds were compared without a word."""
+    assert words.verdict(windowed(30, 10.0)).startswith("Only 2.9 s of log: under a minute")
+    assert words.verdict(windowed(600, 10.0)).startswith("Over windows of 10 s")

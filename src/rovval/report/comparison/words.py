@@ -10,6 +10,7 @@ import numpy as np
 from rovval.core.data import ChannelError, Comparison
 from rovval.report.common.numbers import duration, listed, number, per_cent, quantity
 
+SHORT_S = 60.0  # s: a shorter log holds six windows of 10 s, too few manoeuvres to judge a simulator by
 LINEAR = ("surge", "sway", "heave")
 TITLES = {"z": "depth", "phi": "roll angle", "theta": "pitch angle", "psi": "heading"}
 
@@ -34,6 +35,18 @@ def verdict(comparison: Comparison) -> str:
 
 def sentences(comparison: Comparison) -> list[str]:
     """One sentence, and what must be said beside it: the axes with the largest gap, and whether the simulator does better than predicting no motion."""
+    return [s for s in (short(comparison), *_answer(comparison)) if s]
+
+
+def short(comparison: Comparison) -> str:
+    """What to know first of a log of less than a minute; empty for a longer one."""
+    run = comparison.run
+    if len(run) * run.dt > SHORT_S - 0.5 * run.dt:
+        return ""
+    return f"Only {duration(run.duration_s)} of log: under a minute, these numbers say little of how good the simulator is."
+
+
+def _answer(comparison: Comparison) -> list[str]:
     table, where = comparison.windowed, f"over {windows(comparison)}"
     if not table:
         table, where = comparison.free, "over the free run"
@@ -43,8 +56,8 @@ def sentences(comparison: Comparison) -> list[str]:
     worst = [max(group, key=lambda a: table[a].rmse) for group in (lines, turns) if group]
     gaps = " and, turning, in ".join(_gap(a, table[a]) for a in worst)
     said = [f"{where.capitalize()}, the simulator is furthest from the vehicle in {gaps}; {_skill(table)}."]
-    if short := shortened(comparison):
-        said.append(short)
+    if less := shortened(comparison):
+        said.append(less)
     if comparison.sim.stops:
         said.append(f"The simulation left sane limits, and the rows after that are not counted: {comparison.sim.stops[0]}.")
     if comparison.other:
