@@ -93,9 +93,10 @@ def test_a_sensor_s_log_starts_where_it_was_measured(name):
 
 
 def test_the_jet_that_meets_the_hull_most_squarely_loses_what_the_effect_says():
-    """Vectored thrusters of a BlueROV2 blow at it when they push out, all alike, the upright ones past it; of a Merlin the upright ones meet it most."""
+    """Vectored thrusters of a BlueROV2 blow at it when they push out (which is astern of their thrust), all alike, the upright ones past it; of a
+    Merlin the upright ones meet it most."""
     small, large = (jet_on_hull(vehicle.load(n)) for n in ("bluerov2_heavy", "merlin"))
-    assert np.allclose(small, [[1.0, 0.0]] * 4 + [[0.0, 0.0]] * 4)
+    assert np.allclose(small, [[0.0, 1.0]] * 4 + [[0.0, 0.0]] * 4)
     assert large.max() == 1.0 and large[:2].max() == 1.0 and np.all((large[3:].max(axis=1) > 0.6) & (large[3:].max(axis=1) < 0.75))
     assert np.all(np.minimum(large[:, 0], large[:, 1]) == 0.0)
 

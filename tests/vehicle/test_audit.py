@@ -9,9 +9,10 @@ import pytest
 from plant_cases import changed
 
 from rovval.core.channels import AXES
-from rovval.vehicle import load
+from rovval.vehicle import load, parse
 from rovval.vehicle.audit import audit, uncontrolled_axes, unsourced
 from rovval.vehicle.model import PulseTable
+from rovval.vehicle.write import to_toml
 
 MERLIN, BLUEROV2 = load("merlin"), load("bluerov2_heavy")
 HALF = np.diag([1468.0, 1468.0, 1468.0, 122.0, 223.0, 213.0])
@@ -55,6 +56,42 @@ def test_commands_that_do_not_fit_the_thrusters_are_problems():
     assert len(found) == 3
     for problem, words in zip(found, ("'surge' has 2 factors for 8 thrusters", "unknown stick 'rudder'", "pwm_us must increase"), strict=True):
         assert words in problem
+
+
+def negated(rows: dict[str, tuple[float, ...]]) -> dict[str, tuple[float, ...]]:
+    return {stick: tuple(-f for f in row) for stick, row in rows.items()}
+
+
+def test_a_stick_that_drives_a_thruster_against_itself_is_a_problem():
+    assert BLUEROV2.mixer is not None
+    sway = BLUEROV2.mixer.factors["sway"]
+    factors = BLUEROV2.mixer.factors | {"sway": (-sway[0], *sway[1:])}
+    (problem,) = audit(BLUEROV2.model_copy(update={"mixer": BLUEROV2.mixer.model_copy(update={"factors": factors, "frame": None})}))
+    assert problem.startswith("mixer: stick 'sway' drives T1 against it: factor -1, but 1 N of its positive thrust gives 0.707 N of sway")
+
+
+def test_a_vehicle_turned_over_as_a_whole_is_told_from_its_frame():
+    """Directions and factors both negated steer the same way, with the strong and the weak side of every thruster swapped."""
+    assert BLUEROV2.mixer is not None
+    thrusters = tuple(t.model_copy(update={"direction": tuple(-x for x in t.direction)}) for t in BLUEROV2.thruster)
+    mixer = BLUEROV2.mixer.model_copy(update={"factors": negated(BLUEROV2.mixer.factors)})
+    found = audit(BLUEROV2.model_copy(update={"thruster": thrusters, "mixer": mixer}))
+    assert len(found) == 6 and all("ArduSub's frame vectored_6dof has" in problem for problem in found)
+    (problem,) = audit(BLUEROV2.model_copy(update={"mixer": BLUEROV2.mixer.model_copy(update={"frame": "vectored_7dof"})}))
+    assert problem == "mixer: unknown frame 'vectored_7dof', known: vectored, vectored_6dof"
+
+
+def test_gains_with_their_strong_side_where_the_table_has_its_weak_one_are_a_problem():
+    first, *others = BLUEROV2.thruster
+    swapped = first.model_copy(update={"k_pos": first.k_neg, "k_neg": first.k_pos})
+    (problem,) = audit(BLUEROV2.model_copy(update={"thruster": (swapped, *others)}))
+    assert problem.startswith("thruster T1: k_pos and k_neg have their strong side where pulse_table has its weak one")
+
+
+def test_a_pulse_table_without_speeds_is_sound():
+    assert BLUEROV2.pulse_table is not None
+    bare = BLUEROV2.model_copy(update={"pulse_table": BLUEROV2.pulse_table.model_copy(update={"rpm": None})})
+    assert audit(bare) == () and parse(to_toml(bare), "bare") == bare
 
 
 def test_a_number_without_a_source_is_named():

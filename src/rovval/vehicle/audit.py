@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from rovval.core.channels import AXES
-from rovval.vehicle.model import Vehicle, allocation, as_matrix, inertia, rigid_body_mass
+from rovval.vehicle.ardusub import FRAMES, factors
+from rovval.vehicle.model import Mixer, PulseTable, Vehicle, allocation, as_matrix, inertia, rigid_body_mass
 
 WEIGHT_MISMATCH = 0.25  # chosen: an ROV is trimmed to within a few per cent; a quarter is a wrong unit or a wrong volume
 DIRECTION_TOLERANCE = 1e-3  # chosen: a direction is printed with three digits or more
+LEVER_TOLERANCE = 1e-6  # N or N m of 1 N of thrust: less than that is rounding of a direction's digits
 
 
 def audit(vehicle: Vehicle) -> tuple[str, ...]:
@@ -105,14 +107,61 @@ def _thrusters(vehicle: Vehicle) -> list[str]:
 
 def _commands(vehicle: Vehicle) -> list[str]:
     problems = []
-    if vehicle.mixer:
-        for stick, factors in vehicle.mixer.factors.items():
+    if mixer := vehicle.mixer:
+        for stick, row in mixer.factors.items():
             if stick not in AXES:
                 problems.append(f"mixer: unknown stick {stick!r}, known: {', '.join(AXES)}")
-            if len(factors) != len(vehicle.thruster):
-                problems.append(f"mixer: stick {stick!r} has {len(factors)} factors for {len(vehicle.thruster)} thrusters")
+            if len(row) != len(vehicle.thruster):
+                problems.append(f"mixer: stick {stick!r} has {len(row)} factors for {len(vehicle.thruster)} thrusters")
+        if not problems:
+            problems = _driven_backwards(vehicle, mixer) + _unlike_its_frame(mixer)
     if table := vehicle.pulse_table:
-        sizes = {len(table.pwm_us), len(table.rpm), len(table.thrust)}
+        sizes = {len(table.pwm_us), len(table.thrust), len(table.pwm_us if table.rpm is None else table.rpm)}
         if len(sizes) != 1 or (np.diff(table.pwm_us) <= 0).any():
-            problems.append("pulse_table: pwm_us, rpm and thrust must have one length and pwm_us must increase")
+            problems.append("pulse_table: pwm_us, thrust and (if given) rpm must have one length and pwm_us must increase")
+        else:
+            problems += _strong_side(vehicle, table)
     return problems
+
+
+def _driven_backwards(vehicle: Vehicle, mixer: Mixer) -> list[str]:
+    """Sticks that drive a thruster against their own axis: factor times wrench of the thruster's positive thrust (`allocation`) below zero."""
+    problems, wrench = [], allocation(vehicle)
+    for stick, row in mixer.factors.items():
+        for name, factor, push in zip(vehicle.thrusters, row, wrench[AXES.index(stick)], strict=True):
+            if factor * push < -LEVER_TOLERANCE:
+                unit = "N" if AXES.index(stick) < 3 else "N m"
+                problems.append(
+                    f"mixer: stick {stick!r} drives {name} against it: factor {factor:g}, but 1 N of its positive thrust gives {push:.3g} {unit} of {stick} "
+                    "(one of factor, direction and position has the wrong sign)"
+                )
+    return problems
+
+
+def _unlike_its_frame(mixer: Mixer) -> list[str]:
+    """Factors that are not those of the autopilot's frame that the mixer names: with directions and factors both negated the vehicle steers
+    as well, and the strong and the weak side of every thruster are swapped."""
+    if mixer.frame is None:
+        return []
+    if mixer.frame not in FRAMES:
+        return [f"mixer: unknown frame {mixer.frame!r}, known: {', '.join(FRAMES)}"]
+    published, problems = factors(mixer.frame), []
+    for stick in dict.fromkeys((*published, *mixer.factors)):
+        want = published.get(stick)
+        if (have := mixer.factors.get(stick)) != want:
+            problems.append(f"mixer: stick {stick!r} has factors {_row(have)}, ArduSub's frame {mixer.frame} has {_row(want)}")
+    return problems
+
+
+def _row(row: tuple[float, ...] | None) -> str:
+    return "none" if row is None else "[" + ", ".join(f"{value:g}" for value in row) + "]"
+
+
+def _strong_side(vehicle: Vehicle, table: PulseTable) -> list[str]:
+    """Thrusters whose gains are stronger the other way than the table of pulse widths that they are driven by."""
+    ahead, astern = max(table.thrust), -min(table.thrust)
+    wrong = [t.name for t in vehicle.thruster if (t.k_pos - t.k_neg) * (ahead - astern) < 0]
+    if not wrong:
+        return []
+    said = f"the table pushes {ahead:.3g} N ahead and {astern:.3g} N astern"
+    return [f"thruster {', '.join(wrong)}: k_pos and k_neg have their strong side where pulse_table has its weak one ({said})"]

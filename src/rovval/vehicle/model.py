@@ -76,19 +76,25 @@ class Thruster(Strict):
 
 
 class Mixer(Strict):
-    """How a pilot's sticks become pulse widths: pwm = neutral + span * sum(factor * stick), clipped by the autopilot at +-span."""
+    """How a pilot's sticks become pulse widths: pwm = neutral + span * sum(factor * stick), clipped by the autopilot at +-span.
+
+    A stick is positive as its axis is: ahead, to starboard, down, roll right, nose up, turn right. A pulse width above ``neutral_us`` is
+    positive thrust. ``frame`` names the autopilot's frame (`rovval.vehicle.ardusub`) whose published factors these are.
+    """
 
     neutral_us: Positive
     span_us: Positive
+    frame: str | None = None
     factors: dict[str, tuple[float, ...]]
 
 
 class PulseTable(Strict):
-    """Pulse width (us) to shaft speed (rpm, signed) and thrust (N) at one supply voltage."""
+    """Pulse width (us) to thrust (N) and, where it was measured, shaft speed (rpm, signed) at one supply voltage. The simulator needs
+    the thrust alone: speeds of a log that holds pulse widths are those at which the thruster's law gives it."""
 
     voltage: Positive
     pwm_us: tuple[float, ...]
-    rpm: tuple[float, ...]
+    rpm: tuple[float, ...] | None = None
     thrust: tuple[float, ...]
 
 
@@ -125,7 +131,9 @@ class Vehicle(Strict):
     @property
     def hash(self) -> str:
         """Short content hash: two vehicles with one hash move alike."""
-        numbers = self.model_dump(mode="json", exclude={"sources": True, "notes": True, "title": True, "thruster": {"__all__": {"rpm_max"}}})
+        numbers = self.model_dump(
+            mode="json", exclude={"sources": True, "notes": True, "title": True, "thruster": {"__all__": {"rpm_max"}}, "mixer": {"frame": True}}
+        )
         text = json.dumps(numbers, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:12]
 

@@ -12,7 +12,7 @@ from rovval.core.channels import AXES
 from rovval.core.data import Array
 from rovval.fly.scenarios import Check, Outcome
 from rovval.fly.scenarios.still_water import swim
-from rovval.vehicle.model import Vehicle, allocation
+from rovval.vehicle.model import PulseTable, Thruster, Vehicle, allocation
 
 MERLIN_RPM = 70.0  # thesis 4.3
 TABLE_SHARE = 0.25  # chosen: a quarter of the fastest speed in the vehicle's pulse table, where it has one
@@ -75,6 +75,11 @@ def movements(vehicle: Vehicle, model: str) -> Outcome:
     )
 
 
+def _fastest(table: PulseTable, thruster: Thruster) -> float:
+    """The table's highest speed (rpm); of a table without speeds, that at which the thruster's law gives its greatest thrust."""
+    return float(np.sqrt(max(table.thrust) / thruster.k_pos)) if table.rpm is None else max(table.rpm)
+
+
 def _pattern(vehicle: Vehicle, axis: str, sign: int) -> Array:
     """Speeds (k,) rpm that push along one axis, the fastest at 70 rpm (or a quarter of its table); a thruster that hardly helps stays still."""
     wrench = np.zeros(6)
@@ -83,5 +88,5 @@ def _pattern(vehicle: Vehicle, axis: str, sign: int) -> Array:
     share = np.where(np.abs(share) > 0.05 * np.abs(share).max(), share, 0.0)
     gain = np.array([t.k_pos if s > 0 else t.k_neg for t, s in zip(vehicle.thruster, share, strict=True)])
     rpm = np.sign(share) * np.sqrt(np.abs(share) / gain)
-    top = TABLE_SHARE * max(vehicle.pulse_table.rpm) if vehicle.pulse_table else MERLIN_RPM
+    top = TABLE_SHARE * _fastest(vehicle.pulse_table, vehicle.thruster[0]) if vehicle.pulse_table else MERLIN_RPM
     return np.asarray(top * rpm / np.abs(rpm).max())
