@@ -205,3 +205,13 @@ def test_what_the_profile_says_of_gaps_is_kept_for_a_slow_channel():
     t = np.arange(0, 100, 1.0)
     raw = log({"u": Rule(longest_gap_s=0.7)}, u=(t, np.sin(0.1 * t)), v=(grid(1000), grid(1000) * 0))
     assert align(raw).ok("u").mean() < 0.11
+
+
+@pytest.mark.parametrize(("rule", "held_to"), [(None, 2.6), (Rule(longest_gap_s=1.0), 3.0)])
+def test_a_command_that_ends_early_is_held_as_long_as_the_profile_says_and_then_missing(rule, held_to):
+    at = np.array([0.5, 0.9, 1.2, 1.6, 2.0])
+    run = align(log({} if rule is None else {"pwm:A": rule}, pwm__A=(at, 1500.0 + 100.0 * at), u=(grid(60), np.ones(60))))
+    inside = (run.t > 0.45) & (run.t < held_to + 0.05)
+    assert np.array_equal(run.ok("pwm:A"), inside)
+    assert run.values["pwm:A"][inside][-1] == 1700.0
+    assert run.reasons["pwm:A"][0] == Reason.BEFORE_FIRST and run.reasons["pwm:A"][-1] == Reason.AFTER_LAST

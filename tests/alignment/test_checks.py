@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from rovval.alignment.checks import check
+from rovval.core.channels import Rule
 from rovval.core.data import RawLog, Series
 from rovval.core.frames import euler_rates, rotation_from_euler, wrap
 
@@ -94,3 +95,19 @@ def test_a_slow_channel_says_what_is_interpolated_over():
     t = np.arange(0, 100, 1.0)
     (finding,) = check(log(u=(t, np.sin(0.1 * t))))
     assert finding.code == "slow_channel" and "every 1 s" in finding.detail and "1.5 s are interpolated over instead of 0.5 s" in finding.detail
+
+
+def test_commands_that_begin_late_and_end_early_are_told():
+    t, late = np.arange(600) * 0.05, np.arange(100) * 0.2 + 3.0
+    sensors = {"r": (t, np.sin(t)), "psi": (t, np.cos(t))}
+    [found] = [f for f in check(log(pwm__A=(late, 1500.0 + late), **sensors)) if f.code == "short"]
+    assert found.where == "pwm:A"
+    assert found.detail == "begins 3.0 s after the log and ends 7.2 s before it; missing there, so nothing is simulated"
+    held = RawLog("x.csv", "ab" * 32, "test", "", None, with_pulses(late, sensors), rules={"pwm:A": Rule(longest_gap_s=2.0)})
+    [found] = [f for f in check(held) if f.code == "short"]
+    assert "its last value is held for 2.0 s, longest_gap_s of the profile" in found.detail
+    assert not [f for f in check(log(pwm__A=(t, 1500.0 + t), **sensors)) if f.code == "short"]
+
+
+def with_pulses(late, sensors):
+    return {"pwm:A": Series(late, 1500.0 + late, "row")} | {n: Series(t, v, "row") for n, (t, v) in sensors.items()}

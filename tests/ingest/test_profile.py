@@ -126,3 +126,9 @@ def test_a_log_that_fits_several_profiles_is_refused_with_their_names(tmp_path, 
     monkeypatch.setattr(ingest, "load_profile", lambda n: parse_profile(table(name=n), n))
     with pytest.raises(BadInput, match="fits several profiles: one, two"):
         ingest.read(path)
+
+
+def test_several_names_of_a_topic_are_for_bags():
+    several = {"u": {"topic": ["XKF1", "NKF1"], "field": "VN", "unit": "m/s"}}
+    with pytest.raises(UsageProblem, match="a list of topics is for bags; autopilot takes one name"):
+        parse_profile(table(format="autopilot", time={"kind": "elapsed", "columns": ["t"], "unit": "s"}, channels=several), "test")

@@ -16,12 +16,15 @@ from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as Bag2
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
+from rovval import vehicle
+from rovval.comparison import compare
 from rovval.core.data import Reason
 from rovval.core.errors import BadInput
 from rovval.core.frames import quaternion_from_euler
 from rovval.ingest import read
 from rovval.ingest.formats.ros_bag import read as read_bag
 from rovval.ingest.profile import parse_profile
+from rovval.simulation import simulate
 from rovval.storage.archive import open_run
 
 START_NS = 1_700_000_000_000_000_000
@@ -122,6 +125,41 @@ def test_an_independent_writer_is_read_too(tmp_path):
         }, "test",
     )  # fmt: skip
     assert np.allclose(read_bag(path, profile).channels["z"].values, np.arange(50) * 0.01)
+
+
+ALTERNATIVES: dict[str, Any] = {
+    "name": "either", "description": "", "format": "ros_bag", "frame": "flu", "world": "enu", "time": {"kind": "record"},
+    "channels": {
+        "u": {"topic": ["odom", "/odom"], "field": "twist.twist.linear.x", "unit": "m/s"},
+        "n:*": {"topic": ["thrusters/*/rpm", "/thrusters/*/rpm"], "field": "data", "unit": "rpm"},
+    },
+}  # fmt: skip
+
+
+def test_a_topic_may_have_several_names_and_the_first_that_is_there_is_read(bags):
+    raw = read_bag(bags["bag"], parse_profile(ALTERNATIVES, "test"))
+    assert set(raw.channels) == {"u", "n:T1", "n:T2"} and raw.properties["topics"] == "/odom, /thrusters/T1/rpm, /thrusters/T2/rpm"
+    both = ALTERNATIVES["channels"] | {"u": {"topic": ["/thrusters/T1/rpm", "/odom"], "field": "data", "unit": "m/s"}}
+    assert read_bag(bags["bag"], parse_profile(ALTERNATIVES | {"channels": both}, "test")).channels["u"].values[0] == 600.0
+
+
+def test_a_topic_under_none_of_its_names_is_missing_under_all(bags):
+    absent = ALTERNATIVES | {"channels": {"u": {"topic": ["odo", "/odo"], "field": "x", "unit": "m/s"}}}
+    with pytest.raises(BadInput, match="odo or /odo"):
+        read_bag(bags["bag"], parse_profile(absent, "test"))
+
+
+@pytest.mark.parametrize(("bag", "profile"), [("yaw_1", None), ("sinRA1F05", None), ("act_3_4_test_1", "bluerov_2016_degrees")])
+def test_the_bags_of_a_bluerov_of_2016_compare(bag: str, profile: str | None):
+    """Pulse widths that begin late or end early are missing there, with or without a leading slash; the vehicle turns as it is driven."""
+    run = open_run(real(f"bluerov_2016/{bag}.bag"), profile)
+    assert run.vehicle.endswith("bluerov_2016")
+    comparison = compare(run, simulate(run, vehicle.load("bluerov_2016")))
+    assert comparison.sim.input_source == "pulse width"
+    if bag != "sinRA1F05":
+        assert any(f.code == "short" for f in run.findings)
+        skill = comparison.windowed["yaw"].skill
+        assert skill is not None and skill > 0.4
 
 
 def test_messages_in_the_write_ahead_log_are_not_lost(bags, tmp_path):

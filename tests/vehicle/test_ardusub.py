@@ -46,4 +46,4 @@ def test_a_stick_of_a_library_vehicle_drives_its_own_axis_by_every_motor_it_has(
 
 
 def test_some_vehicle_flies_with_a_published_frame():
-    assert "bluerov2_heavy" in FLOWN
+    assert FLOWN == ["bluerov2", "bluerov2_heavy"]

@@ -41,7 +41,7 @@ def align(raw: RawLog, rate_hz: float = RATE_HZ, methods: Mapping[str, str] | No
         method, gap_s, stuck_s = chosen[name]
         bad, found = bad_samples(name, series, stuck_s)
         findings += [f for f in found if not any(f.code == k.code and name in k.where.split(", ") for k in raw.findings)]
-        values[name], reasons[name], used = resample(series, bad, start, n, dt, gap_s, method)
+        values[name], reasons[name], used = resample(series, bad, start, n, dt, gap_s, method, raw.rules.get(name, Rule()).longest_gap_s)
         resampled[name] = _report(series, used, gap_s, reasons[name])
     if not any((r == Reason.OK).any() for r in reasons.values()):
         raise BadInput(f"{raw.source}: no channel holds a value on the grid", "see its findings with `rovval ingest`")

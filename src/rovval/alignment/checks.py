@@ -14,6 +14,7 @@ from rovval.core.frames import euler_rates, rotation_from_euler
 
 STUCK_S = 3.0  # a living sensor does not repeat itself to the last digit for so long, unless the vehicle rests
 SENSORS = ("u", "v", "w", "p", "q", "r", "x", "y", "z", "phi", "theta", "psi", "udot", "vdot", "wdot", "altitude")
+COMMANDS = ("n", "n_cmd", "pwm", "stick")
 EULER = ("phi", "theta", "psi")
 LEVEL_RAD = 1.0  # rad of roll and pitch beyond which Euler rates say little
 SET_POINT_CORRELATION, SET_POINT_RATIO = 0.9, 2.0  # correlation and ratio of speed and set-point: a governor that lags or droops stays within
@@ -28,6 +29,7 @@ def check(raw: RawLog) -> tuple[Finding, ...]:
         found += _stuck(raw, name, series)
         found += bad_samples(name, series, None)[1]
         found += _rate(name, series)
+        found += _commands_absent(raw, name, series)
     return (*_merged(found), *_kinematics(raw), *_set_points(raw))
 
 
@@ -61,6 +63,21 @@ def _slow(name: str, period_s: float, limit_s: float) -> Finding:
         f"motion quicker than {2 * period_s:.3g} s does not show in it"
     )
     return Finding("slow_channel", name, detail)
+
+
+def _commands_absent(raw: RawLog, name: str, series: Series) -> list[Finding]:
+    """A stream of commands that begins after or ends before what the sensors logged: without it there is nothing to simulate by."""
+    if name.partition(":")[0] not in COMMANDS:
+        return []
+    first, last = min(float(s.t[0]) for s in raw.channels.values()), max(float(s.t[-1]) for s in raw.channels.values())
+    rule, table = raw.rules.get(name), channel(name)
+    held = rule.longest_gap_s if rule and rule.longest_gap_s and (rule.resampling or table.resampling) == "hold" else 0.0
+    late, early = float(series.t[0]) - first, last - float(series.t[-1])
+    said = [f"begins {late:.1f} s after the log"] if late > table.longest_gap_s else []
+    if early > table.longest_gap_s:
+        keeps = f" (its last value is held for {min(held, early):.1f} s, longest_gap_s of the profile)" if held else ""
+        said.append(f"ends {early:.1f} s before it{keeps}" if said else f"ends {early:.1f} s before the log{keeps}")
+    return [Finding("short", name, " and ".join(said) + "; missing there, so nothing is simulated")] if said else []
 
 
 def _stuck(raw: RawLog, name: str, series: Series) -> list[Finding]:

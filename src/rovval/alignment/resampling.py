@@ -21,8 +21,11 @@ def on_grid(t: Array, start: float, dt: float) -> NDArray[np.int64] | None:
     return k if near.all() and (np.diff(k) > 0).all() else None
 
 
-def resample(series: Series, bad: Codes, start: float, n: int, dt: float, gap_s: float, method: Resampling) -> tuple[Array, Codes, str]:
-    """Values (n,) with NaN where missing, their `Reason` codes, and the method really used.
+def resample(
+    series: Series, bad: Codes, start: float, n: int, dt: float, gap_s: float, method: Resampling, held_s: float | None = None
+) -> tuple[Array, Codes, str]:
+    """Values (n,) with NaN where missing, their `Reason` codes, and the method really used. ``held_s`` (s): how long `hold` keeps the last
+    sample of all; None: at most one and a half median periods.
 
     ``bad`` (len(series),) holds the reason of samples that must not be used: nothing is interpolated across one.
     """
@@ -31,7 +34,7 @@ def resample(series: Series, bad: Codes, start: float, n: int, dt: float, gap_s:
     t, v = series.t[good], series.values[good]
     if len(t) == 0:
         return np.full(n, np.nan), _at(series.t, bad, grid), "none"
-    values, codes = _hold(series, bad, grid, gap_s) if method == "hold" else _linear(series, bad, grid, gap_s, method == "circular")
+    values, codes = _hold(series, bad, grid, gap_s, held_s) if method == "hold" else _linear(series, bad, grid, gap_s, method == "circular")
     k = on_grid(series.t, start, dt)
     if k is not None:
         said, at, exact = "unchanged" if len(k) < 2 or np.median(np.diff(k)) == 1 else _name(method), k[good], v
@@ -87,11 +90,11 @@ def _linear(series: Series, bad: Codes, grid: Array, gap_s: float, circular: boo
     return (wrap(values) if circular else values), codes
 
 
-def _hold(series: Series, bad: Codes, grid: Array, gap_s: float) -> tuple[Array, Codes]:
+def _hold(series: Series, bad: Codes, grid: Array, gap_s: float, held_s: float | None) -> tuple[Array, Codes]:
     good = np.flatnonzero(bad == Reason.OK)
     t, v = series.t[good], series.values[good]
     period = float(np.median(np.diff(t))) if len(t) > 1 else 0.0
-    codes = _outside(series.t, bad, t, grid, min(gap_s, FASTER_THAN_GRID * period))
+    codes = _outside(series.t, bad, t, grid, min(gap_s, FASTER_THAN_GRID * period) if held_s is None else held_s)
     i = np.clip(np.searchsorted(t, grid + EPS_S, "right") - 1, 0, len(t) - 1)
     after = np.clip(i + 1, 0, len(t) - 1)
     age = grid - t[i]

@@ -11,7 +11,7 @@ import hashlib
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError
 
@@ -29,14 +29,16 @@ WorldFrame = Literal["ned", "enu", "nwu"]
 
 
 class Source(BaseModel):
-    """Where a channel stands in the log and how it becomes SI: ``sign * (raw - zero) / span`` in ``unit``."""
+    """Where a channel stands in the log and how it becomes SI: ``sign * (raw - zero) / span`` in ``unit``. ``topic`` may be a list of
+    names of one topic: the first that the bag has is read. ``longest_gap_s``: how far a gap is bridged; a command that is held also acts
+    so long after its last message."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     unit: str
     column: str | None = None
     columns: tuple[str, ...] = ()
-    topic: str | None = None
+    topic: str | Annotated[tuple[str, ...], Field(min_length=1)] | None = None
     field: str | None = None
     sign: Literal[1, -1] = 1
     zero: float = 0.0
@@ -47,6 +49,11 @@ class Source(BaseModel):
     resampling: Resampling | None = None
     longest_gap_s: float | None = Field(default=None, gt=0.0)
     stuck_s: float | None = Field(default=None, gt=0.0)
+
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """The names of the topic, best first; () for a source that is no topic."""
+        return () if self.topic is None else (self.topic,) if isinstance(self.topic, str) else self.topic
 
 
 class Clock(BaseModel):
@@ -146,6 +153,8 @@ def _problems(profile: Profile) -> list[str]:
     low, high = wanted[profile.time.kind]
     if not low <= len(profile.time.columns) <= high:
         found.append(f"time: {profile.time.kind} needs {low} to {high} columns, not {len(profile.time.columns)}")
+    if profile.format != "ros_bag" and (several := [n for n, s in profile.channels.items() if len(s.topics) > 1]):
+        found.append(f"{', '.join(several)}: a list of topics is for bags; {profile.format} takes one name")
     world = [n for n in WORLD_VELOCITY if n in profile.channels and profile.channels[n].frame == "world"]
     if world and len(world) < 3:
         found.append(f"{', '.join(world)}: velocity along world axes needs all of u, v, w with frame = 'world'")
@@ -169,8 +178,8 @@ def _channel_problems(name: str, source: Source) -> list[str]:
         found.append(f"channel {name!r}: columns is for attitude, as four columns w, x, y, z")
     if (source.unit == "quaternion") != (name == ATTITUDE) or (source.unit != "quaternion" and source.unit not in SI):
         found.append(f"channel {name!r}: unknown unit {source.unit!r}; use one of: {', '.join(sorted(SI))}")
-    address = source.column or source.topic or ""
-    if ("*" in member) != ("*" in address) or member.count("*") > 1:
+    places = (source.column,) if source.column else source.topics or ("",)
+    if any(("*" in member) != ("*" in address) for address in places) or member.count("*") > 1:
         found.append(f"channel {name!r}: a pattern needs one * in the channel and one in its column")
     if source.frame == "world" and name not in WORLD_VELOCITY:
         found.append(f"channel {name!r}: frame = 'world' is for u, v, w")

@@ -39,12 +39,13 @@ def recorded_actuation(run: Run, vehicle: Vehicle) -> Actuation:
         wanted = _wanted(family, vehicle)
         if wanted and all(run.measured(name) for name in wanted):
             known = np.all([run.ok(name) for name in wanted], axis=0)
-            values = np.where(known[:, None], run.stack(wanted), 0.0)
-            speed, assumptions = convert(values, vehicle)
+            values = run.stack(wanted)
+            speed = np.zeros_like(values)
+            speed[known], assumptions = convert(values[known], vehicle)  # what is not known is never looked up in a table
             return Actuation(
                 inputs=Inputs(
                     dt=run.dt,
-                    speed=np.where(known[:, None], speed, 0.0),
+                    speed=speed,
                     hold=family != "n",
                     t=run.t,
                     altitude=_optional(run, "altitude"),

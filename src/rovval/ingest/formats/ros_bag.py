@@ -42,8 +42,8 @@ def missing(path: Path, profile: Profile) -> tuple[str, ...]:
 
 
 def _missing(topics: list[str], profile: Profile) -> tuple[str, ...]:
-    wanted = dict.fromkeys(str(s.topic) for s in profile.channels.values() if not s.optional)
-    gone = [w for w in wanted if not any(fnmatchcase(t, w) for t in topics)]
+    wanted = dict.fromkeys(s.topics for s in profile.channels.values() if not s.optional)
+    gone = [" or ".join(names) for names in wanted if not any(fnmatchcase(t, name) for t in topics for name in names)]
     return (*gone, *(f"not {a}" for a in profile.absent if a in topics))
 
 
@@ -57,7 +57,7 @@ def read(path: Path, profile: Profile) -> RawLog:
         if gone := [m for m in _missing([c.topic for c in reader.connections], profile) if not m.startswith("not ")]:
             hint = "see `rovval show profile`, or give another"
             raise BadInput(all_at_once(gone, f"{path}: missing topics of profile {profile.name!r}"), hint)
-        topics = _collect(path, reader, profile)
+        topics = _collect(path, reader, _with_topics_of(profile, [c.topic for c in reader.connections]))
     findings = list(findings)
     stamps = [ns for t in topics.values() for ns in (t.header if t.stamp == "header" else t.record)]
     if not stamps:
@@ -71,6 +71,15 @@ def read(path: Path, profile: Profile) -> RawLog:
     if lags:
         facts["record_minus_header_s"] = f"{-np.median(lags) * 1e-9:.4f}"
     return build(profile, signals, path, sha256(path), t0 if t0 > SIM_TIME_NS else None, findings, facts)
+
+
+def _with_topics_of(profile: Profile, topics: list[str]) -> Profile:
+    """The profile with one name for each topic: of several the first that the bag has."""
+    one = {}
+    for name, source in profile.channels.items():
+        held = [known for known in source.topics if any(fnmatchcase(t, known) for t in topics)]
+        one[name] = source.model_copy(update={"topic": held[0]}) if held else source
+    return profile.model_copy(update={"channels": one})
 
 
 @dataclass(slots=True)
@@ -146,7 +155,7 @@ def _channels(topic: str, profile: Profile) -> dict[str, tuple[Source, Get]]:
     """Channels that the profile takes from ``topic``, each with how to get it out of a message."""
     out = {}
     for name, source in profile.channels.items():
-        if source.topic and fnmatchcase(topic, source.topic):
+        if isinstance(source.topic, str) and fnmatchcase(topic, source.topic):
             found = re.fullmatch(re.escape(source.topic).replace(r"\*", "(.+)"), topic)
             member = found.group(1) if found and found.groups() else ""
             out[name.replace("*", member)] = (source, _getter(str(source.field), name == ATTITUDE))
