@@ -421,3 +421,33 @@ def test_what_an_instrument_writes_without_a_fix_leaves_its_other_samples_alone(
 
     run = open_run(write(tmp_path, edit=no_bottom_lock), "merlin")
     assert run.ok("u").sum() == pytest.approx(100, abs=1)
+
+
+@pytest.mark.parametrize("length", [12, 80])
+def test_two_blocks_of_rows_that_changed_places_are_put_back(tmp_path, length):
+    """Eight seconds of rows exported after the eight that follow them were taken for a clock that jumps by 16 s."""
+    cells = columns(600)
+    order = [*range(200), *range(200 + length, 200 + 2 * length), *range(200, 200 + length), *range(200 + 2 * length, 600)]
+    path = tmp_path / "blocks.csv"
+    path.write_text(text({k: [v[i] for i in order] for k, v in cells.items()}))
+    raw, whole = read(path), read(write(tmp_path, 600))
+    (finding,) = found(raw, "swapped_block")
+    assert f"line {202 + length}" in finding.detail and not found(raw, "clock_step")
+    assert np.array_equal(raw.channels["u"].values, whole.channels["u"].values)
+    assert np.allclose(raw.channels["u"].t, whole.channels["u"].t)
+
+
+def test_a_spike_of_telemetry_is_dropped_and_a_burst_of_thrust_stays(tmp_path):
+    """9999 rpm in single rows drove the simulator out of sane limits, or hid in the average."""
+
+    def edit(cells):
+        for row in (50, 130, 131, 222):
+            cells["HFP_PV"][row] = "9999"
+        cells["HFS_PV"] = ["10"] * 300
+        cells["HFS_PV"][100:110] = ["250"] * 10
+
+    raw = read(write(tmp_path, edit=edit))
+    (finding,) = found(raw, "speed_spike")
+    assert finding.where == "n:HFP" and "4 values of up to 9999 rpm" in finding.detail
+    assert len(raw.channels["n:HFP"].t) == 296 and np.abs(raw.channels["n:HFP"].values).max() < 5.0
+    assert raw.channels["n:HFS"].values.max() == pytest.approx(250 / 60)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -132,3 +134,43 @@ def test_several_names_of_a_topic_are_for_bags():
     several = {"u": {"topic": ["XKF1", "NKF1"], "field": "VN", "unit": "m/s"}}
     with pytest.raises(UsageProblem, match="a list of topics is for bags; autopilot takes one name"):
         parse_profile(table(format="autopilot", time={"kind": "elapsed", "columns": ["t"], "unit": "s"}, channels=several), "test")
+
+
+UNSIGNED: dict[str, Any] = {
+    "name": "esc",
+    "description": "ESC telemetry",
+    "format": "csv_log",
+    "frame": "fsd",
+    "world": "ned",
+    "time": {"kind": "elapsed", "columns": ["t"]},
+    "channels": {
+        "u": {"column": "u", "unit": "m/s"},
+        "n:*": {"column": "rpm_*", "unit": "rpm", "sign_from": "pwm"},
+        "pwm:*": {"column": "pwm_*", "unit": "pwm_us"},
+    },
+}
+
+
+def test_a_speed_without_sign_takes_that_of_its_command(tmp_path):
+    """About the neutral of 1500 us; at neutral the shaft coasts on with the sign that it had."""
+    profile = parse_profile(UNSIGNED, "test")
+    pwm = [1500, 1600, 1600, 1500, 1400, 1400, 1500, 1600]
+    rows = [f"{0.1 * i:.1f},0,{100 + i},{p}" for i, p in enumerate(pwm)]
+    path = tmp_path / "esc.csv"
+    path.write_text("\n".join(["t,u,rpm_A,pwm_A", *rows]) + "\n")
+    raw = ingest.reader("csv_log").read(path, profile)
+    assert np.array_equal(np.sign(raw.channels["n:A"].values), [1, 1, 1, 1, -1, -1, -1, 1])
+    assert np.allclose(np.abs(raw.channels["n:A"].values) * 60, 100 + np.arange(8))
+    assert [f.where for f in raw.findings if f.code == "sign_from_command"] == ["n:A"]
+
+
+def test_a_speed_without_sign_needs_its_command(tmp_path):
+    path = tmp_path / "esc.csv"
+    path.write_text("t,u,rpm_A,rpm_B,pwm_A\n0.0,0,1,1,1500\n0.1,0,1,1,1500\n")
+    with pytest.raises(BadInput, match="n:B takes its sign from pwm:B"):
+        ingest.reader("csv_log").read(path, parse_profile(UNSIGNED, "test"))
+    channels = {k: v for k, v in UNSIGNED["channels"].items() if k != "pwm:*"}
+    with pytest.raises(UsageProblem, match="no channel pwm:THRUSTER is mapped"):
+        parse_profile(UNSIGNED | {"channels": channels}, "test")
+    with pytest.raises(UsageProblem, match="sign_from is for measured thruster speeds"):
+        parse_profile(UNSIGNED | {"channels": UNSIGNED["channels"] | {"u": {"column": "u", "unit": "m/s", "sign_from": "pwm"}}}, "test")

@@ -15,6 +15,7 @@ from rovval.core.frames import ENU_TO_NED, FLU_TO_FSD, euler_from_quaternion, ro
 from rovval.core.units import to_si
 from rovval.ingest.heading import with_heading_zero
 from rovval.ingest.profile import ATTITUDE, GEODETIC, WORLD_VELOCITY, Profile, Source
+from rovval.ingest.thruster_speeds import signed_by_command, without_spikes
 
 SIDEWAYS_OR_DOWN = ("v", "w", "q", "r", "vdot", "wdot")  # change sign between forward-left-up and forward-starboard-down
 TO_NED = {"ned": np.eye(3), "enu": ENU_TO_NED, "nwu": FLU_TO_FSD}
@@ -56,6 +57,9 @@ def build(
             series |= _attitude(signal, present)
         else:
             series[name] = Series(signal.t[present], _si(signal.values[present], signal.source), signal.stamp)
+    series, said = signed_by_command(profile, series)
+    series, spikes = without_spikes(series)
+    found += [*said, *spikes]
     series = _geodetic(profile, series, facts)
     series = _turned(profile, series)
     series = _into_body(profile, series, found)

@@ -1,6 +1,7 @@
 """Row stamps as logged -> strictly increasing stamps and which rows they belong to; every row moved or dropped is a finding.
 
-A row that is late and fits into a hole left for it was swapped: it is sorted in. A few rows whose stamps stand far from their
+A row that is late and fits into a hole left for it was swapped: it is sorted in; so are whole blocks, where each fits to the sample between
+those around it. A few rows whose stamps stand far from their
 neighbours carry a bad stamp: dropped. Stamps that go back and run on through times already logged are a clock that was
 stepped back: those rows keep their spacing and follow one period after the last row. A step forward cannot be told from a
 pause of the recording and stays the gap that the stamps say.
@@ -67,6 +68,10 @@ def _backwards(t: Array, lines: Index, where: str) -> tuple[Array, NDArray[np.bo
     if not _collides(t, period):
         late = lines[np.flatnonzero(t < np.maximum.accumulate(t))]
         return t, np.ones(len(t), bool), [Finding("swapped_row", where, f"{len(late)} rows are late ({first_few(late.tolist())}); sorted")]
+    if _seamless(t, period):
+        begin = lines[np.flatnonzero(forward < 0) + 1]
+        detail = f"blocks of rows stand in another order than their stamps ({first_few(begin.tolist())}), which follow one another to the sample; sorted"
+        return t, np.ones(len(t), bool), [Finding("swapped_block", where, detail)]
     keep = np.ones(len(t), bool)
     bad: list[int] = []
     late_rows: list[int] = []
@@ -122,6 +127,20 @@ def _collides(t: Array, period: float) -> bool:
     close = np.diff(t[order]) < 0.6 * period
     far = np.abs(order - np.arange(len(t))).max() > SLIP_ROWS
     return bool(far or (close & (np.diff(stretch) != 0)).any())
+
+
+def _seamless(t: Array, period: float) -> bool:
+    """Whether, sorted, blocks of rows follow one another without overlap and without a gap, wherever one meets another.
+
+    A clock that was set back and forth would have to land on its old beat to the sample, twice.
+    """
+    steps = np.diff(t)
+    block = np.concatenate(([0], np.cumsum((steps < 0) | (steps > 1.5 * period))))
+    order = np.argsort(t, kind="stable")
+    apart, onwards = np.diff(t[order]), np.diff(block[order])
+    apart, onwards = apart[onwards != 0], onwards[onwards != 0]
+    moved = apart[onwards != 1]  # what follows in the file as well may follow after a pause
+    return bool((steps < 0).sum() <= STEPS and len(moved) and (apart > 0.6 * period).all() and (moved < 1.5 * period).all())
 
 
 def _in_holes(before: Array, late: Array, period: float) -> bool:

@@ -31,7 +31,8 @@ WorldFrame = Literal["ned", "enu", "nwu"]
 class Source(BaseModel):
     """Where a channel stands in the log and how it becomes SI: ``sign * (raw - zero) / span`` in ``unit``. ``topic`` may be a list of
     names of one topic: the first that the bag has is read. ``longest_gap_s``: how far a gap is bridged; a command that is held also acts
-    so long after its last message."""
+    so long after its last message. ``sign_from``, of a speed that is logged without sign: the thruster's own command that has it,
+    ``n_cmd`` or ``pwm`` (about 1500 us)."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -44,6 +45,7 @@ class Source(BaseModel):
     zero: float = 0.0
     span: float = 1.0
     missing: tuple[float, ...] = ()
+    sign_from: Literal["n_cmd", "pwm"] | None = None
     optional: bool = False
     frame: Literal["fsd", "flu", "world"] | None = None
     resampling: Resampling | None = None
@@ -98,7 +100,8 @@ class Profile(BaseModel):
     @property
     def sha256(self) -> str:
         """Digest of what the profile does (its words aside), so that a run's id changes with it."""
-        return hashlib.sha256(self.model_dump_json(exclude={"notes", "description"}).encode()).hexdigest()
+        unset = {name: {"sign_from"} for name, source in self.channels.items() if source.sign_from is None}  # ids of runs stay as they were
+        return hashlib.sha256(self.model_dump_json(exclude={"notes": True, "description": True, "channels": unset}).encode()).hexdigest()
 
 
 def profiles() -> tuple[str, ...]:
@@ -158,6 +161,8 @@ def _problems(profile: Profile) -> list[str]:
     world = [n for n in WORLD_VELOCITY if n in profile.channels and profile.channels[n].frame == "world"]
     if world and len(world) < 3:
         found.append(f"{', '.join(world)}: velocity along world axes needs all of u, v, w with frame = 'world'")
+    lacking = {s.sign_from for s in profile.channels.values() if s.sign_from} - {n.partition(":")[0] for n in profile.channels}
+    found += [f"sign_from = {family!r}: no channel {family}:THRUSTER is mapped" for family in sorted(lacking)]
     geodetic = [n for n in ("x", "y") if n in profile.channels and profile.channels[n].unit == GEODETIC]
     if len(geodetic) == 1:
         found.append(f"{geodetic[0]}: latitude and longitude go together; map x and y both with unit {GEODETIC}")
@@ -185,6 +190,8 @@ def _channel_problems(name: str, source: Source) -> list[str]:
         found.append(f"channel {name!r}: frame = 'world' is for u, v, w")
     if source.frame is not None and family not in (*VELOCITIES, "udot", "vdot", "wdot"):
         found.append(f"channel {name!r}: has no frame")
+    if source.sign_from is not None and family != "n":
+        found.append(f"channel {name!r}: sign_from is for measured thruster speeds, n:THRUSTER")
     if source.span == 0.0:
         found.append(f"channel {name!r}: span must not be 0")
     return found
