@@ -111,3 +111,42 @@ def test_commands_that_begin_late_and_end_early_are_told():
 
 def with_pulses(late, sensors):
     return {"pwm:A": Series(late, 1500.0 + late, "row")} | {n: Series(t, v, "row") for n, (t, v) in sensors.items()}
+
+
+def turning(speed, command, family="n_cmd"):
+    t = np.arange(0, 60, 0.1)
+    wave = np.sin(0.3 * t)
+    return log(**{"n__A": (t, speed(wave)), f"{family}__A": (t, command(wave))})
+
+
+@pytest.mark.parametrize(("family", "command"), [("n_cmd", lambda w: 5 * w), ("pwm", lambda w: 1500 + 300 * w)])
+def test_an_unsigned_speed_beside_a_signed_command_is_named(family, command):
+    """Speeds of ESC telemetry without sign were used as they are."""
+    codes = [f.code for f in check(turning(lambda w: 5 * np.abs(w), command, family))]
+    assert "unsigned" in codes
+    assert not [f for f in check(turning(lambda w: 5 * w, command, family)) if f.code == "unsigned"]
+
+
+def test_a_thruster_that_only_goes_ahead_is_not_unsigned():
+    assert not [f for f in check(turning(lambda w: 5 * np.abs(w), lambda w: 5 * np.abs(w))) if f.code == "unsigned"]
+
+
+@pytest.mark.parametrize(("times", "said"), [(1 / 60, "rpm and rev/s"), (np.pi / 30, "rpm and rad/s"), (2.6, "")])
+def test_the_ratio_of_two_units_is_named(times, said):
+    (finding,) = (f for f in check(turning(lambda w: 5 * times * w, lambda w: 5 * w)) if f.code == "scale")
+    assert (f"(the ratio of {said})" in finding.detail) == bool(said) and finding.detail.count("(") == bool(said)
+
+
+def test_attitude_and_rates_in_radians_are_named_by_the_way_covered():
+    """Both wrong alike agree with each other; the velocities then lead elsewhere than the positions."""
+    spoiled = moving(**dict.fromkeys(("phi", "theta", "psi", "p", "q", "r"), np.radians))
+    assert [f.where for f in check(spoiled) if f.code == "unit"] == ["phi, theta, psi"]
+    assert not [f for f in check(moving()) if f.code == "unit"]
+
+
+def test_a_heading_that_wraps_at_two_pi_degrees_is_in_radians():
+    t = np.arange(0, 120, 0.1)
+    heading = (0.2 * t) % (2 * np.pi)
+    (finding,) = check(log(psi=(t, np.radians(heading))))
+    assert finding.code == "unit" and "it is in radians" in finding.detail
+    assert check(log(psi=(t, wrap(heading)))) == ()

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from rovval.core.errors import UsageProblem
-from rovval.core.units import in_degrees, to_si
+from rovval.core.units import in_degrees, mistaken_units, to_si
 
 
 @pytest.mark.parametrize(
@@ -30,3 +30,10 @@ def test_people_read_degrees_and_all_else_as_it_is():
     value, unit = in_degrees(math.pi, "rad/s")
     assert value == pytest.approx(180.0) and unit == "deg/s"
     assert in_degrees(2.0, "m/s") == (2.0, "m/s")
+
+
+@pytest.mark.parametrize(
+    ("ratio", "units"), [(57.1, "degrees and radians"), (1 / 60.3, "rpm and rev/s"), (0.1047, "rpm and rad/s"), (0.5144, "knots and m/s"), (1.3, ""), (0.0, "")]
+)
+def test_the_ratio_of_two_units_has_their_names(ratio, units):
+    assert mistaken_units(ratio) == units

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import batch_case
+import command_case
 import numpy as np
 import pytest
 from report_cases import make_run
@@ -16,7 +17,8 @@ from rovval.core.data import Run
 from rovval.core.errors import SimulationStopped
 from rovval.pipeline.steps import checked_against
 from rovval.simulation import simulate
-from rovval.simulation.sanity_limits import first_beyond, overspeed
+from rovval.simulation.sanity_limits import first_beyond, overspeed, thrust_against_motion
+from rovval.storage.archive import open_run
 
 MERLIN = vehicle.load("merlin")
 
@@ -81,3 +83,39 @@ def test_the_command_writes_what_there_is_and_ends_with_4(tmp_path, monkeypatch,
     assert isinstance(done.exception, SimulationStopped) and done.exception.exit_code == 4
     assert "overspeed: n:VFP" in done.stderr and "beyond the 500 rpm" in done.stderr
     assert list((tmp_path / "reports").rglob("report.html" if command == "compare" else "fossen.parquet"))
+
+
+@pytest.mark.parametrize(
+    ("times", "said"), [(1 / 60, "rev/s taken for rpm is 60"), (np.pi / 30, "rad/s taken for rpm is 9.55"), (1.0, ""), (0.5, ""), (2.0, "")]
+)
+def test_speeds_too_small_for_the_motion_are_suspected_by_their_unit(tmp_path, times, said):
+    """A log in rev/s that the profile calls rpm was a simulator that hardly moves, and no word of it."""
+    run = open_run(command_case.write_dive(tmp_path))
+    scaled = replace(run, values={name: times * v if name.startswith("n:") else v for name, v in run.values.items()})
+    found = thrust_against_motion(scaled, MERLIN)
+    assert [f.code for f in found] == ["unit"] * bool(said) and all(said in f.detail for f in found)
+
+
+def test_a_vehicle_that_drifts_without_thrust_is_not_suspected(tmp_path):
+    run = open_run(command_case.write_dive(tmp_path))
+    rng = np.random.default_rng(0)
+    idle = replace(run, values={name: rng.normal(0, 0.01, len(run)) if name.startswith("n:") else v for name, v in run.values.items()})
+    assert thrust_against_motion(idle, MERLIN) == ()
+
+
+def test_thrust_that_no_vehicle_has_is_suspected():
+    [found] = thrust_against_motion(wild(60_000.0), MERLIN)
+    assert found.code == "unit" and "times the weight of merlin" in found.detail
+
+
+def test_a_missing_feedback_says_what_drives_the_thrusters_instead(tmp_path, monkeypatch):
+    """One speed of seven that was blank sent all thrusters to their set-points without a word on the terminal."""
+    monkeypatch.chdir(tmp_path)
+    log = batch_case.write_log(tmp_path / "dive.csv", seconds=20)
+    rows = [line.split(",") for line in log.read_text().splitlines()]
+    for row in rows[1:]:
+        row[rows[0].index("VAC_PV")] = "nan"
+    log.write_text("\n".join(map(",".join, rows)) + "\n")
+    done = CliRunner().invoke(app, ["compare", "dive.csv", "--profile", "merlin"])
+    assert done.exit_code == 0
+    assert "thruster_input: n:VAC: no measured speed, so the speed set-point drives all thrusters" in done.stderr

@@ -6,18 +6,20 @@ from itertools import pairwise
 
 import numpy as np
 
+from rovval.alignment.attitude_unit import attitude_in_radians
 from rovval.alignment.series import bad_samples, longest_bridge, still_runs
+from rovval.alignment.thruster_commands import against_commands
 from rovval.core.channels import channel
 from rovval.core.data import Array, Flags, RawLog, Series
 from rovval.core.errors import Finding
 from rovval.core.frames import euler_rates, rotation_from_euler
+from rovval.core.units import mistaken_units
 
 STUCK_S = 3.0  # a living sensor does not repeat itself to the last digit for so long, unless the vehicle rests
 SENSORS = ("u", "v", "w", "p", "q", "r", "x", "y", "z", "phi", "theta", "psi", "udot", "vdot", "wdot", "altitude")
 COMMANDS = ("n", "n_cmd", "pwm", "stick")
 EULER = ("phi", "theta", "psi")
 LEVEL_RAD = 1.0  # rad of roll and pitch beyond which Euler rates say little
-SET_POINT_CORRELATION, SET_POINT_RATIO = 0.9, 2.0  # correlation and ratio of speed and set-point: a governor that lags or droops stays within
 KINEMATIC_CORRELATION = 0.5  # correlation of two signals that are one by kinematics, beyond which a sign or a scale may be named
 
 
@@ -30,7 +32,7 @@ def check(raw: RawLog) -> tuple[Finding, ...]:
         found += bad_samples(name, series, None)[1]
         found += _rate(name, series)
         found += _commands_absent(raw, name, series)
-    return (*_merged(found), *_kinematics(raw), *_set_points(raw))
+    return (*_merged(found), *_kinematics(raw), *attitude_in_radians(raw), *against_commands(raw))
 
 
 def _merged(found: list[Finding]) -> list[Finding]:
@@ -148,26 +150,6 @@ def _kinematics(raw: RawLog) -> list[Finding]:
     return found
 
 
-def _set_points(raw: RawLog) -> list[Finding]:
-    """Measured speed of each thruster against its set-point: where one is a multiple of the other, a unit or a sign is wrong."""
-    found: list[Finding] = []
-    for name, speed in raw.channels.items():
-        family, _, thruster = name.partition(":")
-        wanted = raw.channels.get(f"n_cmd:{thruster}")
-        if family != "n" or wanted is None or min(len(speed.t), len(wanted.t)) < 50:
-            continue
-        a, b = speed.values, np.interp(speed.t, wanted.t, wanted.values)
-        aa, ab, bb = (float((x * y).sum()) for x, y in ((a, a), (a, b), (b, b)))
-        if abs(ab) < SET_POINT_CORRELATION * np.sqrt(aa * bb) or ab == 0.0:
-            continue
-        if ab < 0:
-            found.append(Finding("sign", f"{name}, n_cmd:{thruster}", "the thruster turns against its set-point: one of the signs is wrong"))
-        elif not 1 / SET_POINT_RATIO < ab / bb < SET_POINT_RATIO:
-            detail = f"the thruster turns {ab / bb:.3g} times its set-point: one of the units is wrong"
-            found.append(Finding("scale", f"{name}, n_cmd:{thruster}", detail))
-    return found
-
-
 def _step(x: Array, k: int) -> Array:
     return np.asarray(x[k:] - x[:-k])
 
@@ -195,6 +177,9 @@ def _agree(names: str, moved: Array, said: Array) -> list[Finding]:
         detail = f"the pose runs against the velocity that is its rate (correlation {correlation:.2f}): one of the signs is wrong"
         return [Finding("sign", names, detail)]
     if correlation > 0.9 and not 0.8 < scale < 1.25:
-        detail = f"the pose moves {scale:.3g} times what the velocity that is its rate gives: one of the units or scales is wrong"
+        units = mistaken_units(scale)
+        detail = f"the pose moves {scale:.3g} times what the velocity that is its rate gives: one of the units or scales is wrong" + (
+            f" (the ratio of {units})" if units else ""
+        )
         return [Finding("scale", names, detail)]
     return []

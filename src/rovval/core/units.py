@@ -54,6 +54,27 @@ DEGREES = 180.0 / pi
 DEGREE_UNITS = {"rad": "deg", "rad/s": "deg/s"}
 
 
+# Ratios that one unit taken for another leaves, and which two these are.
+MISTAKEN = (
+    (180.0 / pi, "degrees and radians"),
+    (60.0, "rpm and rev/s"),
+    (30.0 / pi, "rpm and rad/s"),
+    (2.0 * pi, "rad/s and rev/s"),
+    (3600.0 / 1852.0, "knots and m/s"),
+    (1.0 / 0.3048, "feet and metres"),
+    (3.6, "km/h and m/s"),
+    (100.0, "cm and m"),
+    (1000.0, "mm and m"),
+)
+
+
+def mistaken_units(ratio: float, within: float = 0.04) -> str:
+    """The two units that a ratio (or its inverse) of two measurements of one thing is that of, to a share of ``within``; "" where it is none."""
+    size = max(abs(ratio), 1.0 / abs(ratio)) if ratio else 0.0
+    off, words = min((abs(size / r - 1.0), words) for r, words in MISTAKEN)
+    return words if off <= within else ""
+
+
 def to_si(unit: str) -> float:
     """Multiplier of ``unit`` into SI; refuses a unit that is not in the table."""
     try:

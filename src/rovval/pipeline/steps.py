@@ -29,12 +29,14 @@ def vehicle_of(run: Run, wanted: str | None) -> Vehicle:
 
 
 def checked_against(run: Run, vehicle: Vehicle) -> Run:
-    """The run with what it shows beyond the limits of the vehicle's own file among its findings."""
+    """The run with what it shows beside the vehicle's own file among its findings: speeds beyond its limits, thrusters that lack an input."""
     from dataclasses import replace
 
-    from rovval.simulation.sanity_limits import overspeed
+    from rovval.simulation.actuation import replaced_input
+    from rovval.simulation.sanity_limits import overspeed, thrust_against_motion
 
-    return replace(run, findings=tuple(dict.fromkeys((*run.findings, *overspeed(run, vehicle)))))
+    beside = (*replaced_input(run, vehicle), *overspeed(run, vehicle), *thrust_against_motion(run, vehicle))
+    return replace(run, findings=tuple(dict.fromkeys((*run.findings, *beside))))
 
 
 def other_velocities(path: Path, run: Run, profile: str | None, archive: Path) -> Array:

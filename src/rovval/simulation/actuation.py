@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from rovval.core.channels import VELOCITIES
 from rovval.core.data import Array, Flags, Run
-from rovval.core.errors import BadInput
+from rovval.core.errors import BadInput, Finding
 from rovval.core.frames import rotation_from_euler, wrap
 from rovval.plant import Inputs
 from rovval.vehicle.model import Mixer, PulseTable, Vehicle
@@ -66,6 +66,24 @@ def recorded_actuation(run: Run, vehicle: Vehicle) -> Actuation:
         f"run {run.id}: no thruster input for {vehicle.name} ({', '.join(vehicle.thrusters)}); {why}",
         "map a speed, set-point, pulse width or stick channel for every thruster in the profile, or choose the right --vehicle",
     )
+
+
+def replaced_input(run: Run, vehicle: Vehicle) -> tuple[Finding, ...]:
+    """A finding where a better channel of the thrusters is in the log and does not cover all of them, so that another drives the plant.
+
+    Empty where no family covers every thruster: `recorded_actuation` refuses such a run.
+    """
+    partly: list[tuple[str, str]] = []
+    for family in SOURCES:
+        wanted = _wanted(family, vehicle)
+        gone = [name for name in wanted if not run.measured(name)]
+        if wanted and not gone:
+            return tuple(
+                Finding("thruster_input", lack, f"no {SOURCES[had]}, so the {SOURCES[family]} drives all thrusters") for had, lack in partly
+            )
+        if len(gone) < len(wanted):
+            partly.append((family, ", ".join(gone)))
+    return ()
 
 
 def start_states(run: Run, at: NDArray[np.int64]) -> tuple[Array, Array, tuple[str, ...]]:
