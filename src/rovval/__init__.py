@@ -28,22 +28,26 @@ if TYPE_CHECKING:
 __all__ = ["__version__", "compare", "diagnose", "fit", "load", "plot", "simulate"]
 
 
-def load(source: str | Path, profile: str | Path | None = None, archive: str | Path = "archive") -> Run:
+def load(
+    source: str | Path, profile: str | Path | None = None, archive: str | Path = "archive", *, start_s: float | None = None, end_s: float | None = None
+) -> Run:
     """A log as a run: channels on a 10 Hz grid in SI, body axes forward-starboard-down, world north-east-down.
 
     Args:
         source: a log file or bag folder, or the id of a run in ``archive``.
         profile: how to read the log: a name of `rovval list profile` or a TOML file; None takes the one built-in profile that fits.
+        start_s, end_s: the stretch of it that is taken, s since the run's start; None is where it begins and ends.
 
     Raises:
-        BadInput: the log cannot be used, or fits none or several of the built-in profiles.
+        BadInput: the log cannot be used, fits none or several of the built-in profiles, or the stretch is beyond it or empty.
         UsageProblem: there is no such profile, or it is wrong.
     """
     from pathlib import Path
 
+    from rovval.alignment.stretch import stretch_of
     from rovval.storage.archive import open_run
 
-    return open_run(source, None if profile is None else str(profile), Path(archive))
+    return stretch_of(open_run(source, None if profile is None else str(profile), Path(archive)), start_s, end_s)
 
 
 def simulate(

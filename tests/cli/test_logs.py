@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from rovval.cli import logs
 from rovval.cli.app import app
-from rovval.core.errors import Finding, UsageProblem
+from rovval.core.errors import BadInput, Finding, UsageProblem
 from rovval.storage.archive import open_run
 
 RUNNER = CliRunner()
@@ -84,3 +84,14 @@ def test_a_vehicle_is_not_written_over_the_one_it_is_made_from(tmp_path, monkeyp
     assert isinstance(done.exception, UsageProblem)
     assert "mine.toml: is the vehicle that was asked for" in str(done.exception)
     assert mine.read_text() == "# my comments\n"
+
+
+@pytest.mark.parametrize("command", ["compare", "simulate"])
+def test_a_stretch_of_a_log_is_taken_and_said(tmp_path, monkeypatch, command):
+    monkeypatch.chdir(tmp_path)
+    write(tmp_path)
+    done = RUNNER.invoke(app, [command, "dive.csv", "--profile", "merlin", "--json", "--from", "5", "--to", "25"])
+    assert done.exit_code == 0, done.output
+    assert json.loads(done.stdout)["run"].endswith("-from5to25s") and "stretch: log: from 5 to 25 s of" in done.stderr
+    beyond = RUNNER.invoke(app, [command, "dive.csv", "--profile", "merlin", "--from", "5", "--to", "2500"])
+    assert isinstance(beyond.exception, BadInput) and "beyond the log" in beyond.exception.message

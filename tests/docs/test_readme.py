@@ -81,7 +81,7 @@ def test_the_tour_on_ones_own_csv(tmp_path, monkeypatch):
             assert load_profile("my_log.toml").name == "merlin"
             Path("my_log.toml").write_text(profile, encoding="utf-8")
     assert Path("diagnosis.json").exists()
-    assert len(list(Path("reports").glob("*/report.html"))) == 2
+    assert len(list(Path("reports").glob("*/report.html"))) == 3
 
 
 def test_the_notebook_block(tmp_path, monkeypatch, capsys):

@@ -38,6 +38,8 @@ def command(
     effect: options.EffectOption = None,
     window: options.WindowOption = 10.0,
     profile: options.ProfileOption = None,
+    start_s: options.FromOption = None,
+    end_s: options.ToOption = None,
     archive: options.ArchiveOption = Path("archive"),
     out: Out = None,
     fail_above: options.FailAbove = None,
@@ -53,6 +55,7 @@ def command(
     Example:
       rovval compare dive.csv --profile merlin
       rovval compare dive.csv --fail-above surge=0.10 --fail-above yaw.iae=5 --json
+      rovval compare dive.csv --from 12 --to 95
       rovval compare run_a.csv --with run_a.sim.csv --with-profile bluerov2_tank_sim
     """
     from rovval.comparison import compare
@@ -62,7 +65,7 @@ def command(
     show = output.progress(quiet)
     limits = tolerances.parse(fail_above or ())
     show("read", 0.0)
-    run = logs.opened(source, profile, archive, quiet)
+    run = logs.opened(source, profile, archive, quiet, start_s, end_s)
     nominal = vehicle_of(run, vehicle)
     run = logs.checked_against(run, nominal, quiet)
     other = None if with_ is None else other_velocities(with_, run, with_profile, archive)

@@ -21,6 +21,8 @@ def command(
     model: options.ModelOption = options.Model.fossen,
     window: options.WindowOption = 10.0,
     profile: options.ProfileOption = None,
+    start_s: options.FromOption = None,
+    end_s: options.ToOption = None,
     archive: options.ArchiveOption = Path("archive"),
     json_: options.JsonFlag = False,
     quiet: options.QuietOption = False,
@@ -38,7 +40,7 @@ def command(
 
     refuse_unwritable(out)
     options.refuse_overwriting(vehicle, out)
-    runs = logs.opened_as_one(sources, vehicle, profile, archive, quiet)
+    runs = logs.opened_as_one(sources, vehicle, profile, archive, quiet, start_s, end_s)
     wanted = [name for some in parameters for name in some.split(",") if name]
     tuned = fit(runs, vehicle_of(runs[0], vehicle), wanted, model=model.value, window_s=window)
     write_text(out, tuned.vehicle)

@@ -16,11 +16,14 @@ if TYPE_CHECKING:
 MOST_FINDINGS = 6  # findings of a run in a terminal; the others stand in its report
 
 
-def opened(source: str, profile: str | None, archive: Path, quiet: bool = False) -> Run:
-    """The run of a log file, folder or id; its findings on stderr."""
+def opened(
+    source: str, profile: str | None, archive: Path, quiet: bool = False, start_s: float | None = None, end_s: float | None = None
+) -> Run:
+    """The run of a log file, folder or id, or its stretch from ``start_s`` to ``end_s``; its findings on stderr."""
+    from rovval.alignment.stretch import stretch_of
     from rovval.storage.archive import open_run
 
-    run = open_run(source, profile, archive)
+    run = stretch_of(open_run(source, profile, archive), start_s, end_s)
     print_findings(run, quiet)
     return run
 
@@ -46,9 +49,13 @@ def refuse_stopped(sim: SimResult) -> None:
     )
 
 
-def opened_as_one(sources: Sequence[str], vehicle: str | None, profile: str | None, archive: Path, quiet: bool = False) -> list[Run]:
-    """Runs that are one experiment: each given once, all of one vehicle unless ``vehicle`` says which. Raises `UsageProblem`."""
-    runs = [opened(source, profile, archive, quiet) for source in sources]
+def opened_as_one(
+    sources: Sequence[str], vehicle: str | None, profile: str | None, archive: Path, quiet: bool = False,
+    start_s: float | None = None, end_s: float | None = None,
+) -> list[Run]:  # fmt: skip
+    """Runs that are one experiment: each given once, all of one vehicle unless ``vehicle`` says which, of each the same stretch. Raises
+    `UsageProblem`."""
+    runs = [opened(source, profile, archive, quiet, start_s, end_s) for source in sources]
     for k, run in enumerate(runs):
         if run.id in (earlier := [r.id for r in runs[:k]]):
             raise UsageProblem(

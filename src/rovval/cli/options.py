@@ -53,6 +53,11 @@ VehicleOption = Annotated[
         help="A name of `rovval list vehicle` or a TOML file. Default: the vehicle that the run names.",
     ),
 ]
+FromOption = Annotated[
+    float | None,
+    typer.Option("--from", metavar="S", help="Take the log from here, s since the run's start, as if it began there."),
+]
+ToOption = Annotated[float | None, typer.Option("--to", metavar="S", help="Take the log to here, s since the run's start.")]
 ModelOption = Annotated[Model, typer.Option("--model", help="Equations of motion.")]
 ArchiveOption = Annotated[Path, typer.Option("--archive", metavar="DIR", help="Where runs are kept.")]
 EffectOption = Annotated[

@@ -30,6 +30,8 @@ def command(
     vehicle: options.VehicleOption = None,
     model: options.ModelOption = options.Model.fossen,
     profile: options.ProfileOption = None,
+    start_s: options.FromOption = None,
+    end_s: options.ToOption = None,
     archive: options.ArchiveOption = Path("archive"),
     json_: options.JsonFlag = False,
 ) -> None:
@@ -44,10 +46,12 @@ def command(
       rovval scenario 2 --vehicle bluerov2_heavy --model freefloating
       rovval scenario 4 dive.csv --profile merlin
     """
+    if source is None and (start_s is not None or end_s is not None):
+        raise UsageProblem("--from and --to cut a log, and none was given", "give the log")
     if source is not None and number not in NEED_A_LOG:
         raise UsageProblem(f"scenario {number} takes no log: it commands the thrusters itself", "leave the log out")
     outcome = (
-        _with_log(number, source, vehicle, model.value, profile, archive)
+        _with_log(number, source, vehicle, model.value, profile, archive, (start_s, end_s))
         if number in NEED_A_LOG
         else _alone(number, vehicle, model.value)
     )
@@ -70,11 +74,13 @@ def _alone(number: int, vehicle: str | None, model: str) -> Outcome:
     return {1: stability, 2: thrusters, 3: movements}[number](load(vehicle or "merlin"), model)
 
 
-def _with_log(number: int, source: str | None, vehicle: str | None, model: str, profile: str | None, archive: Path) -> Outcome:
+def _with_log(
+    number: int, source: str | None, vehicle: str | None, model: str, profile: str | None, archive: Path, between: tuple[float | None, float | None]
+) -> Outcome:
     from rovval import demo
     from rovval.pipeline.steps import vehicle_of
 
-    run = demo.sample() if source is None else logs.opened(source, profile, archive)
+    run = demo.sample() if source is None else logs.opened(source, profile, archive, False, *between)
     if number == 4:
         from rovval.fly.scenarios.hardware import hardware
 

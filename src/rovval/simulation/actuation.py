@@ -40,7 +40,7 @@ def recorded_actuation(run: Run, vehicle: Vehicle) -> Actuation:
         if wanted and all(run.measured(name) for name in wanted):
             known = np.all([run.ok(name) for name in wanted], axis=0)
             values = run.stack(wanted)
-            speed = np.zeros_like(values)
+            speed = np.zeros((len(run), len(vehicle.thrusters)))
             speed[known], assumptions = convert(values[known], vehicle)  # what is not known is never looked up in a table
             return Actuation(
                 inputs=Inputs(
