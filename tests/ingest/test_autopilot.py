@@ -16,13 +16,19 @@ from rovval.storage.archive import open_run
 START_S = 1_700_000_000
 
 
-def tlog(path, n=200, velocity=(0.0, 0.5, 0.1), damage=0):
+HEAVY = {"FRAME_CONFIG": 2.0, **{f"MOT_{i}_DIRECTION": 1.0 for i in range(1, 9)}}
+
+
+def tlog(path, n=200, velocity=(0.0, 0.5, 0.1), damage=0, parameters=HEAVY):
     """Heading east at 0.5 m/s: all of it is surge; the ground station stamps 40 ms after the autopilot, jittered."""
     from pymavlink.dialects.v20 import ardupilotmega as m
 
     link = m.MAVLink(None, srcSystem=1, srcComponent=1)
     rng = np.random.default_rng(0)
     with path.open("wb") as file:
+        for k, (name, value) in enumerate(parameters.items()):
+            message = m.MAVLink_param_value_message(name.encode(), value, 9, len(parameters), k)
+            file.write(struct.pack(">Q", int(START_S * 1e6)) + message.pack(link))
         for i in range(n):
             boot = 5000 + i * 100
             out = [
@@ -54,7 +60,7 @@ def test_damaged_packets_are_left_out_and_said(tmp_path):
     assert len(raw.channels["u"].t) > 150 and raw.findings
 
 
-@pytest.mark.parametrize(("name", "profile"), [("small.BIN", "ardusub"), ("small.tlog", "ardusub_tlog"), ("2023-04-18_11-03-34.tlog", "ardusub_tlog")])
+@pytest.mark.parametrize(("name", "profile"), [("small.BIN", "ardusub_vectored"), ("small.tlog", "ardusub_tlog"), ("2023-04-18_11-03-34.tlog", "ardusub_tlog")])
 def test_published_logs_read(name, profile):
     run = open_run(real(f"ardusub/{name}"))
     assert run.profile == profile and run.ok("phi").mean() > 0.98
@@ -91,3 +97,40 @@ def test_missing_messages_are_named(tmp_path):
     with pytest.raises(BadInput, match="ATT") as refused:
         read(tlog(tmp_path / "a.tlog", n=5), "ardusub")
     assert all(kind in refused.value.message for kind in ("XKF1", "ATT", "RCOU"))
+
+
+def test_motors_that_turn_against_the_frame_are_turned_back(tmp_path):
+    """MOT_n_DIRECTION was not read: of a vehicle's four upright motors two pushed against the others, to the microsecond."""
+    turned = HEAVY | {"MOT_2_DIRECTION": -1.0, "MOT_7_DIRECTION": -1.0, "MOT_8_DIRECTION": -1.0}
+    run = open_run(tlog(tmp_path / "a.tlog", parameters=turned))
+    assert (run.values["pwm:T2"] == 1400).all() and (run.values["pwm:T3"] == 1400).all() and (run.values["pwm:T7"] == 1100).all()
+    assert "pwm:T8" not in run.values, "an output that is 0 is missing, turned or not"
+    (finding,) = (f for f in run.findings if f.code == "motor_direction")
+    assert finding.where == "pwm:T2, pwm:T7, pwm:T8" and "turned about 1500 us" in finding.detail
+
+
+def test_unknown_directions_are_said(tmp_path):
+    run = open_run(tlog(tmp_path / "a.tlog", parameters={"FRAME_CONFIG": 2.0}))
+    (finding,) = (f for f in run.findings if f.code == "motor_direction")
+    assert "does not hold MOT_n_DIRECTION" in finding.detail and (run.values["pwm:T2"] == 1600).all()
+
+
+def test_the_frame_says_which_vehicle_it_is(tmp_path):
+    """The log of a six-thruster vehicle was read as one of eight, and refused when it was compared."""
+    six = tlog(tmp_path / "six.tlog", parameters=HEAVY | {"FRAME_CONFIG": 1.0})
+    assert open_run(six).profile == "ardusub_vectored_tlog" and open_run(six).vehicle == "bluerov2"
+    with pytest.raises(BadInput, match=r"FRAME_CONFIG = 2 \(vectored_6dof\); the log's vehicle has 1 \(vectored\)"):
+        read(six, "ardusub_tlog")
+    with pytest.raises(BadInput, match="fits no built-in profile"):
+        read(tlog(tmp_path / "other.tlog", parameters=HEAVY | {"FRAME_CONFIG": 4.0}))
+    with pytest.raises(BadInput, match="fits several profiles: ardusub_tlog, ardusub_vectored_tlog"):
+        read(tlog(tmp_path / "unknown.tlog", parameters={}))
+
+
+def test_the_upright_motors_of_a_published_log_push_together():
+    """Outputs 5 to 8 of 200 us each: they cancelled to the last microsecond, so that heave had no input."""
+    run = open_run(real("ardusub/small.tlog"))
+    pulses = run.stack(tuple(f"pwm:T{i}" for i in (5, 6, 7, 8))) - 1500.0
+    as_logged = pulses * np.array([-1, 1, 1, -1])
+    assert np.nanmax(np.abs(as_logged.sum(axis=1))) == 0.0 and np.nanmax(np.abs(pulses.sum(axis=1))) == 800.0
+    assert [f.where for f in run.findings if f.code == "motor_direction"] == ["pwm:T1, pwm:T2, pwm:T5, pwm:T8"]

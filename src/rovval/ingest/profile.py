@@ -24,6 +24,9 @@ ATTITUDE = "attitude"  # a quaternion that becomes phi, theta, psi
 WORLD_VELOCITY = ("u", "v", "w")  # may be logged along world axes (`frame = "world"`) and are rotated into the body
 GEODETIC = "degree_latitude"  # the unit of x and y when they are logged as latitude and longitude
 
+# FRAME_CONFIG of ArduSub (ardupilot.org, Sub frame configurations) of the frames whose tables `rovval.vehicle` has.
+ARDUSUB_FRAMES = {"vectored": 1, "vectored_6dof": 2}
+
 BodyFrame = Literal["fsd", "flu"]
 WorldFrame = Literal["ned", "enu", "nwu"]
 
@@ -74,7 +77,8 @@ class Profile(BaseModel):
     """One source of logs. ``format`` is the name of the reader (a file of `rovval.ingest`); ``absent`` names columns or topics
     whose presence says that a log is *not* of this source. ``relative_heading``: the heading counts from the start while the
     position is in fixed axes; the constant between them is found from the log and reported. ``messages``: definitions (name -> text of the .msg) of types that
-    old bags use without defining them."""
+    old bags use without defining them. ``ardusub_frame``: the frame of the vehicle in an autopilot log; a log of another one is refused, and
+    pulse widths are turned by the log's MOT_n_DIRECTION."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -89,6 +93,7 @@ class Profile(BaseModel):
     time: Clock
     channels: dict[str, Source] = Field(min_length=1)
     absent: tuple[str, ...] = ()
+    ardusub_frame: Literal["vectored", "vectored_6dof"] | None = None
     messages: dict[str, str] = {}
     _folder: Path = PrivateAttr(default_factory=Path)
 
@@ -101,7 +106,10 @@ class Profile(BaseModel):
     def sha256(self) -> str:
         """Digest of what the profile does (its words aside), so that a run's id changes with it."""
         unset = {name: {"sign_from"} for name, source in self.channels.items() if source.sign_from is None}  # ids of runs stay as they were
-        return hashlib.sha256(self.model_dump_json(exclude={"notes": True, "description": True, "channels": unset}).encode()).hexdigest()
+        words: dict[str, Any] = {"notes": True, "description": True, "channels": unset}
+        if self.ardusub_frame is None:
+            words["ardusub_frame"] = True
+        return hashlib.sha256(self.model_dump_json(exclude=words).encode()).hexdigest()
 
 
 def profiles() -> tuple[str, ...]:
@@ -150,6 +158,8 @@ def _problems(profile: Profile) -> list[str]:
     found = [p for name, source in profile.channels.items() for p in _channel_problems(name, source)]
     if (profile.frame == "fsd") != (profile.world == "ned"):
         found.append(f"frame {profile.frame!r} with world {profile.world!r}: the pairs are fsd with ned, flu with enu or nwu")
+    if profile.ardusub_frame is not None and profile.format != "autopilot":
+        found.append(f"ardusub_frame is for autopilot logs, not {profile.format}")
     if profile.time.unit not in SI:
         found.append(f"time: unknown unit {profile.time.unit!r}")
     wanted = {"time_of_day": (3, 4), "epoch": (0, 1), "elapsed": (1, 1), "datetime": (1, 2), "header": (0, 0), "record": (0, 0)}

@@ -19,6 +19,7 @@ import numpy as np
 
 from rovval.core.data import Array, RawLog
 from rovval.core.errors import BadInput, Finding, RovvalError, UsageProblem, all_at_once
+from rovval.ingest.ardusub import other_frame, turned
 from rovval.ingest.clock import increasing_stamps
 from rovval.ingest.files import sha256
 from rovval.ingest.profile import ATTITUDE, Profile, Source
@@ -26,6 +27,7 @@ from rovval.ingest.profile import ATTITUDE, Profile, Source
 SUFFIXES = (".bin", ".tlog")
 DATAFLASH = b"\xa3\x95"  # every DataFlash packet begins so
 MAVLINK = (0xFE, 0xFD)  # first byte of a MAVLink 1 and 2 packet, after the 8 bytes of stamp that a .tlog adds
+PARAMETER = {"PARM": ("Name", "Value"), "PARAM_VALUE": ("param_id", "param_value")}  # message type -> fields of name and value
 LOOKED_AT = 20_000  # messages looked at to say which types a log has
 
 
@@ -39,14 +41,17 @@ def sniff(path: Path) -> bool:
 def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     """Required message types of ``profile`` that the beginning of the log has not."""
     seen: set[str] = set()
+    parameters: dict[str, float] = {}
     with _opened(path) as log:
         for _ in range(LOOKED_AT):
             message = log.recv_match()
             if message is None:
                 break
             seen.add(message.get_type())
+            _note_parameter(message, parameters)
     wanted = dict.fromkeys(_type(s)[0] for s in profile.channels.values() if not s.optional)
-    return (*(w for w in wanted if w not in seen), *(f"not {a}" for a in profile.absent if a in seen))
+    frame = other_frame(profile, parameters)
+    return (*(w for w in wanted if w not in seen), *(f"not {a}" for a in profile.absent if a in seen), *([frame] if frame else []))
 
 
 def read(path: Path, profile: Profile) -> RawLog:
@@ -56,7 +61,11 @@ def read(path: Path, profile: Profile) -> RawLog:
     wanted: dict[tuple[str, int], _Messages] = {}
     for name, source in profile.channels.items():
         wanted.setdefault(_type(source), _Messages()).channels[name] = source
-    bad = _collect(path, wanted, profile)
+    parameters: dict[str, float] = {}
+    bad = _collect(path, wanted, profile, parameters)
+    if frame := other_frame(profile, parameters):
+        hint = "give the profile of that frame (`rovval list profile`): its motors are other thrusters"
+        raise BadInput(f"{path}: profile {profile.name!r} reads {frame}", hint)
     gone = [f"{kind}[{i}]" if i else kind for (kind, i), m in wanted.items() if not m.record and not all(s.optional for s in m.channels.values())]
     if gone:
         raise BadInput(all_at_once(gone, f"{path}: missing messages of profile {profile.name!r}"), "see `rovval show profile`, or give another")
@@ -80,7 +89,8 @@ def read(path: Path, profile: Profile) -> RawLog:
             column: Array = np.array(m.columns[name], dtype=float)
             signals[name] = Signal(t, column[rows], stamp, source)
     t0_ns = round(t0 * 1e9) if t0 > 1e9 else None  # smaller: seconds since the autopilot started
-    return build(profile, signals, path, sha256(path), t0_ns, findings, {"messages": ", ".join(k for k, _ in logged)})
+    signals, told = turned(profile, signals, parameters)
+    return build(profile, signals, path, sha256(path), t0_ns, [*findings, *told], {"messages": ", ".join(k for k, _ in logged)})
 
 
 @dataclass(slots=True)
@@ -93,15 +103,16 @@ class _Messages:
     columns: dict[str, list[Any]] = field(default_factory=dict)
 
 
-def _collect(path: Path, wanted: dict[tuple[str, int], _Messages], profile: Profile) -> int:
-    """Fill ``wanted`` from the log; returns the number of damaged packets. Raises `BadInput` with every unknown field."""
+def _collect(path: Path, wanted: dict[tuple[str, int], _Messages], profile: Profile, parameters: dict[str, float]) -> int:
+    """Fill ``wanted`` and ``parameters`` from the log; returns the number of damaged packets. Raises `BadInput` with every unknown field."""
     count: Counter[str] = Counter()
     wrong: dict[str, None] = {}
-    types = [*{kind for kind, _ in wanted}, "BAD_DATA"]
+    types = [*{kind for kind, _ in wanted}, *PARAMETER, "BAD_DATA"]
     with _opened(path) as log:
         while (message := log.recv_match(type=types)) is not None:
             kind = message.get_type()
             count[kind] += 1
+            _note_parameter(message, parameters)
             if (messages := wanted.get((kind, _instance(message)))) is None:
                 continue
             values, unknown = _values(message, messages)
@@ -114,6 +125,13 @@ def _collect(path: Path, wanted: dict[tuple[str, int], _Messages], profile: Prof
     if wrong:
         raise BadInput(all_at_once(list(wrong), f"{path}: fields that profile {profile.name!r} names"), "mend the profile's field")
     return count["BAD_DATA"]
+
+
+def _note_parameter(message: Any, parameters: dict[str, float]) -> None:
+    """Keep a parameter's value where the message is one."""
+    if (fields := PARAMETER.get(message.get_type())) is not None:
+        with contextlib.suppress(AttributeError, TypeError, ValueError):  # a damaged packet
+            parameters[str(getattr(message, fields[0]))] = float(getattr(message, fields[1]))
 
 
 def _values(message: Any, messages: _Messages) -> tuple[dict[str, Any], list[str]]:
