@@ -38,6 +38,18 @@ def test_ingest_then_use_the_id(here):
     assert not Path("reports").exists(), "--json without --out writes nothing"
 
 
+def test_ingest_of_a_folder_names_the_logs_that_it_cannot_read(here):
+    """HDF5, Matlab and PX4 logs beside a CSV were passed over at exit 0, without a word."""
+    Path("logs").mkdir()
+    Path("dive.csv").rename("logs/dive.csv")
+    for name in ("a.h5", "b.MAT", "c.ulg"):
+        Path("logs", name).write_bytes(b"\x89HDF\r\n\x1a\n\0\0")
+    Path("logs/notes.md").write_text("not a log")
+    done = run("ingest", "logs", code=3)
+    assert done.stdout.startswith("dive-") and len(done.stdout.split()) == 1
+    assert all(f"logs/{name}: of no known format" in done.stderr for name in ("a.h5", "b.MAT", "c.ulg")) and "notes.md" not in done.stderr
+
+
 def test_ingest_of_a_folder_goes_on_after_a_bad_log(here):
     Path("logs/deep").mkdir(parents=True)
     shutil.move("dive.csv", "logs/deep/dive.csv")

@@ -451,3 +451,13 @@ def test_a_spike_of_telemetry_is_dropped_and_a_burst_of_thrust_stays(tmp_path):
     assert finding.where == "n:HFP" and "4 values of up to 9999 rpm" in finding.detail
     assert len(raw.channels["n:HFP"].t) == 296 and np.abs(raw.channels["n:HFP"].values).max() < 5.0
     assert raw.channels["n:HFS"].values.max() == pytest.approx(250 / 60)
+
+
+def test_an_endless_cell_is_quoted_by_its_beginning(tmp_path):
+    """Half a million digits reached the terminal."""
+
+    def edit(cells):
+        cells["LinVelZ"][5] = "9" * 500_000
+
+    (finding,) = found(read(write(tmp_path, edit=edit)), "not_a_number")
+    assert "... of 500000 characters" in finding.detail and len(finding.detail) < 200

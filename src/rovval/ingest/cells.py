@@ -13,6 +13,7 @@ from rovval.core.errors import BadInput, Finding, all_at_once
 from rovval.ingest.text_table import Table, cells, first_few
 
 BLANK = ("", "nan", "-", "--", "null", "none", "n/a", "na", "#n/a", "-nan", "nan(ind)", "-nan(ind)")
+LONGEST_EXAMPLE = 40  # characters of a cell that a message shows
 DECIMAL_COMMA = r"^[+-]?\d+,\d*([eE][+-]?\d+)?$"
 
 
@@ -50,7 +51,7 @@ def numbers(text: pl.DataFrame, table: Table, path: str) -> tuple[dict[str, Arra
         if blank.any():
             findings.append(Finding("blank_cell", name, f"{blank.sum()} cells are blank, from line {lines[blank][0]}; taken as missing"))
         if bad.any():
-            examples = ", ".join(repr(c) for c in column.filter(pl.Series(bad))[:3])
+            examples = ", ".join(_shown(c) for c in column.filter(pl.Series(bad))[:3])
             where = first_few(lines[bad].tolist())
             findings.append(Finding("not_a_number", name, f"{bad.sum()} cells are not numbers ({examples}; {where}); dropped"))
             if bad.sum() > 0.5 * (~blank).sum():
@@ -59,6 +60,11 @@ def numbers(text: pl.DataFrame, table: Table, path: str) -> tuple[dict[str, Arra
         hint = "are separator and decimal sign mixed, or is this another column than the profile means?"
         raise BadInput(all_at_once(hopeless, f"{path}: unreadable"), hint)
     return values, tuple(findings)
+
+
+def _shown(cell: str) -> str:
+    """A cell as a message quotes it: its beginning, and how long it is, where a damaged row made it endless."""
+    return repr(cell) if len(cell) <= LONGEST_EXAMPLE else f"{cell[:LONGEST_EXAMPLE]!r}... of {len(cell)} characters"
 
 
 def _cast(column: pl.Series) -> Array:

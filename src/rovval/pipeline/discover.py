@@ -10,12 +10,13 @@ from pathlib import Path
 from rovval.core.errors import BadInput, UsageProblem, all_at_once
 
 SUFFIXES = (".csv", ".tsv", ".txt", ".bag", ".db3", ".mcap", ".bin", ".tlog", ".xlsx", ".parquet")
+FOREIGN = (".h5", ".hdf5", ".mat", ".ulg", ".ulog", ".xls")  # logs by their names that no reader is there for: named and refused, not passed over
 COMPRESSED = (".gz",)
 BLOCK = 1 << 20
 
 
 def logs_in(sources: Sequence[str]) -> list[Path]:
-    """Files as named; of a folder every file that looks like a log, and every ROS 2 bag folder as one log.
+    """Files as named; of a folder every file that looks like a log, readable or not, and every ROS 2 bag folder as one log.
 
     Raises:
         BadInput: a source does not exist, or there is no log in all of them.
@@ -89,7 +90,7 @@ def _looks_like_log(path: Path) -> bool:
     suffixes = [s.lower() for s in path.suffixes]
     if suffixes and suffixes[-1] in COMPRESSED:
         suffixes.pop()
-    return bool(suffixes) and suffixes[-1] in SUFFIXES
+    return bool(suffixes) and suffixes[-1] in (*SUFFIXES, *FOREIGN)
 
 
 def _root(pattern: Path) -> Path:
