@@ -43,6 +43,14 @@ def test_what_varies_is_told_from_what_does_not():
     assert found[0.0] < 0 and found[0.5] > 50
 
 
+def test_a_value_that_no_window_shows_does_not_vary():
+    """On a log without windows on its axis a parameter goes back to the file's value: shares of nothing were divided by."""
+    blind = NormalEquations(np.zeros((12, 1, 1)), np.zeros((12, 1)), np.ones(12), (0,))
+    assert variation_evidence(blind, 0.0, 1.0) == 0.0
+    assert variation_evidence(blind, 1e-200, 1.0) == 0.0
+    assert variation_evidence(blind, 0.5, 1.0) == 0.0
+
+
 def test_a_payload_that_grows_is_not_called_a_payload_but_unknown(tmp_path: Path):
     document = written(diagnose([foreign(tmp_path, (("water_leak", "", 2.0),), 78, 300.0)], merlin()))
     assert document["causes"] == [] and document["verdict"] == "unknown"

@@ -95,7 +95,9 @@ def _within_windows(problem: Problem, point: Posterior, step: Array, cause: Sele
 
 def variation_evidence(data: NormalEquations, value: float, design_effect: float) -> float:
     """Twice the log Bayes factor of a normal departure of each window's own in every column over none, at the best of the standard deviations
-    `VARIATIONS`, which are shares of ``value``."""
+    `VARIATIONS`, which are shares of ``value``; 0 for a value of nothing, which is what is left of a parameter that no window shows."""
+    if (VARIATIONS[0] * value) ** 2 == 0.0:
+        return 0.0
     return max(_varies(data, share * value, design_effect) for share in VARIATIONS)
 
 
