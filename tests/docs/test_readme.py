@@ -11,11 +11,13 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+import rovval
 from conftest import ROOT
-from rovval import demo
+from rovval import demo, vehicle
 from rovval.cli.app import COMMANDS, app
 from rovval.ingest.profile import load_profile
 
@@ -97,6 +99,31 @@ def test_the_notebook_block(tmp_path, monkeypatch, capsys):
     assert Path("diagnosis.html").read_text(encoding="utf-8").startswith("<!doctype html>")
     assert "verdict" in names["found"].document()
     assert "surge" in capsys.readouterr().out
+
+
+def test_pulse_widths_and_sticks(tmp_path, monkeypatch):
+    """Full stick to the right, then down, and the pulse widths that ArduSub makes of it: both logs turn right and sink."""
+    monkeypatch.chdir(tmp_path)
+    mixer = vehicle.load("bluerov2_heavy").mixer
+    assert mixer is not None
+    yaw, heave = (mixer.factors[stick] for stick in ("yaw", "heave"))
+    header = ["t", "turn_rate", "speed_down"]
+    pulses, sticks = [[*header, *(f"servo{i}_raw" for i in range(1, 9))]], [[*header, *(f"chan{i}" for i in range(1, 7))]]
+    for k in range(200):
+        right, down = (0.5, 0.0) if k < 100 else (0.0, 0.5)
+        cells = [f"{k / 10}", f"{0.8 * (k < 100)}", f"{0.2 * (k >= 100)}"]
+        pulses.append([*cells, *(f"{1500 + 400 * (right * a + down * b):g}" for a, b in zip(yaw, heave, strict=True))])
+        sticks.append([*cells, "1500", "1500", f"{1500 - 400 * down:g}", f"{1500 + 400 * right:g}", "1500", "1500"])
+    for name, rows in (("my_pulses", pulses), ("my_sticks", sticks)):
+        Path(f"{name}.csv").write_text("".join(",".join(row) + "\n" for row in rows), encoding="utf-8")
+        Path(f"{name}.toml").write_text(after(f"file: {name}.toml")[0], encoding="utf-8")
+    for line in commands("pulses"):
+        invoke(line)
+    by = {name: rovval.simulate(rovval.load(f"{name}.csv", f"{name}.toml")) for name in ("my_pulses", "my_sticks")}
+    assert [sim.input_source for sim in by.values()] == ["pulse width", "pilot's sticks"]
+    for sim in by.values():
+        assert sim.windowed.nu[50, 5] > 0.1 and sim.windowed.nu[150, 2] > 0.05
+    assert np.allclose(by["my_pulses"].thrust, by["my_sticks"].thrust)
 
 
 def test_the_bag_profile_loads(tmp_path):
