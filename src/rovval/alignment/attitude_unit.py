@@ -19,7 +19,7 @@ BETTER, GOOD = 4.0, 0.2  # misfit of the way covered, as a share of it: so many 
 def attitude_in_radians(raw: RawLog) -> tuple[Finding, ...]:
     """A finding where the heading wraps at 2 pi of its own unit, or where the velocities lead along the positions only with angles 57.3 times as large."""
     if "psi" in raw.channels and (wraps := _wraps(raw.channels["psi"])):
-        seen = f"the heading stays below 6.29 degrees and steps by just 6.28 of them {wraps} time{"s"[: wraps > 1]}"
+        seen = f"the heading stays below 6.29 degrees and steps by just 6.28 of them {wraps} time{'s'[: wraps > 1]}"
         return (Finding("unit", "phi, theta, psi", f"{seen}: it is in radians, which the profile calls degrees"),)
     misfit = _misfits(raw)
     if misfit is not None and misfit[1] < GOOD and misfit[0] > BETTER * misfit[1]:
