@@ -20,3 +20,26 @@ def test_a_kernel_cache_that_cannot_be_written_is_no_hindrance(tmp_path):
     done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "(1, 11, 6)" and "compiling" in done.stderr
     assert "once for this machine" not in done.stderr and "ROVVAL_CACHE" in done.stderr
+
+
+@pytest.mark.slow
+def test_a_damaged_kernel_cache_is_compiled_anew(tmp_path):
+    """Every log of a batch was set aside, night after night."""
+    code = "import plant_cases as c; from rovval.plant import Plant; print(c.run(Plant(c.merlin())).nu.sum())"
+    paths = os.pathsep.join([str(Path(__file__).parents[2] / "cases"), os.environ.get("PYTHONPATH", "")])
+    environment = {**os.environ, "ROVVAL_CACHE": str(tmp_path), "PYTHONPATH": paths}
+
+    def run() -> tuple[str, bool]:
+        done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
+        return done.stdout, "compiling" in done.stderr
+
+    first, compiled = run()
+    assert compiled and run() == (first, False)
+    for file in [*tmp_path.glob("*.py"), *tmp_path.glob("__pycache__/*.pyc")]:
+        file.write_bytes(file.read_bytes()[:200])
+    assert run()[0] == first
+    for file in tmp_path.glob("__pycache__/*.nb[ic]"):
+        content = file.read_bytes()
+        file.write_bytes(content[: len(content) // 2] + bytes(9) + content[len(content) // 2 + 9 :])
+    assert run() == (first, True)
+    assert run() == (first, False)

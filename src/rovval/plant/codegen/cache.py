@@ -14,7 +14,9 @@ import shutil
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from types import ModuleType
@@ -62,11 +64,19 @@ def _fingerprint(spec: Spec) -> str:
 @cache
 def module(spec: Spec) -> ModuleType:
     """The generated module of that spec, compiled or from the cache; says so when compilation takes longer than a second."""
-    name = f"kernel_{spec.name}_{_fingerprint(spec)}"
+    name, text = _name(spec), render(spec)
     path = cache_folder() / f"{name}.py"
-    if not path.exists():
-        _write(path, render(spec))
-    return _imported(name, path)
+    if not path.is_file() or path.read_bytes() != text.encode():
+        _write(path, text)
+    try:
+        return _imported(name, path)
+    except Exception:  # the file is as it must be: its bytecode is damaged
+        Path(importlib.util.cache_from_source(str(path))).unlink(missing_ok=True)
+        return _imported(name, path)
+
+
+def _name(spec: Spec) -> str:
+    return f"kernel_{spec.name}_{_fingerprint(spec)}"
 
 
 def _imported(name: str, path: Path) -> ModuleType:
@@ -115,11 +125,39 @@ def run(spec: Spec, blocks: int, arguments: tuple[Any, ...]) -> None:
 def _compile(function: Any, spec: Spec, arguments: tuple[Any, ...]) -> None:
     """Compile (or load) by a call over no block at all, with a word on stderr if it is going to take a while."""
     start = time.monotonic()
-    cached = any(cache_folder().glob(f"__pycache__/kernel_{spec.name}_{_fingerprint(spec)}.run-*.nbc"))
+    cached = _discard_damaged(_name(spec))
     if not cached:
         often = "once for this machine" if _lasting_folder() else "in every run, for want of a folder to keep it: name one in ROVVAL_CACHE"
         print(f"rovval: compiling the {spec.name} plant, {often} (some seconds) ...", file=sys.stderr, flush=True)  # noqa: T201
     function(0, 0, *arguments)
     if not cached:
+        _write(_seal(_name(spec)), _digest(_machine_code(_name(spec))))
         print(f"rovval: compiled in {time.monotonic() - start:.1f} s", file=sys.stderr, flush=True)  # noqa: T201
     _compiled.add(spec.name)
+
+
+def _discard_damaged(name: str) -> bool:
+    """Whether there is machine code of that kernel, as its seal says it was written; what is not is removed, for it would be run."""
+    code, seal = _machine_code(name), _seal(name)
+    if code and seal.is_file() and seal.read_bytes() == _digest(code).encode():
+        return True
+    for file in code:
+        file.unlink(missing_ok=True)
+    return False
+
+
+def _machine_code(name: str) -> list[Path]:
+    """numba's files of that kernel: of each function an index and what it leads to."""
+    return sorted(cache_folder().glob(f"__pycache__/{name}.*.nb[ic]"))
+
+
+def _seal(name: str) -> Path:
+    return cache_folder() / f"{name}.sha256"
+
+
+def _digest(files: Sequence[Path]) -> str:
+    digest = hashlib.sha256()
+    for file in files:
+        with suppress(FileNotFoundError):  # another process compiles, too
+            digest.update(file.read_bytes())
+    return digest.hexdigest()
