@@ -38,3 +38,12 @@ def test_a_vehicle_with_a_bad_matrix_is_refused_with_every_problem(tmp_path):
     assert refused.value.exit_code == 2
     for word in ("triangle", "linear_drag is negative on surge", "bad.toml", "2 problems"):
         assert word in refused.value.message
+
+
+@pytest.mark.parametrize("number", ["inf", "-inf", "nan"])
+def test_a_number_that_is_not_finite_is_refused(tmp_path, number):
+    """It was a traceback of linear algebra."""
+    text = (vehicle.LIBRARY / "merlin.toml").read_text()
+    (tmp_path / "v.toml").write_text(text.replace("mass = 2936.0", f"mass = {number}"))
+    with pytest.raises(UsageProblem, match="body.mass"):
+        vehicle.load(tmp_path / "v.toml")

@@ -25,7 +25,7 @@ NotNegative = Annotated[float, Field(ge=0)]
 class Strict(BaseModel):
     """Immutable, and a misspelt key is an error rather than ignored."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
 class Body(Strict):
