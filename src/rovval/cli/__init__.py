@@ -32,7 +32,7 @@ def main() -> NoReturn:
                 leave(f"rovval: {error.strerror}\n  next: free space on the disk that the result goes to", CONFIGURATION)
             internal(error)
         leave(
-            f"rovval: {os.fsdecode(error.filename)}: {error.strerror}\n  next: mend the path or its permissions", _blame(error)
+            f"rovval: {os.fsdecode(error.filename)}: {error.strerror}\n  next: {_mend(error)}", _blame(error)
         )
     except Exception as error:
         internal(error)
@@ -71,6 +71,11 @@ def internal(error: BaseException) -> NoReturn:
 def debugging() -> bool:
     """Whether `rovval --debug` (or ROVVAL_DEBUG=1) asked for tracebacks."""
     return os.environ.get("ROVVAL_DEBUG", "") not in ("", "0")
+
+
+def _mend(error: OSError) -> str:
+    """What to do next."""
+    return "free space on its disk, or write elsewhere" if error.errno in (errno.ENOSPC, errno.EDQUOT) else "mend the path or its permissions"
 
 
 def _blame(error: OSError) -> int:

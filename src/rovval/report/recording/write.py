@@ -7,6 +7,7 @@ measured is left out, and ``/notes`` says so.
 from __future__ import annotations
 
 import errno
+import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +22,8 @@ from rovval.report.recording.layout import blueprint
 
 if TYPE_CHECKING:
     from rovval.vehicle.model import Vehicle
+
+ROOM = 1 << 20  # bytes; rerun does not say why it could not write, and on a disk with less room than a small recording needs that is why
 
 
 def write(comparison: Comparison, path: Path, vehicle: Vehicle, corrected: SimResult | None = None) -> None:
@@ -46,7 +49,8 @@ def write(comparison: Comparison, path: Path, vehicle: Vehicle, corrected: SimRe
         stream.flush()
         stream.disconnect()
     except RuntimeError as error:  # rerun's own thread writes the file, and only tells that it could not
-        raise OSError(errno.EIO, f"the recording's writer stopped, perhaps for want of space ({error})") from None
+        full = shutil.disk_usage(path.parent).free < ROOM
+        raise OSError(errno.ENOSPC if full else errno.EIO, f"the recording's writer stopped ({error})") from None
 
 
 def _curves(stream: Any, clock: list[Any], c: Comparison, corrected: SimResult | None) -> None:
