@@ -4,21 +4,22 @@ import os
 import signal
 import time
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
+from rovval.core.errors import Unwritable
 from rovval.demo import make
 from rovval.pipeline import config
 from rovval.pipeline.plan import Task, plan
 from rovval.pipeline.worker import Outcome, work
 
 
-def write_log(path: Path, seconds: float = 5.0, seed: int = 0) -> Path:
+def write_log(path: Path, seconds: float = 5.0, seed: int = 0, rpm: float = 40.0) -> Path:
     """A Merlin log of a vehicle that hardly moves; different seeds have different content."""
     n, k = round(seconds * 10), len(make.THRUSTERS)
-    rpm = np.full((n, k), 40.0)
-    columns = make.noisy_rows(np.zeros((n, 6)), np.zeros((n, 6)) + 5.0, rpm, rpm, np.random.default_rng(seed))
+    speeds = np.full((n, k), rpm)
+    columns = make.noisy_rows(np.zeros((n, 6)), np.zeros((n, 6)) + 5.0, speeds, speeds, np.random.default_rng(seed))
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(make.as_csv(columns))
     return path
@@ -58,6 +59,11 @@ def slow(task: Task) -> Outcome:
     if task.log.stem == "hanger":
         time.sleep(60)
     return work(task)
+
+
+def no_space(folder: object, *_rest: object) -> NoReturn:
+    """A disk that is full, for whatever writes."""
+    raise Unwritable(f"{folder}: cannot be written: No space left on device", "free space on its disk, or write elsewhere")
 
 
 def paused(task: Task) -> Outcome:

@@ -121,6 +121,7 @@ def test_leftovers_of_a_kill_are_swept(site):
     path = batch_case.write_pipeline(site)
     (site / "reports" / "x").mkdir(parents=True)
     (site / "reports" / "x" / ".report.html.123.part").touch()
+    (site / "reports" / "archive" / ".run.123.part" / "half").mkdir(parents=True)
     batch.run(path, workers=1)
     assert not list((site / "reports").rglob(".*.part"))
 
@@ -149,3 +150,39 @@ def test_a_log_that_is_still_being_copied_waits(site):
 def test_workers_and_scheduler_exclude_each_other(site):
     with pytest.raises(UsageProblem):
         batch.run(batch_case.write_pipeline(site), workers=2, scheduler="tcp://localhost:1")
+
+
+def test_a_simulation_that_leaves_sane_limits_is_no_success(site):
+    """Exit 4 as of `rovval compare`; a log in quarantine weighs more."""
+    log = site / "logs" / "wild.csv"
+    batch_case.write_log(log, seconds=20.0, rpm=3000.0)
+    path = batch_case.write_pipeline(site, steps='["ingest", "simulate"]')
+    done = batch.run(path, workers=1)
+    assert done["exit_code"] == 4 and [Path(row["log"]) for row in done["left_sane_limits"]] == [log]
+    assert batch.run(path, workers=1)["exit_code"] == 4, "unchanged is not well"
+    (site / "logs" / "bad.csv").touch()
+    assert batch.run(path, workers=1)["exit_code"] == 3
+
+
+def test_what_stops_a_batch_stands_on_its_page(site, monkeypatch):
+    """After a full disk the page was that of the night before."""
+    path, page = batch_case.write_pipeline(site), site / "reports" / "index.html"
+    batch.run(path, workers=1)
+    batch_case.write_log(site / "logs" / "d.csv", seed=9)
+    monkeypatch.setattr(batch, "execute", batch_case.no_space)
+    with pytest.raises(UsageProblem, match="No space left"):
+        batch.run(path, workers=1)
+    assert "Stopped before its end (1)" in page.read_text() and "Runs (3)" in page.read_text()
+    assert json.loads((site / "reports" / "summary.json").read_text())["exit_code"] == 2
+
+
+def test_a_disk_too_full_for_a_page_does_not_leave_that_of_the_night_before(site, monkeypatch):
+    path, page = batch_case.write_pipeline(site), site / "reports" / "index.html"
+    batch.run(path, workers=1)
+    size = page.stat().st_size
+    monkeypatch.setattr("rovval.report.common.files.write_all", batch_case.no_space)
+    with pytest.raises(UsageProblem, match="No space left"):
+        batch.run(path, workers=1)
+    text = page.read_text()
+    assert "Stopped before its end (1)" in text and "Runs (" not in text and len(text) < size + 400
+    assert json.loads((site / "reports" / "summary.json").read_text())["exit_code"] == 2

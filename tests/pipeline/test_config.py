@@ -32,4 +32,4 @@ def test_a_pattern_in_a_folder_that_is_not_there_is_a_mistake(tmp_path):
     with pytest.raises(UsageProblem, match=r"logs/\*.csv"):
         batch.run(path)
     (tmp_path / "logs").mkdir()
-    assert counts(batch.run(path)) == {}
+    assert counts(batch.run(path)) == {"missing_sources": 1}

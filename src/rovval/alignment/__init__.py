@@ -22,6 +22,7 @@ from rovval.alignment.series import bad_samples, longest_bridge
 from rovval.core.channels import DRIVING, Resampling, Rule, channel
 from rovval.core.data import RATE_HZ, Array, ClockReport, Codes, RawLog, Reason, Resampled, Run, Series
 from rovval.core.errors import BadInput, UsageProblem, all_at_once
+from rovval.core.file_names import shortened
 
 SHARED_PHASE = 0.6  # mean resultant length: uniform jitter of a quarter step has 0.64
 LONGEST_S = 30 * 86400.0  # a log longer than a month is a broken clock
@@ -110,4 +111,4 @@ def _run_id(raw: RawLog, rate_hz: float, methods: Mapping[str, str]) -> str:
     asked = {} if rate_hz == RATE_HZ and not methods else {"rate_hz": rate_hz, "methods": dict(sorted(methods.items()))}
     made_of = json.dumps([raw.sha256, raw.profile, raw.properties.get("profile_sha256", ""), asked])
     stem = "".join(c if c.isalnum() or c in "-_." else "_" for c in Path(raw.source).stem) or "log"
-    return f"{stem}-{hashlib.sha256(made_of.encode()).hexdigest()[:10]}"
+    return f"{shortened(stem)}-{hashlib.sha256(made_of.encode()).hexdigest()[:10]}"

@@ -24,14 +24,17 @@ def command(
         str | None, typer.Option("--scheduler", metavar="ADDRESS", help="A Dask scheduler instead, such as tcp://host:8786.")
     ] = None,
     retry: Annotated[bool, typer.Option("--retry", help="Try quarantined logs again although they have not changed.")] = False,
+    verify: Annotated[
+        bool, typer.Option("--verify", help="Read every log and every result anew: trust no size and no time of change.")
+    ] = False,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Only say what would be done.")] = False,
     json_: options.JsonFlag = False,
     quiet: options.QuietOption = False,
 ) -> None:
     """Take many logs through their steps: what is new or changed is done, the rest is skipped, a bad log is set aside.
 
-    Exit codes: 0 all done, 1 a tolerance of the file is exceeded, 3 a log stands in quarantine (this one first), 2 the file is
-    wrong or another run of it is at work.
+    Exit codes: 0 all done, 1 a tolerance of the file is exceeded, 4 a simulation left sane limits, 3 a log stands in quarantine or a source
+    has no log at all (of several, the last of these), 2 the file is wrong, the disk is full, or another run of it is at work.
 
     \b
     Example:
@@ -42,9 +45,9 @@ def command(
     from rovval.report.batch.terminal import text
 
     if dry_run:
-        _say_plan(batch.dry_run(pipeline, retry), json_)
+        _say_plan(batch.dry_run(pipeline, retry, verify), json_)
         return
-    document = batch.run(pipeline, workers, scheduler, retry, output.progress(quiet))
+    document = batch.run(pipeline, workers, scheduler, retry, output.progress(quiet), verify)
     output.result_json(document) if json_ else output.result(text(document))
     output.say(f"every run of it on one page: {config.load(pipeline).reports / batch.INDEX}", quiet)
     raise typer.Exit(document["exit_code"])
@@ -57,6 +60,7 @@ def _say_plan(planned: Plan, as_json: bool) -> None:
     rows = [("do", str(t.log), why(t)) for t in planned.todo]
     rows += [("unchanged", r["log"], "") for r in planned.done]
     rows += [("quarantined", r["log"], r["reason"].removeprefix(f"{r['log']}: ")) for r in planned.set_aside]
+    rows += [("no log", logs, reason) for logs, reason in planned.missing]
     rows += [("waiting", str(log), reason) for log, reason in planned.waiting]
     if as_json:
         output.result_json({"schema": "rovval.plan/1", "logs": [dict(zip(("state", "log", "why"), row, strict=True)) for row in rows]})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from pathlib import Path
 
 from rovval.core.errors import BadInput
@@ -36,7 +37,7 @@ def sha256(path: Path) -> str:
     digest = hashlib.sha256()
     for part in files_of(path):
         if path.is_dir():
-            digest.update(part.relative_to(path).as_posix().encode() + b"\0")
+            digest.update(os.fsencode(part.relative_to(path).as_posix()) + b"\0")
         with part.open("rb") as file:
             while block := file.read(1 << 20):
                 digest.update(block)

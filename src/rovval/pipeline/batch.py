@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from rovval.core.errors import UsageProblem
+from rovval.core.errors import Unwritable, UsageProblem
 from rovval.pipeline import cluster, config, lock, summary
+from rovval.pipeline.config import Pipeline
 from rovval.pipeline.plan import Plan, Task, plan
 from rovval.pipeline.processes import execute
+from rovval.pipeline.summary import STOPPED
 from rovval.pipeline.worker import Outcome, set_aside, work
 from rovval.report.batch.terminal import reasons
-from rovval.storage.atomic import json_text, sweep
+from rovval.storage.atomic import json_text, sweep, write_over
 
 SUMMARY, INDEX = "summary.json", "index.html"
 
@@ -25,11 +28,12 @@ def run(
     scheduler: str | None = None,
     retry: bool = False,
     progress: Callable[[str, float], None] = lambda step, share: None,
+    verify: bool = False,
 ) -> dict[str, Any]:
     """Run the pipeline of a file; returns the summary, which also stands as summary.json among the reports, and as a page, index.html.
 
-    Raises `UsageProblem` for a wrong file, where archive or reports cannot be written, and where a worker runs other code: what was
-    done stays done.
+    ``retry`` and ``verify`` as in `plan`. Raises `UsageProblem` for a wrong file, where archive or reports cannot be written, and where
+    workers cannot be had or run other code: what was done stays done, and the page says what stopped the rest.
     """
     if workers is not None and scheduler:
         raise UsageProblem("--workers and --scheduler are two ways to run", "give one of them")
@@ -38,41 +42,58 @@ def run(
     with lock.held(pipeline.reports):
         sweep(pipeline.reports)
         progress("plan", 0.0)
-        todo = plan(pipeline, path.resolve().parent, retry)
+        todo = plan(pipeline, path.resolve().parent, retry, verify)
         why = todo.why  # before the work changes it
         progress(reasons(why) or "plan", 0.0)
         finished: list[Mapping[str, Any]] = []
         aside = list(todo.set_aside)
-        count = len(todo.todo)
-        spread = (
-            cluster.execute(todo.todo, work, died, scheduler)
-            if scheduler
-            else execute(todo.todo, work, died, workers or pipeline.workers or os.cpu_count() or 1, pipeline.timeout_s)
-        )
-        for number, (task, outcome) in enumerate(spread, 1):
-            if outcome["status"] == "stopped":
-                raise UsageProblem(outcome["record"]["reason"], f"{outcome['record']['next']}; the next run goes on from here")
-            (finished if outcome["status"] == "done" else aside).append(outcome["record"])
-            progress(f"{number} of {count} logs, {task.log.name}", number / count)
+        stop: UsageProblem | None = None
+        try:
+            for number, (task, outcome) in enumerate(_spread(pipeline, todo.todo, workers, scheduler), 1):
+                if outcome["status"] == "stopped":
+                    raise UsageProblem(outcome["record"]["reason"], f"{outcome['record']['next']}; the next run goes on from here")
+                (finished if outcome["status"] == "done" else aside).append(outcome["record"])
+                progress(f"{number} of {len(todo.todo)} logs, {task.log.name}", number / len(todo.todo))
+        except UsageProblem as problem:
+            stop = problem
+        seconds = time.monotonic() - began
         document = summary.summarise(
-            pipeline.name, finished, todo.done, aside, todo.waiting, pipeline.tolerances, time.monotonic() - began, why
+            pipeline.name, finished, todo.done, aside, todo.waiting, pipeline.tolerances, seconds, why, todo.missing, stop
         )
-        _publish(pipeline.reports, document, [*finished, *todo.done])
+        _publish(pipeline.reports, document, [*finished, *todo.done, *todo.kept])
+    if stop:
+        raise stop
     return document
 
 
+def _spread(pipeline: Pipeline, tasks: Sequence[Task], workers: int | None, scheduler: str | None) -> Iterator[tuple[Task, Outcome]]:
+    """Each task with its outcome as it ends, done by workers of this machine or of a cluster."""
+    if scheduler:
+        return cluster.execute(tasks, work, died, scheduler)
+    return execute(tasks, work, died, workers or pipeline.workers or os.cpu_count() or 1, pipeline.timeout_s)
+
+
 def _publish(reports: Path, summary: dict[str, Any], records: list[Mapping[str, Any]]) -> None:
-    """The summary for programs and for people: both of this batch, or both of the one before."""
+    """The summary for programs and for people: both of this batch, or both of the one before. Where the disk is too full for them, what
+    stopped the batch takes the place of the page of the night before, which would look like this night's."""
     from rovval.report.batch import html as batch_html
     from rovval.report.common.files import write_all
 
-    write_all(reports, {SUMMARY: json_text(summary), INDEX: batch_html.text(summary, records)})
+    try:
+        write_all(reports, {SUMMARY: json_text(summary), INDEX: batch_html.text(summary, records)})
+    except Unwritable as error:
+        stopped = {**summary, "exit_code": STOPPED, "stopped_by": {"reason": error.message, "next": error.hint}}
+        short = {key: [] if isinstance(value, list) else value for key, value in stopped.items()}
+        for name, text in ((INDEX, batch_html.text(short, ())), (SUMMARY, json_text(short))):
+            with suppress(OSError):
+                write_over(reports / name, text)
+        raise
 
 
-def dry_run(path: Path, retry: bool = False) -> Plan:
+def dry_run(path: Path, retry: bool = False, verify: bool = False) -> Plan:
     """What a run would do, without doing it."""
     pipeline = config.load(path)
-    return plan(pipeline, path.resolve().parent, retry)
+    return plan(pipeline, path.resolve().parent, retry, verify)
 
 
 def died(task: Task, why: str) -> Outcome:

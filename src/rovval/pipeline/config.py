@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 
 from rovval.core.errors import RovvalError, UsageProblem, all_at_once
 from rovval.pipeline import tolerances
+from rovval.storage.atomic import refuse_url
 
 Step = Literal["ingest", "simulate", "compare", "diagnose"]
 STEPS: tuple[Step, ...] = ("ingest", "simulate", "compare", "diagnose")
@@ -72,6 +73,8 @@ def load(path: Path) -> Pipeline:
     except ValidationError as error:
         lines = [_problem(e) for e in error.errors()]
         raise UsageProblem(all_at_once(lines, str(path)), "compare with pipelines/nightly.toml") from None
+    for place in (pipeline.archive, pipeline.reports, *(Path(pattern) for source in pipeline.source for pattern in source.logs)):
+        refuse_url(place)
     base = path.resolve().parent
     sources = tuple(
         s.model_copy(update={"vehicle": _path(s.vehicle, base), "profile": s.profile and _path(s.profile, base)})

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Iterable, Sequence
-from glob import glob
+import os
+from collections import deque
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from fnmatch import fnmatchcase
 from pathlib import Path
 
-from rovval.core.errors import BadInput, UsageProblem, all_at_once
+from rovval.core.errors import BadInput, all_at_once
 
 SUFFIXES = (".csv", ".tsv", ".txt", ".bag", ".db3", ".mcap", ".bin", ".tlog", ".xlsx", ".parquet")
 FOREIGN = (".h5", ".hdf5", ".mat", ".ulg", ".ulog", ".xls")  # logs by their names that no reader is there for: named and refused, not passed over
 COMPRESSED = (".gz",)
-BLOCK = 1 << 20
+WILD = "*?["
 
 
 def logs_in(sources: Sequence[str]) -> list[Path]:
@@ -29,47 +31,49 @@ def logs_in(sources: Sequence[str]) -> list[Path]:
     return logs
 
 
-def matching(patterns: Sequence[str], base: Path) -> list[Path]:
-    """Logs that the glob patterns match, relative to ``base``; a bag folder is one log. In the order of their names, each once.
+def matching(patterns: Sequence[str], base: Path) -> tuple[list[Path], dict[Path, str]]:
+    """Logs that the glob patterns match, relative to ``base``, in the order of their names, each once; a bag folder is one log. And
+    what matches and cannot be used, or a folder that cannot be looked into, each with the reason.
 
-    Raises:
-        UsageProblem: the fixed part of a pattern is a place that does not exist.
+    ``**`` goes through every folder once, also where links lead back to it; as in a shell it passes hidden folders over.
     """
-    if missing := [p for p in patterns if not _root(base / p).exists()]:
-        raise UsageProblem(
-            all_at_once([f"{p}: {_root(base / p)} does not exist" for p in missing], "logs"),
-            "mend the pattern or make the folder",
-        )
-    found = {Path(name) for p in patterns for name in glob(str(base / p), recursive=True)}  # noqa: PTH207 (a pattern may be absolute)
-    bags = {p for p in found if is_bag(p)} | {p.parent for p in found if is_bag(p.parent)}
-    return sorted(
-        bags
-        | {p for p in found if p.is_file() and not bags & set(p.parents) and not p.name.startswith(".") and p.suffix != ".md"}
-    )
+    unusable: dict[Path, str] = {}
+    found = {path for pattern in patterns for path in _expanded(Path(Path(pattern).anchor or base), _parts(pattern), unusable)}
+    bags, files = set(), set()
+    for path in found:
+        try:
+            if bag := next((p for p in (path, path.parent) if is_bag(p)), None):
+                bags.add(bag)
+            elif path.is_file() and not path.name.startswith(".") and path.suffix != ".md":
+                files.add(path)
+            elif path.is_symlink() and not path.exists():
+                unusable[path] = "a link that leads nowhere"
+        except OSError as error:
+            unusable[path] = f"cannot be read: {error.strerror}"
+    logs = bags | {p for p in files if not bags & set(p.parents)}
+    unusable |= {p: "its name is not UTF-8" for p in logs if not _is_utf8(p)}
+    return sorted(logs - set(unusable)), unusable
+
+
+def absent(patterns: Sequence[str], base: Path) -> list[Path]:
+    """The fixed parts of patterns (up to the first wildcard) that do not exist."""
+    roots = [fixed(pattern, base) for pattern in patterns]
+    return [root for root in roots if not root.exists()]
+
+
+def fixed(pattern: str, base: Path) -> Path:
+    """The part of a pattern before its first wildcard; all of it where it has none."""
+    path = Path(Path(pattern).anchor or base)
+    for part in _parts(pattern):
+        if any(sign in part for sign in WILD):
+            break
+        path /= part
+    return path
 
 
 def is_bag(path: Path) -> bool:
     """A ROS 2 bag is a folder with metadata.yaml."""
     return (path / "metadata.yaml").is_file()
-
-
-def sha256(path: Path) -> str:
-    """Content hash of a file, or of a bag folder's files and their names."""
-    if path.is_file():
-        return _digest([path], path.parent)
-    return _digest(sorted(p for p in path.rglob("*") if p.is_file()), path)
-
-
-def _digest(files: Iterable[Path], base: Path) -> str:
-    total = hashlib.sha256()
-    several = list(files)
-    for file in several:
-        if len(several) > 1:
-            total.update(str(file.relative_to(base)).encode() + b"\0")
-        with file.open("rb") as stream:
-            while block := stream.read(BLOCK):
-                total.update(block)
-    return total.hexdigest()
 
 
 def _inside(folder: Path) -> list[Path]:
@@ -93,11 +97,62 @@ def _looks_like_log(path: Path) -> bool:
     return bool(suffixes) and suffixes[-1] in (*SUFFIXES, *FOREIGN)
 
 
-def _root(pattern: Path) -> Path:
-    """The part of a pattern before its first wildcard."""
-    fixed = []
-    for part in pattern.parts:
-        if any(sign in part for sign in "*?["):
-            break
-        fixed.append(part)
-    return Path(*fixed)
+def _parts(pattern: str) -> tuple[str, ...]:
+    return tuple(part for part in Path(pattern).parts if part != Path(pattern).anchor)
+
+
+def _expanded(folder: Path, parts: Sequence[str], unusable: dict[Path, str]) -> Iterator[Path]:
+    """What the rest of a pattern matches below ``folder``."""
+    if not parts:
+        yield folder
+        return
+    part, rest = parts[0], parts[1:]
+    if part == "**":
+        for inside in _folders(folder, unusable):
+            yield from _expanded(inside, rest or ("*",), unusable)
+    elif any(sign in part for sign in WILD):
+        for entry in _entries(folder, unusable):
+            if fnmatchcase(entry.name, part) and (part.startswith(".") or not entry.name.startswith(".")):
+                yield from _expanded(folder / entry.name, rest, unusable)
+    elif os.path.lexists(folder / part):
+        yield from _expanded(folder / part, rest, unusable)
+
+
+def _folders(top: Path, unusable: dict[Path, str]) -> Iterator[Path]:
+    """``top`` and every folder below it, each once, however many links lead to it: real ones first, under their own names."""
+    seen: set[tuple[int, int]] = set()
+    real, linked = deque([top]), deque[Path]()
+    while real or linked:
+        folder = real.popleft() if real else linked.popleft()
+        with suppress(OSError):
+            status = folder.stat()
+            if (status.st_dev, status.st_ino) in seen:
+                continue
+            seen.add((status.st_dev, status.st_ino))
+        yield folder
+        for entry in _entries(folder, unusable):
+            with suppress(OSError):
+                if entry.is_dir() and not entry.name.startswith("."):
+                    (linked if entry.is_symlink() else real).append(folder / entry.name)
+
+
+def _entries(folder: Path, unusable: dict[Path, str]) -> list[os.DirEntry[str]]:
+    """What lies in a folder, by name; what is no folder holds nothing."""
+    try:
+        with os.scandir(folder) as entries:
+            return sorted(entries, key=lambda entry: entry.name)
+    except (FileNotFoundError, NotADirectoryError):
+        return []
+    except OSError as error:
+        unusable[folder] = f"cannot be looked into: {error.strerror}"
+        return []
+
+
+def _is_utf8(path: Path) -> bool:
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+

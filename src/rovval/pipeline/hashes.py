@@ -2,37 +2,60 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from rovval.core.code_version import source_hash
-from rovval.pipeline import discover
+from rovval.ingest.files import files_of, sha256
 from rovval.storage.atomic import read_json, write_json
 
 NO_RESULT = ("blind", "cli", "demo", "fly")  # rooms that no step of a batch goes through
 
 
 class Hashes:
-    """Content hashes by path, size and time of change, so that an archive of thousands is not read every night."""
+    """Digests of logs' content, so that an archive of thousands is not read every night.
 
-    def __init__(self, path: Path) -> None:
+    A log is read again when the number, size, times (of change and of status) or inode of its files differ from those of the last time: the
+    time of status is the kernel's own, which no program sets back. ``afresh`` reads every log.
+    """
+
+    def __init__(self, path: Path, afresh: bool = False) -> None:
         self.path = path
-        self.known = read_json(path) or {}
+        self.known = {log: entry for log, entry in (read_json(path) or {}).items() if _whole(entry)}
         self.used: dict[str, Any] = {}
+        self.afresh = afresh
 
     def of(self, log: Path) -> str:
-        """That of a log's content, read only if the log has changed."""
-        stamp = [[p.stat().st_size, p.stat().st_mtime_ns] for p in ([log] if log.is_file() else sorted(log.rglob("*")))]
+        """That of a log's content, read only if the log has changed. Raises OSError for one that cannot be read."""
+        stamp = _stamp(log)
         entry = self.known.get(str(log))
-        sha: str = entry["sha256"] if entry and entry["stamp"] == stamp else discover.sha256(log)
+        sha: str = entry["sha256"] if entry and entry["stamp"] == stamp and not self.afresh else sha256(log)
         self.used[str(log)] = {"stamp": stamp, "sha256": sha}
         return sha
+
+    def below(self, folders: Sequence[Path]) -> list[tuple[Path, str]]:
+        """The logs that were in ``folders`` the last time, and their digests; they stay known."""
+        were = {log: entry for log, entry in self.known.items() if any(Path(log).is_relative_to(folder) for folder in folders)}
+        self.used = were | self.used
+        return [(Path(log), entry["sha256"]) for log, entry in were.items()]
 
     def save(self) -> None:
         """Keep those that were asked for."""
         if self.used != self.known:
             write_json(self.path, self.used)
+
+
+def _stamp(log: Path) -> list[list[int]]:
+    status = [part.stat() for part in files_of(log)]
+    return [[s.st_size, s.st_mtime_ns, s.st_ctime_ns, s.st_ino] for s in status]
+
+
+def _whole(entry: Any) -> bool:
+    """Whether an entry of the file is one: the file may have been damaged."""
+    return isinstance(entry, dict) and re.fullmatch(r"[0-9a-f]{64}", str(entry.get("sha256"))) is not None and "stamp" in entry
 
 
 def code_on_disk() -> str:

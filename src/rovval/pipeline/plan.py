@@ -7,19 +7,22 @@ import json
 import time
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from rovval.core.errors import Unwritable, UsageProblem, all_at_once
+from rovval.core.file_names import printable, shortened
+from rovval.ingest.files import files_of
 from rovval.pipeline import discover
 from rovval.pipeline.config import Pipeline, Source
 from rovval.pipeline.hashes import Hashes, code_on_disk
-from rovval.storage.atomic import read_json
+from rovval.pipeline.records import is_damaged, outputs_whole, read_quarantine, read_record
 
-RECORD = "record.json"
 QUARANTINE = "quarantine"
 HASHES = ".hashes.json"
-RETRIED = ("crash", "internal")  # a worker that died may have lacked memory; a refused log stays refused until it changes
+RETRIED = ("crash", "internal", "unreadable", "changed")  # a worker that died may have lacked memory; a refused log stays refused until it changes
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +57,17 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Tasks to do, records of what is done, records of what stays in quarantine, and logs left for later with the reason."""
+    """Tasks to do, records of what is done, records of what stays in quarantine or cannot be read, and logs left for later with the reason.
+
+    ``missing`` are sources of which no log is there, with the reason; ``kept`` the records of the logs that they had.
+    """
 
     todo: tuple[Task, ...]
     done: tuple[Mapping[str, Any], ...]
     set_aside: tuple[Mapping[str, Any], ...]
     waiting: tuple[tuple[Path, str], ...]
+    missing: tuple[tuple[str, str], ...] = ()
+    kept: tuple[Mapping[str, Any], ...] = ()
 
     @property
     def why(self) -> Mapping[str, int]:
@@ -67,33 +75,95 @@ class Plan:
         return Counter(why(task) for task in self.todo)
 
 
-def plan(pipeline: Pipeline, base: Path, retry: bool = False) -> Plan:
-    """Discover the logs and sort them into done, set aside, and to do. ``retry`` tries quarantined logs again."""
-    todo: list[Task] = []
-    done: list[Mapping[str, Any]] = []
-    aside: list[Mapping[str, Any]] = []
-    waiting: list[tuple[Path, str]] = []
-    seen: dict[str, Path] = {}
-    hashes, made_by = Hashes(pipeline.reports / HASHES), code_on_disk()
+@dataclass(slots=True)
+class _Sorting:
+    """The lists of a plan while logs are sorted into them."""
+
+    pipeline: Pipeline
+    hashes: Hashes
+    retry: bool
+    todo: list[Task] = field(default_factory=list)
+    done: list[Mapping[str, Any]] = field(default_factory=list)
+    aside: list[Mapping[str, Any]] = field(default_factory=list)
+    waiting: list[tuple[Path, str]] = field(default_factory=list)
+    missing: list[tuple[str, str]] = field(default_factory=list)
+    kept: list[Mapping[str, Any]] = field(default_factory=list)
+    seen: dict[str, Path] = field(default_factory=dict)
+
+    def log(self, log: Path, source: Source, content: tuple[str, str, str]) -> None:
+        """Put one log where it belongs."""
+        if _changes(log, self.pipeline.settle_s):
+            self.waiting.append((log, f"changed less than {self.pipeline.settle_s:g} s ago (settle_s): a later run takes it"))
+            return
+        task = _task(self.pipeline, source, log, self.hashes.of(log), content)
+        if (twin := self.seen.setdefault(task.key, log)) != log:
+            self.waiting.append((log, f"same content as {twin}"))
+        elif record := _finished(task, self.hashes.afresh):
+            self.done.append(record)
+        elif (record := read_quarantine(task.quarantine)) and record["key"] == task.key and record["kind"] not in RETRIED and not self.retry:
+            self.aside.append(record)
+        else:
+            self.todo.append(task)
+
+    def nothing_of(self, source: Source, base: Path, content: tuple[str, str, str]) -> None:
+        """No log of a source is there: what is known of those that were there is kept."""
+        for log, sha in self.hashes.below([discover.fixed(pattern, base) for pattern in source.logs]):
+            record = None if log.exists() else _finished(_task(self.pipeline, source, log, sha, content), False)
+            if record:
+                self.kept.append(record)
+        gone = discover.absent(source.logs, base)
+        why = f"{gone[0]} does not exist" if gone else "no log is there"
+        had = f"; {len(self.kept)} logs were there before: is the volume mounted?" if self.kept else ""
+        self.missing.append((", ".join(source.logs), why + had))
+
+
+def plan(pipeline: Pipeline, base: Path, retry: bool = False, verify: bool = False) -> Plan:
+    """Discover the logs and sort them into done, set aside, and to do. ``retry`` tries quarantined logs again, ``verify`` reads every log
+    and every output anew instead of trusting sizes and times.
+
+    Raises `UsageProblem` where the folder of a pattern does not exist and no log of it was ever there.
+    """
+    sorting = _Sorting(pipeline, Hashes(pipeline.reports / HASHES, afresh=verify), retry)
+    made_by = code_on_disk()
     for source in pipeline.source:
-        vehicle, profile = _content(source)
-        for log in discover.matching(source.logs, base):
-            if time.time() - log.stat().st_mtime < pipeline.settle_s:
-                waiting.append((log, f"changed less than {pipeline.settle_s:g} s ago (settle_s): a later run takes it"))
-                continue
-            task = _task(pipeline, source, log, hashes.of(log), (vehicle, profile, made_by))
-            if (twin := seen.setdefault(task.key, log)) != log:
-                waiting.append((log, f"same content as {twin}"))
-            elif record := _finished(task):
-                done.append(record)
-            elif (
-                (record := read_json(task.quarantine)) and record["key"] == task.key and record["kind"] not in RETRIED and not retry
-            ):
-                aside.append(record)
-            else:
-                todo.append(task)
-    hashes.save()
-    return Plan(tuple(todo), tuple(done), tuple(aside), tuple(waiting))
+        content = (*_content(source), made_by)
+        logs, unusable = discover.matching(source.logs, base)
+        for path, reason in unusable.items():
+            sorting.aside.append(_unusable(path, reason))
+        for log in logs:
+            try:
+                sorting.log(log, source, content)
+            except OSError as error:
+                sorting.aside.append(_unusable(log, f"cannot be read: {error.strerror}"))
+        if not logs:
+            sorting.nothing_of(source, base, content)
+    _refuse_unknown_folders(pipeline, base, sorting)
+    with suppress(Unwritable):  # it only saves reading; whoever writes a result on that disk is stopped, and says why
+        sorting.hashes.save()
+    return Plan(
+        tuple(sorting.todo), tuple(sorting.done), tuple(sorting.aside), tuple(sorting.waiting), tuple(sorting.missing), tuple(sorting.kept)
+    )
+
+
+def _refuse_unknown_folders(pipeline: Pipeline, base: Path, sorting: _Sorting) -> None:
+    """A folder that does not exist and never had a log is a slip of the pen in the file."""
+    if sorting.hashes.known:
+        return
+    absent = {pattern: discover.absent([pattern], base) for source in pipeline.source for pattern in source.logs}
+    if gone := [f"{pattern}: {folders[0]} does not exist" for pattern, folders in absent.items() if folders]:
+        raise UsageProblem(all_at_once(gone, "logs"), "mend the pattern or make the folder")
+
+
+def _changes(log: Path, settle_s: float) -> bool:
+    """Whether a log was written so lately that it may still be. A time further in the future is a wrong clock, and waiting does not help."""
+    now = time.time()
+    return any(abs(now - part.stat().st_mtime) < settle_s for part in files_of(log))
+
+
+def _unusable(path: Path, reason: str) -> Mapping[str, Any]:
+    """The record of what cannot even be planned: nothing is known by which it could be found again, so that it is looked at every time."""
+    name = printable(str(path))
+    return {"log": name, "kind": "unreadable", "reason": f"{name}: {reason}", "next": "mend its name or its permissions", "exit_code": 3}
 
 
 def _task(pipeline: Pipeline, source: Source, log: Path, sha: str, content: tuple[str, str, str]) -> Task:
@@ -121,7 +191,7 @@ def _task(pipeline: Pipeline, source: Source, log: Path, sha: str, content: tupl
         keys=tuple(keys),
         archive=pipeline.archive,
         reports=pipeline.reports,
-        folder=pipeline.reports / f"{log.stem}-{_hash(sha, source.profile, source.vehicle)[:8]}",
+        folder=pipeline.reports / f"{shortened(log.stem)}-{_hash(sha, source.profile, source.vehicle)[:8]}",
         code=made_by,
     )
 
@@ -137,32 +207,30 @@ def _content(source: Source) -> tuple[str, str]:
     return numbers, profile.sha256 if profile else ""
 
 
-def _finished(task: Task) -> Mapping[str, Any] | None:
-    record = read_record(task)
+def _finished(task: Task, digests: bool) -> Mapping[str, Any] | None:
+    record = read_record(task.folder)
     if record is None or any(record["steps"].get(step, {}).get("key") != key for step, key in task.keys):
         return None
-    outputs = [path for step in record["steps"].values() for path in step["outputs"]]
-    return record if all((task.reports / path).exists() for path in outputs) else None
+    return record if all(outputs_whole(step, task.reports, digests) for step in record["steps"].values()) else None
 
 
 def why(task: Task) -> str:
     """Why a task is to be done, in words."""
-    record = read_record(task) or read_json(task.quarantine)
-    if record is None:
+    if is_damaged(task.folder):
+        return "with a damaged record"
+    record, aside = read_record(task.folder), read_quarantine(task.quarantine)
+    if record is None and aside is None:
         return "new"
-    steps = record.get("steps", {})
-    made_by = {step.get("code", "older") for step in (*steps.values(), *([] if steps else [record]))}
+    steps = record["steps"] if record else {}
+    made_by = {step.get("code", "older") for step in (steps.values() if record else [aside or {}])}
     if other := made_by - {task.code}:
         return f"made by other code of rovval ({', '.join(sorted(other))}; now {task.code})"
+    if aside and not record:
+        return f"set aside before ({aside['kind']})"
     if missing := [step for step, _ in task.keys if step not in steps]:
         return f"without {', '.join(missing)} so far"
     same = all(steps[step]["key"] == key for step, key in task.keys)
-    return "with an output gone" if same else "of changed vehicle, profile or options"
-
-
-def read_record(task: Task) -> dict[str, Any] | None:
-    """The record of what was done with the task's log, if there is one."""
-    return read_json(task.folder / RECORD)
+    return "with an output gone or damaged" if same else "of changed vehicle, profile or options"
 
 
 def _hash(*parts: Any) -> str:

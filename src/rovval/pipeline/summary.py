@@ -6,9 +6,10 @@ import time
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from rovval.core.errors import UsageProblem
 from rovval.pipeline import tolerances
 
-DONE, BEYOND, QUARANTINED = 0, 1, 3
+DONE, BEYOND, STOPPED, UNUSABLE, LEFT_LIMITS = 0, 1, 2, 3, 4
 
 
 def summarise(
@@ -20,8 +21,11 @@ def summarise(
     limits: Sequence[str],
     seconds: float,
     why: Mapping[str, int],
+    missing: Sequence[tuple[str, str]] = (),
+    stopped_by: UsageProblem | None = None,
 ) -> dict[str, Any]:
-    """The summary document. ``why`` there was something to do, by `Plan.why`. Tolerances are held against every run of the plan, new or unchanged."""
+    """The summary document. ``why`` there was something to do, by `Plan.why`. Tolerances are held against every run of the plan, new or
+    unchanged. ``missing`` are sources without a log, each with the reason; ``stopped_by`` is what ended the batch before its end."""
     parsed = tolerances.parse(limits)
     beyond, stopped = [], []
     for record in (*finished, *skipped):
@@ -30,7 +34,8 @@ def summarise(
             stopped.append({"log": record["log"], "run": record["run"], "stops": list(stops)})
         lines = tolerances.exceeded(parsed, compared["comparison"]) if compared else ()
         beyond += [{"log": record["log"], "run": record["run"], "limit": line} for line in lines]
-    code = QUARANTINED if set_aside else BEYOND if beyond else DONE
+    ends = ((STOPPED, stopped_by), (UNUSABLE, set_aside or missing), (LEFT_LIMITS, stopped), (BEYOND, beyond))
+    code = next((code for code, holds in ends if holds), DONE)
     return {
         "schema": "rovval.summary/1",
         "pipeline": name,
@@ -44,8 +49,11 @@ def summarise(
             "waiting": len(waiting),
             "tolerances_exceeded": len(beyond),
             "left_sane_limits": len(stopped),
+            "missing_sources": len(missing),
         },
         "why": dict(why),
+        "stopped_by": {"reason": stopped_by.message, "next": stopped_by.hint} if stopped_by else None,
+        "missing_sources": [{"logs": logs, "why": why} for logs, why in missing],
         "done": [{"log": r["log"], "run": r["run"]} for r in finished],
         "tolerances_exceeded": beyond,
         "left_sane_limits": stopped,

@@ -10,10 +10,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rovval.core.errors import RovvalError, Unwritable
+from rovval.core.errors import BadInput, RovvalError, Unwritable
+from rovval.ingest.files import sha256
 from rovval.pipeline.hashes import code_of_this_process
-from rovval.pipeline.plan import RECORD, Task, read_record
-from rovval.storage.atomic import write_json, write_text
+from rovval.pipeline.plan import Task
+from rovval.pipeline.records import outputs_whole, read_record, write_record
+from rovval.storage.atomic import FULL, refusal, write_json, write_text
+from rovval.storage.contents import contents
 
 if TYPE_CHECKING:
     from rovval.core.data import Run, SimResult
@@ -40,6 +43,12 @@ def _done_or_set_aside(task: Task) -> Outcome:
         record = _steps(task)
     except Unwritable:
         raise
+    except _Changed as error:
+        return set_aside(task, "changed", error.message, error.exit_code, hint=error.hint)
+    except OSError as error:
+        if error.errno in FULL:
+            raise refusal(Path(os.fsdecode(error.filename or task.folder)), error) from None
+        return set_aside(task, "unreadable", f"{task.log}: {error}", 3, hint="it is tried again by the next run")
     except RovvalError as error:
         return set_aside(task, "refused", error.message, error.exit_code, hint=error.hint)
     except MemoryError:
@@ -71,21 +80,27 @@ def set_aside(task: Task, kind: str, reason: str, code: int, hint: str = "", tra
 
 
 def _steps(task: Task) -> dict[str, Any]:
-    record = read_record(task) or {"schema": "rovval.batch/1", "steps": {}}
+    record = read_record(task.folder) or {"schema": "rovval.batch/1", "steps": {}}
     planned = {step: found for step, found in record["steps"].items() if step in dict(task.keys)}  # what is not would stay as it was
     record |= {"log": str(task.log), "sha256": task.sha256, "steps": planned}
     bench = _Bench(task)
     stale = False
     for step, key in task.keys:
         before = record["steps"].get(step)
-        stale = stale or not before or before["key"] != key or not all((task.reports / p).exists() for p in before["outputs"])
+        stale = stale or not before or before["key"] != key or not outputs_whole(before, task.reports, digests=True)
         if stale:
             facts, outputs = bench.do(step)
             run = bench.run
             record |= {"run": run.id, "vehicle": run.vehicle, "duration_s": run.duration_s, "findings": len(run.findings)}
-            record["steps"][step] = {"key": key, "code": task.code, "outputs": [os.path.relpath(p, task.reports) for p in outputs], **facts}
-            write_json(task.folder / RECORD, record)
+            written = contents(outputs, task.reports)
+            names = [os.path.relpath(p, task.reports) for p in outputs]
+            record["steps"][step] = {"key": key, "code": task.code, "outputs": names, "files": written, **facts}
+            write_record(task.folder, record)
     return record
+
+
+class _Changed(BadInput):
+    """The log is not what the plan was made for."""
 
 
 class _Bench:
@@ -98,7 +113,10 @@ class _Bench:
     def run(self) -> Run:
         from rovval.storage.archive import open_run
 
-        return open_run(str(self.task.log), self.task.profile, self.task.archive)
+        run = open_run(str(self.task.log), self.task.profile, self.task.archive)
+        if {run.sha256, sha256(self.task.log)} != {self.task.sha256}:  # while it was read, and after
+            raise _Changed(f"{self.task.log}: changed between the plan and its reading", "it is tried again by the next run; see settle_s")
+        return run
 
     @cached_property
     def vehicle(self) -> Vehicle:

@@ -25,7 +25,7 @@ from rovval.core.data import ClockReport, Resampled, Run
 from rovval.core.errors import BadInput, Finding
 from rovval.core.version import __version__
 from rovval.ingest import read
-from rovval.storage.atomic import refusal
+from rovval.storage.atomic import refusal, refuse_url
 
 SCHEMA = "rovval.run/1"
 REASON = "reason:"
@@ -51,6 +51,7 @@ def open_run(source: str | Path, profile: str | None = None, archive: Path = ARC
 def save_run(run: Run, archive: Path = ARCHIVE, overwrite: bool = False) -> Path:
     """Write a run; the same run already there is left alone. Another one of its id (other code read the log, or found more in it)
     gives way if ``overwrite``; else `BadInput` is raised."""
+    refuse_url(Path(archive))
     place = Path(archive) / run.id
     table, manifest = _bytes(run)
     if place.exists():
@@ -61,7 +62,7 @@ def save_run(run: Run, archive: Path = ARCHIVE, overwrite: bool = False) -> Path
                 raise
             _move_away(place)
         else:
-            if not overwrite or old.findings == run.findings:
+            if not overwrite or _facts(_bytes(old)[1]) == _facts(manifest):
                 return place
             _move_away(place)
     draft = place.with_name(f".{run.id}.{uuid.uuid4().hex[:8]}.part")
@@ -93,6 +94,11 @@ def _same(place: Path, run: Run) -> Run:
     return old
 
 
+def _facts(manifest: dict[str, Any]) -> dict[str, Any]:
+    """What a manifest says of the run itself, not of where its log lay and what wrote it."""
+    return {k: v for k, v in json.loads(json.dumps(manifest)).items() if k not in ("source", "versions", "table_sha256")}
+
+
 def _move_away(place: Path) -> None:
     """Out of its place in one step, then gone; another process may have been faster."""
     old = place.with_name(f".{place.name}.{uuid.uuid4().hex[:8]}.part")
@@ -114,6 +120,8 @@ def load_run(id_or_folder: str | Path, archive: Path = ARCHIVE) -> Run:
         raise BadInput(f"{id_or_folder}: no such run in {archive}", f"runs there: {near}") from None
     except (OSError, ValueError) as error:
         raise BadInput(f"{folder}: damaged: {error}", "ingest the log again") from None
+    if not isinstance(manifest, dict):
+        raise BadInput(f"{folder}: damaged: manifest.json holds no object", "ingest the log again")
     if manifest.get("schema") != SCHEMA:
         raise BadInput(f"{folder}: schema {manifest.get('schema')!r}, this version reads {SCHEMA!r}", "ingest the log again")
     if manifest.get("table_sha256") != hashlib.sha256(table).hexdigest():

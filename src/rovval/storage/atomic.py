@@ -5,6 +5,8 @@ from __future__ import annotations
 import errno
 import json
 import os
+import re
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -24,6 +26,7 @@ def drafts(*places: Path) -> Iterator[list[Path]]:
     All of them are renamed into place when the block ends, and none where it fails. Raises `Unwritable` where the disk is full or
     closed to us, `UsageProblem` where a place cannot be a file's.
     """
+    refuse_url(*places)
     beside = [place.with_name(f".{place.name}.{os.getpid()}.part") for place in places]
     try:
         for place in places:
@@ -55,6 +58,16 @@ def refuse_unwritable(*places: Path | None) -> None:
             raise refusal(place, OSError(code, os.strerror(code)))
 
 
+def refuse_url(*places: Path) -> None:
+    """Refuse what is the address of an object store or server: as a path it would be a local folder of that name, lost with the machine."""
+    for place in places:
+        if scheme := re.match(r"([A-Za-z][A-Za-z0-9+.-]+):/", str(place)):
+            raise UsageProblem(
+                f"{scheme[1]}://{str(place)[scheme.end() :].lstrip('/')}: {scheme[1]}:// is no place that rovval reads or writes, only folders are",
+                "mount it as a folder (s3fs, rclone mount, a volume of the cluster) and give that, or copy to it afterwards",
+            )
+
+
 def refusal(place: Path, error: OSError) -> UsageProblem:
     """Why ``place`` cannot be written, and what to do."""
     kind = Unwritable if error.errno in FULL + CLOSED else UsageProblem
@@ -74,6 +87,14 @@ def write_text(path: Path, text: str) -> None:
         draft.write_text(text, encoding="utf-8", newline="\n")
 
 
+def write_over(path: Path, text: str) -> None:
+    """Write ``text`` in the place of a file that stands there, on the space that it takes: where the disk is full nothing else goes.
+    A reader may see it in part. Raises OSError."""
+    with path.open("r+", encoding="utf-8", newline="\n") as file:
+        file.truncate(0)
+        file.write(text)
+
+
 def write_json(path: Path, document: dict[str, Any]) -> None:
     """Write a JSON document in one step."""
     write_text(path, json_text(document))
@@ -85,15 +106,18 @@ def json_text(document: dict[str, Any]) -> str:
 
 
 def read_json(path: Path) -> dict[str, Any] | None:
-    """A JSON document; None where there is none, or a kill by other means left it broken."""
+    """A JSON object; None where there is none, or what lies there is damaged."""
     try:
-        document: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    except (FileNotFoundError, json.JSONDecodeError):
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except (FileNotFoundError, IsADirectoryError, ValueError, RecursionError):
         return None
-    return document
+    return document if isinstance(document, dict) else None
 
 
 def sweep(root: Path) -> None:
     """Remove what a kill left half-written under ``root`` (call it only while holding the lock of ``root``)."""
     for left in list(root.rglob(LEFTOVER)):
-        left.unlink(missing_ok=True)
+        if left.is_dir():
+            shutil.rmtree(left, ignore_errors=True)
+        else:
+            left.unlink(missing_ok=True)

@@ -22,7 +22,9 @@ def text(summary: Mapping[str, Any], records: Sequence[Record]) -> str:
     refused, failed = ([_aside(q) for q in aside if (q["kind"] in FAILED) == fails] for fails in (False, True))
     beyond = [{"run": r, "said": ["; ".join(r.beyond)]} for r in rows if r.beyond]
     stopped = [{"run": r, "said": [_stops(r)]} for r in rows if r.stops]
-    attention = {"beyond a tolerance": beyond, "failed": failed, "quarantined": refused, "left sane limits in the simulation": stopped}
+    absent, halted = summary.get("missing_sources", ()), [s for s in [summary.get("stopped_by")] if s]
+    attention: dict[str, Any] = {"stop before its end": halted, "source without a log": absent}
+    attention |= {"beyond a tolerance": beyond, "failed": failed, "quarantined": refused, "left sane limits in the simulation": stopped}
     columns = table.columns(rows)
     return render(
         "batch.html",
@@ -32,6 +34,8 @@ def text(summary: Mapping[str, Any], records: Sequence[Record]) -> str:
         banner="",
         said=[_verdict(len(rows), attention)],
         facts=_facts(summary),
+        stopped_by=[{"log": summary["pipeline"], "said": [s["reason"], s["next"]]} for s in halted],
+        missing=[{"log": m["logs"], "said": [m["why"]]} for m in absent],
         beyond=beyond,
         failed=failed,
         refused=refused,
@@ -62,7 +66,7 @@ def _verdict(runs: int, attention: Mapping[str, Sequence[Any]]) -> str:
 
 
 def _facts(summary: Mapping[str, Any]) -> dict[str, Any]:
-    counts = {what: str(n) for what, n in summary["counts"].items() if what not in ("tolerances_exceeded", "left_sane_limits")}
+    counts = {what: str(n) for what, n in summary["counts"].items() if what not in ("tolerances_exceeded", "left_sane_limits", "missing_sources")}
     return {"ended": summary["ended"], "took": duration(summary["seconds"]), **counts, "exit code": str(summary["exit_code"])}
 
 

@@ -22,6 +22,7 @@ def text(summary: Mapping[str, Any]) -> str:
         + f" in {duration(summary['seconds'])}"
     ]
     lines += [f"  to do were   {reasons(summary['why'])}"] if summary["why"] else []
+    lines += [f"  no log       {row['logs']}: {row['why']}" for row in summary["missing_sources"]]
     lines += [f"  quarantined  {row['log']}: {row['reason'].removeprefix(row['log'] + ': ')}" for row in summary["quarantined"]]
     lines += [f"  exceeded     {row['log']}: {row['limit']}" for row in summary["tolerances_exceeded"]]
     lines += [f"  left limits  {row['log']}: {row['stops'][0]}" for row in summary["left_sane_limits"]]

@@ -1,0 +1,52 @@
+"""Records of what was done with a log (rovval.batch/1), each with its own digest: one that was damaged counts as none."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from rovval.storage.atomic import read_json, write_json
+from rovval.storage.contents import damage
+
+RECORD = "record.json"
+DIGEST = "digest"
+
+
+def read_record(folder: Path) -> dict[str, Any] | None:
+    """The record of the log whose reports lie in ``folder``; None where there is none or it is damaged."""
+    record = read_json(folder / RECORD)
+    if record is None or record.pop(DIGEST, None) not in (None, _digest(record)):  # one of an older rovval has no digest
+        return None
+    steps = record.get("steps")
+    sound = isinstance(steps, dict) and all(isinstance(s, dict) and {"key", "outputs"} <= s.keys() for s in steps.values())
+    return record if sound and {"log", "run"} <= record.keys() else None
+
+
+def is_damaged(folder: Path) -> bool:
+    """Whether a record lies there that cannot be used."""
+    return (folder / RECORD).exists() and read_record(folder) is None
+
+
+def write_record(folder: Path, record: Mapping[str, Any]) -> None:
+    """Write it with its digest."""
+    write_json(folder / RECORD, {**record, DIGEST: _digest(record)})
+
+
+def read_quarantine(path: Path) -> dict[str, Any] | None:
+    """Why a log was set aside; None where it was not, or the record of it is damaged (the log is then tried again)."""
+    record = read_json(path)
+    return record if record and {"log", "key", "kind", "reason", "next"} <= record.keys() else None
+
+
+def outputs_whole(step: Mapping[str, Any], reports: Path, digests: bool = False) -> bool:
+    """Whether all that a step wrote is still there as it was written: by size, and by content if ``digests``."""
+    if "files" not in step:  # of an older rovval
+        return all((reports / path).exists() for path in step["outputs"])
+    return not damage(step["files"], reports, digests)
+
+
+def _digest(record: Mapping[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(record, sort_keys=True).encode()).hexdigest()
