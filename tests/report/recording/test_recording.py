@@ -1,8 +1,11 @@
 """The rerun recording, written and read back."""
 
+import errno
+import shutil
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -109,5 +112,8 @@ def test_a_recording_that_could_not_be_written_is_said(tmp_path: Path, monkeypat
 
     monkeypatch.setattr(rr.RecordingStream, "flush", stopped)
     run = make_run(50)
-    with pytest.raises(OSError, match="want of space"):
-        recording.write(compare(run, make_sim(run)), tmp_path / "run.rrd", MERLIN)
+    for free, code in ((0, errno.ENOSPC), (1 << 40, errno.EIO)):
+        monkeypatch.setattr(shutil, "disk_usage", lambda _folder, free=free: SimpleNamespace(free=free))
+        with pytest.raises(OSError, match="writer stopped") as refused:
+            recording.write(compare(run, make_sim(run)), tmp_path / "run.rrd", MERLIN)
+        assert refused.value.errno == code
