@@ -61,6 +61,12 @@ def slow(task: Task) -> Outcome:
     return work(task)
 
 
+def telling(task: Task) -> Outcome:
+    """Work that never ends and says which process is at it, in a file beside the log."""
+    task.log.with_suffix(".pid").write_text(str(os.getpid()))
+    return slow(task)
+
+
 def no_space(folder: object, *_rest: object) -> NoReturn:
     """A disk that is full, for whatever writes."""
     raise Unwritable(f"{folder}: cannot be written: No space left on device", "free space on its disk, or write elsewhere")

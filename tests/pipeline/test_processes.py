@@ -1,6 +1,11 @@
 """Workers of this machine: one that dies or hangs costs its own log and no other."""
 
+import os
+import signal
+import subprocess
+import sys
 import time
+from pathlib import Path
 
 import batch_case
 from batch_case import counts, tasks_of
@@ -37,3 +42,32 @@ def test_a_log_that_takes_too_long_is_set_aside(site):
     [(_, outcome)] = execute(tasks, batch_case.slow, batch.died, workers=2, timeout_s=1.0)
     assert time.monotonic() - began < 30
     assert "timeout_s = 1 s" in outcome["record"]["reason"]
+
+
+def test_a_worker_does_not_outlive_a_killed_batch(site):
+    """It went on with its log while the next batch held the lock."""
+    batch_case.write_log(site / "logs" / "hanger.csv", seed=50)
+    path = batch_case.write_pipeline(site)
+    path.write_text(path.read_text().replace("logs/*.csv", "logs/hanger.csv"))
+    code = f"import sys; sys.path.insert(0, {str(Path(batch_case.__file__).parent)!r})\nimport batch_case\nfrom pathlib import Path\n"
+    code += f"from rovval.pipeline import batch\nbatch.work = batch_case.telling\nbatch.run(Path({str(path)!r}), workers=1)\n"
+    with subprocess.Popen([sys.executable, "-c", code]) as process:
+        told, deadline = site / "logs" / "hanger.pid", time.monotonic() + 60
+        while not (told.exists() and told.read_text()) and time.monotonic() < deadline:
+            time.sleep(0.02)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+    worker, deadline = int(told.read_text()), time.monotonic() + 10
+    while is_alive(worker) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    assert not is_alive(worker)
+
+
+def is_alive(process: int) -> bool:
+    """Whether that process is there and no zombie that waits for its parent."""
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    status = Path(f"/proc/{process}/stat")
+    return not status.exists() or status.read_text().rpartition(")")[2].split()[0] != "Z"

@@ -8,6 +8,7 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -74,6 +75,7 @@ def _hire(context: Any, work: Work) -> _Worker:
 def _serve(pipe: Connection, work: Work) -> None:
     """The worker's life: a task in, its outcome out, until the other end is closed or gone."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_leave_with_parent, daemon=True).start()
     for name in THREADS:
         os.environ.setdefault(name, "1")
     while True:
@@ -82,6 +84,13 @@ def _serve(pipe: Connection, work: Work) -> None:
         except EOFError:
             return
         pipe.send(work(task))
+
+
+def _leave_with_parent() -> None:
+    """End this worker when the batch that hired it is gone, also in the middle of a log: the next batch may be at work on it already."""
+    if parent := multiprocessing.parent_process():
+        wait([parent.sentinel])
+        os._exit(1)
 
 
 def _give(worker: _Worker, task: Task) -> None:
