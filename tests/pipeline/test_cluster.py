@@ -27,3 +27,13 @@ def test_a_dask_cluster_gives_the_same_outcomes(site):
         done = batch.run(path, scheduler=dask.scheduler_address)
     assert counts(done) == {"done": 3, "quarantined": 1}
     assert counts(batch.run(path, workers=1)) == {"unchanged": 3, "quarantined": 1}
+
+
+@pytest.mark.slow
+def test_a_scheduler_without_workers_is_not_waited_for(site, monkeypatch):
+    """The batch waited in silence, for ever; needs the extra `cluster`."""
+    distributed = pytest.importorskip("distributed", reason="pip install 'rovval[cluster]'")
+    monkeypatch.setattr(cluster, "PATIENCE_S", 1.0)
+    with distributed.LocalCluster(n_workers=0, dashboard_address=None) as dask, pytest.raises(UsageProblem, match="no worker for 1 s"):
+        batch.run(batch_case.write_pipeline(site), scheduler=dask.scheduler_address)
+    assert "Stopped before its end (1)" in (site / "reports" / "index.html").read_text()
