@@ -26,7 +26,7 @@ from rovval.diagnose.residuals.normal_equations import (
 )
 from rovval.diagnose.residuals.parity import ParityResiduals, parity_residuals
 from rovval.diagnose.residuals.ridge import Prior
-from rovval.diagnose.residuals.sensor_faults import sensor_faults
+from rovval.diagnose.residuals.sensor_faults import FittedFault, sensor_faults
 from rovval.diagnose.result.attribution import slices, worst
 from rovval.diagnose.windows.multiple_shooting import cut_run
 from rovval.diagnose.windows.windows import Windows, axis_channels
@@ -203,10 +203,10 @@ def spoilt(fault: dict[str, float]) -> Run:
     return bare(idle | seen, merlin(), "kinematic")
 
 
-def parity_of(run: Run) -> dict[str, dict[str, object]]:
+def parity_of(run: Run) -> dict[str, FittedFault]:
     part = cut_run(run, merlin(), "fossen", 10.0)
     sensor = tuple(i for i, s in enumerate(part.plant.slots) if load(s.effect).place == "sensor")
-    return {str(row["fault"]): row for row in sensor_faults(parity_residuals(part, sensor), part, part.plant.null)}
+    return {row.fault: row for row in sensor_faults(parity_residuals(part, sensor), part, part.plant.null)}
 
 
 @pytest.mark.parametrize(
@@ -219,8 +219,8 @@ def parity_of(run: Run) -> dict[str, dict[str, object]]:
 )  # fmt: skip
 def test_parity_finds_a_sensor_fault_with_sign_and_size(fault, size):
     row = parity_of(spoilt({fault: size}))[fault]
-    assert row["significant"]
-    assert row["value"] == pytest.approx(size, rel=0.15)
+    assert row.significant
+    assert row.value == pytest.approx(size, rel=0.15)
 
 
 def test_a_fault_is_not_told_of_fewer_windows_than_its_scatter_needs():
@@ -231,7 +231,7 @@ def test_a_fault_is_not_told_of_fewer_windows_than_its_scatter_needs():
     told = parity_of(replace(run, values={**run.values, "r": r}, reasons={**run.reasons, "r": reasons}))
     assert not told, "each interval would have no width"
     whole = parity_of(run)
-    assert whole and {row["significant"] for row in whole.values()} <= {False}
+    assert whole and {row.significant for row in whole.values()} <= {False}
 
 
 def test_parity_about_another_point_is_that_of_its_moved_rows():
@@ -281,11 +281,11 @@ def test_a_late_sensor_is_read_without_the_bias_of_its_tangent(name: str, late: 
     straight = metres(rows.rows - rows.traces[..., 0] * late, rows)
     assert metres(rows.undone(beta)[0], rows) < min(1.2 * metres(sound.rows, sound), 0.95 * straight)
     told = parity_of(spoilt({name: late}))[name]
-    assert told["significant"] and told["value"] == pytest.approx(late, rel=0.05)
+    assert told.significant and told.value == pytest.approx(late, rel=0.05)
 
 
 def test_parity_of_healthy_sensors_finds_nothing():
-    assert not [name for name, row in parity_of(spoilt({})).items() if row["significant"]]
+    assert not [name for name, row in parity_of(spoilt({})).items() if row.significant]
 
 
 # -- detection ---------------------------------------------------------------------------------------------------------------------

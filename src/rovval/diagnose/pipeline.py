@@ -14,6 +14,7 @@ from rovval.diagnose.hypotheses.library import hypotheses, initialised
 from rovval.diagnose.hypotheses.observability import observable
 from rovval.diagnose.inference.map_fit import healthy_fit
 from rovval.diagnose.problem.problem import corrected_residuals, pose
+from rovval.diagnose.residuals.sensor_faults import sensor_faults
 from rovval.diagnose.result.assembly import assemble
 from rovval.diagnose.result.diagnosis import Diagnosis
 from rovval.diagnose.search.forward import search
@@ -71,7 +72,8 @@ def analyse(windows: tuple[Windows, ...], without: Sequence[str], tolerance: flo
     selection = search(problem, library, initialised(problem, library, healthy), healthy, seed, say)
     say("asking how much any systematic cause could explain", 0.85)
     residuals = corrected_residuals(problem)
-    return Finding(problem, untestable | unseen, selection, residuals, decide(problem, selection, residuals))
+    faults = tuple(f for check, part in zip(problem.parity, problem.runs, strict=True) for f in sensor_faults(check, part, problem.origin))
+    return Finding(problem, untestable | unseen, selection, residuals, faults, decide(problem, selection, residuals, faults))
 
 
 def _analysed_from(time: float, windows: Windows, without: Sequence[str], tolerance: float, seed: int) -> Finding | None:

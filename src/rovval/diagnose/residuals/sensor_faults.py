@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy import stats
 
@@ -15,11 +17,37 @@ from rovval.plant.slots import Slot
 STEPS, SETTLED = 6, 1e-9  # Gauss-Newton steps at most, and the share of the loss below which they end
 
 
-def sensor_faults(parity_rows: ParityResiduals, windows: Windows, origin: Array) -> list[dict[str, object]]:
+@dataclass(frozen=True, slots=True)
+class FittedFault:
+    """A parameter of a sensor's fault, fitted to the parity rows without any other effect.
+
+    Attributes:
+        fault: parameter, as ``gyro_bias.r``.
+        value: estimate, in ``unit``; ``low`` and ``high`` are the ends of its 90 % interval.
+        was: what the vehicle's file says.
+        share: of the squared parity residual, that the effect takes away (1).
+        significant: whether it differs from the file's value and takes away enough to matter.
+        check: the kinematic identity in words.
+        note: how it was fitted, in words.
+    """
+
+    fault: str
+    value: float
+    low: float
+    high: float
+    was: float
+    unit: str
+    share: float
+    significant: bool
+    check: str = "measured velocity against measured pose"
+    note: str = "fitted alone, by kinematics, without dynamics"
+
+
+def sensor_faults(parity_rows: ParityResiduals, windows: Windows, origin: Array) -> list[FittedFault]:
     """Each sensor effect, and the factor of each axis, fitted to the parity rows alone: value with 90 % interval, and whether it differs from
     ``origin`` (k,), what the vehicle's file says of the sensors (``was``), significantly on its own. One that has hardly fewer parameters than
     there are windows to check it fits whatever it likes, and is not told."""
-    found: list[dict[str, object]] = []
+    found: list[FittedFault] = []
     by_effect: dict[tuple[str, str], list[int]] = {}
     for i, column in enumerate(parity_rows.columns):
         if np.abs(parity_rows.traces[..., i]).max(initial=0.0) > 0:
@@ -38,18 +66,16 @@ def sensor_faults(parity_rows: ParityResiduals, windows: Windows, origin: Array)
             slot = windows.plant.slots[slot_id]
             low, high, was = float(value[j] - t * error[j]), float(value[j] + t * error[j]), float(origin[slot_id])
             found.append(
-                {
-                    "check": "measured velocity against measured pose",
-                    "fault": slot.key,
-                    "value": was + float(value[j]),
-                    "low": was + low,
-                    "high": was + high,
-                    "was": was,
-                    "unit": slot.parameter.unit,
-                    "share": share,
-                    "significant": bool(low > 0 or high < 0) and share > 0.05,
-                    "note": "fitted alone, by kinematics, without dynamics",
-                }
+                FittedFault(
+                    fault=slot.key,
+                    value=was + float(value[j]),
+                    low=was + low,
+                    high=was + high,
+                    was=was,
+                    unit=slot.parameter.unit,
+                    share=share,
+                    significant=bool(low > 0 or high < 0) and share > 0.05,
+                )
             )
     return found
 

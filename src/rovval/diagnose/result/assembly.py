@@ -19,7 +19,6 @@ from rovval.diagnose.hypotheses.change_points import change_points
 from rovval.diagnose.inference.gap import axis_table, weighted_errors
 from rovval.diagnose.inference.shrinkage import shrinkage, worsened_axes
 from rovval.diagnose.problem.problem import Problem
-from rovval.diagnose.residuals.sensor_faults import sensor_faults
 from rovval.diagnose.result.attribution import slices, worst
 from rovval.diagnose.result.causes import causes, settings
 from rovval.diagnose.result.diagnosis import (
@@ -32,6 +31,7 @@ from rovval.diagnose.result.diagnosis import (
     Disturbance,
     Gap,
     GapSlice,
+    Indications,
     LogRemark,
     NotTestable,
     Reduction,
@@ -87,7 +87,8 @@ def assemble(
         left=_unexplained(decision.unexplained),
         calibration=recalibration(problem, selection, decision, before, tolerance, seed, progress),
         harm=tuple(AxisHarm(**row) for row in worsened_axes(shrunk)),
-        parity=_parity(problem),
+        parity=tuple(SensorFault.model_validate(fault, from_attributes=True) for fault in finding.faults),
+        indications=Indications.model_validate(decision.indications, from_attributes=True) if decision.indications else None,
         heatmap=heat_map(problem.runs[0], before[0], seed),
         traces=traces(problem, decision.fit, before),
         coherence=coherence_matrix(problem, selection, decision),
@@ -177,12 +178,6 @@ def _unexplained(rest: Rest | None) -> Unexplained | None:
     return Unexplained(
         axes=rest.axes, depends_on=rest.depends_on, share=rest.share, departed=departed, inconstant=rest.inconstant, accounted=rest.accounted
     )
-
-
-def _parity(problem: Problem) -> tuple[SensorFault, ...]:
-    """Every fault of a sensor that kinematics can show, of each run."""
-    found = [row for check, part in zip(problem.parity, problem.runs, strict=True) for row in sensor_faults(check, part, problem.origin)]
-    return tuple(SensorFault.model_validate(row) for row in found)
 
 
 def _remarks(problem: Problem, before: list[Array]) -> tuple[LogRemark, ...]:
