@@ -1,4 +1,4 @@
-"""The answer put together: every part of the typed diagnosis from what was posed, found and decided."""
+"""Assembly of the typed diagnosis from what was posed, found and decided."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def assemble(
         left_out: runs that could not be used, each with the reason.
         tolerance: relative standard deviation of a healthy simulator's coefficients.
         seed: of the bootstrap of intervals.
-        progress: told what is done, and which share of the whole is behind it.
+        progress: called with what is being done and the share of the work that is done (0 to 1).
     """
     problem, selection, before, decision = finding.problem, finding.selection, finding.residuals, finding.decision
     shrunk = shrinkage(problem, decision.fit, before, seed)
@@ -174,7 +174,7 @@ def _disturbance(problem: Problem) -> dict[str, Disturbance]:
 def _unexplained(rest: Rest | None) -> Unexplained | None:
     if rest is None:
         return None
-    departed = Departure(coefficient=rest.strained[0], departure=rest.strained[1]) if rest.strained else None
+    departed = Departure(coefficient=rest.departed[0], departure=rest.departed[1]) if rest.departed else None
     return Unexplained(
         axes=rest.axes, depends_on=rest.depends_on, share=rest.share, departed=departed, inconstant=rest.inconstant, accounted=rest.accounted
     )

@@ -92,7 +92,7 @@ def search(
         initialised: the same with the initial points that the log suggests.
         healthy: fit of coefficients within tolerance, without causes.
         seed: of the null logs and bootstraps.
-        progress: told what is done and the share of the whole.
+        progress: called with what is being done and the share of the work that is done (0 to 1).
     """
     causes, refused, steps = list[SelectedCause](), set[str](), list[Step]()
     for number in range(MOST_STEPS):
