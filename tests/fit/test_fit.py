@@ -89,7 +89,7 @@ def test_what_only_a_start_elsewhere_shows_is_no_namesake():
     p = pose(parts, columns_of(hypotheses(parts)[0]), 0.05)
     drag, onset, mass = (p.plant.index[key] for key in ("linear_drag[surge].scale", "tether_snag.onset", "added_mass[surge].scale"))
     assert onset not in p.likelihood.total.columns
-    assert [row["parameter"] for row in confused_with(p, drag, (drag, onset, mass), "why")["with"]] == ["added_mass[surge].scale"]
+    assert [name for name, _ in confused_with(p, drag, (drag, onset, mass), "why").beside] == ["added_mass[surge].scale"]
 
 
 def test_nothing_to_tune_writes_the_vehicle_as_it_was():

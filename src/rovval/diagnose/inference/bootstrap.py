@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rovval.core.data import Array
-
-RESAMPLES = 500
+from rovval.diagnose.criteria import BOOTSTRAP_RESAMPLES
 
 
 def shrinkage_interval(before: Array, after: Array, seed: int, block: int = 2) -> tuple[float, float, float]:
@@ -19,5 +18,5 @@ def shrinkage_interval(before: Array, after: Array, seed: int, block: int = 2) -
 
 def block_resamples(m: int, block: int, rng: np.random.Generator) -> np.ndarray:
     """Circular block bootstrap: indices (resamples, m) of windows in runs of ``block``."""
-    starts = rng.integers(0, m, (RESAMPLES, m // block + 1))
-    return np.asarray(((starts[..., None] + np.arange(block)) % m).reshape(RESAMPLES, -1)[:, :m])
+    starts = rng.integers(0, m, (BOOTSTRAP_RESAMPLES, m // block + 1))
+    return np.asarray(((starts[..., None] + np.arange(block)) % m).reshape(BOOTSTRAP_RESAMPLES, -1)[:, :m])

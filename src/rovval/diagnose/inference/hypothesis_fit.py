@@ -13,15 +13,13 @@ import numpy as np
 from scipy import stats
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import INTERVAL_PROBABILITY, QUICK_STEPS
+from rovval.diagnose.criteria import INTERVAL_PROBABILITY, ONSET_SHIFTS_S, QUICK_STEPS
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import map_fit, moved_to
 from rovval.diagnose.problem.cross_validation import Fold
 from rovval.diagnose.problem.problem import Problem, gap_equations_at
 from rovval.diagnose.residuals.normal_equations import Whitened
 from rovval.diagnose.residuals.ridge import losses
-
-ONSET_SEARCH_S = (-12.0, -6.0, -3.0, -1.5, 1.5, 3.0, 6.0, 12.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +55,7 @@ def _onset_tuned(problem: Problem, point: Posterior, slots: tuple[int, ...]) -> 
     onsets = [s for s in slots if problem.plant.slots[s].parameter.role == "onset"]
     best = point
     for slot in onsets:
-        for shift in ONSET_SEARCH_S:
+        for shift in ONSET_SHIFTS_S:
             trial = moved_to(problem, best, slot, max(best.beta[slot] + shift, problem.plant.slots[slot].parameter.low))
             if trial.predicted_cost() < best.predicted_cost():
                 best = trial

@@ -20,6 +20,7 @@ from rovval.diagnose.criteria import (
     QUICK_STEPS,
     RELINEARISED_FROM,
     RELINEARISED_TIMES,
+    STEP_SHARES,
     STEP_WORTH,
 )
 from rovval.diagnose.inference.laplace import Posterior
@@ -27,8 +28,6 @@ from rovval.diagnose.problem.problem import Problem, equations_of, equations_wit
 from rovval.diagnose.residuals.normal_equations import Whitened, with_frozen_columns
 from rovval.diagnose.residuals.sensitivities import linearise
 from rovval.plant import Plant
-
-SHORTER = (1.0, 0.4, 0.1)  # shares of the Gauss-Newton step that are tried
 
 
 def map_fit(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[Whitened, ...] | None = None, rounds: int = MAP_STEPS) -> Posterior:
@@ -138,7 +137,7 @@ def _point(problem: Problem, beta: Array, own: int, there: tuple[Whitened, ...])
 def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...]) -> Posterior | None:
     """The next point of a damped Gauss-Newton iteration, None where no step gains more than a `STEP_WORTH`."""
     step = np.where(point.tangent_only, 0.0, point.solve(point.curvature, point.descent))
-    for share in SHORTER:
+    for share in STEP_SHARES:
         beta = _clipped(problem, point, share * step)
         data = equations_with_frozen(problem, beta, point.whitened)
         if data is None:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import HELD_OUT_BLOCK
+from rovval.diagnose.criteria import HELD_OUT_BLOCK, HELD_OUT_FOLDS, HELD_OUT_RUNS
 from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.residuals.ridge import Prior, free_columns, losses
 
@@ -25,11 +25,11 @@ class Fold:
     test: np.ndarray
 
 
-def make_folds(run_of_window: np.ndarray, count: int = 5) -> tuple[Fold, ...]:
+def make_folds(run_of_window: np.ndarray, count: int = HELD_OUT_FOLDS) -> tuple[Fold, ...]:
     """One log held out at a time where there are three logs or more, else fifths of the windows: pairs of neighbours in turn, so that what
     changes along the log is not extrapolated beyond what was seen; in short logs, contiguous."""
     runs, m = np.unique(run_of_window), len(run_of_window)
-    if len(runs) >= 3:
+    if len(runs) >= HELD_OUT_RUNS:
         return tuple(Fold(run_of_window != r, run_of_window == r) for r in runs)
     part = np.arange(m) // HELD_OUT_BLOCK % count if m >= HELD_OUT_BLOCK * count else np.arange(m) * count // m
     return tuple(Fold(part != p, part == p) for p in np.unique(part))

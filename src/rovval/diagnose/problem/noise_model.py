@@ -13,7 +13,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import DISTURBANCE_WINDOWS, LEAST_NOISE
+from rovval.diagnose.criteria import (
+    DISTURBANCE_WINDOWS,
+    FORM_ERROR_SMOOTHING,
+    INITIAL_DESIGN_EFFECT,
+    LEAST_NOISE,
+    NOISE_MODEL_ROUNDS,
+)
 from rovval.diagnose.problem.cross_validation import Fold, FoldSums, cross_validate
 from rovval.diagnose.problem.disturbance import (
     Disturbance,
@@ -33,10 +39,6 @@ from rovval.diagnose.residuals.normal_equations import (
 from rovval.diagnose.residuals.nuisances import initial_state_sd, nuisance_sd
 from rovval.diagnose.residuals.ridge import Prior, estimated_design_effect
 from rovval.diagnose.windows.windows import Windows
-
-PASSES = 5  # then sizes stand to within a few per cent
-SMOOTH = 11  # samples over which the unexplained variance is smoothed along the window (1 s at 10 Hz)
-FIRST_DESIGN_EFFECT = 10.0  # of the first fit of the library, before anything is known of the residuals' autocorrelation
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +72,7 @@ def fit_noise_model(
     sensor, expected = _expected_variance(runs, linear, Prior({})), _expected_variance(runs, linear, tolerance)
     plain = tuple(replace(one, S=one.S[..., : len(columns)], columns=columns) for one in linear)
     first = equations_of_runs(runs, plain, expected, initial_state_sd)
-    design_effect = estimated_design_effect(first, cross_validate(FoldSums.of(first, folds), library, FIRST_DESIGN_EFFECT).step)
+    design_effect = estimated_design_effect(first, cross_validate(FoldSums.of(first, folds), library, INITIAL_DESIGN_EFFECT).step)
     best = cross_validate(FoldSums.of(first, folds), library, design_effect).step
     white = expected + _form_variance(runs, plain, expected, best)
     total = white * channel_factor
@@ -79,7 +81,7 @@ def fit_noise_model(
         return NoiseModel(runs, linear, total, total, design_effect, no_disturbance())
     responses = unit_responses(runs, origin)
     disturbance = initial_disturbance(responses)
-    for _ in range(PASSES):
+    for _ in range(NOISE_MODEL_ROUNDS):
         left = [replace(one, r=np.where(windows.ok, one.r - one.S @ best, 0.0)) for windows, one in zip(runs, plain, strict=True)]
         disturbance = estimate_disturbance(runs, responses, left, white, design_effect, disturbance)
         disturbed, beside = _with_disturbances(runs, plain, disturbance.response)
@@ -135,7 +137,7 @@ def _form_variance(runs: Sequence[Windows], linear: Sequence[Linearisation], var
         rest = nuisance_corrected(left, windows.ok, variance, nuisance_sd(windows))
         total += (rest**2 * windows.ok).sum(axis=0)
         count += windows.ok.sum(axis=0)
-    kernel = np.ones(SMOOTH) / SMOOTH
+    kernel = np.ones(FORM_ERROR_SMOOTHING) / FORM_ERROR_SMOOTHING
     mean = total / np.maximum(count, 1)
-    padded = np.pad(mean, ((SMOOTH // 2, SMOOTH // 2), (0, 0)), mode="edge")
+    padded = np.pad(mean, ((FORM_ERROR_SMOOTHING // 2, FORM_ERROR_SMOOTHING // 2), (0, 0)), mode="edge")
     return np.stack([np.convolve(padded[:, i], kernel, mode="valid") for i in range(mean.shape[1])], axis=1)

@@ -6,6 +6,7 @@ import numpy as np
 
 from rovval.core.data import Array, Flags
 from rovval.core.frames import euler_rates, rotation_from_euler, wrap
+from rovval.diagnose.criteria import PARITY_MEASURED_SHARE
 from rovval.diagnose.windows.windows import Windows
 
 ROW_EVERY = 10  # samples between rows of a window: poses 1 s apart, whose errors are nearly independent
@@ -38,7 +39,7 @@ def fully_measured(windows: Windows) -> Flags:
     run = windows.run
     at = windows.start[:, None] + np.arange(windows.steps + 1)[None, :]
     needed = [c for c in ("u", "v", "w", "p", "q", "r", "phi", "theta", "psi") if run.measured(c)]
-    return np.asarray(np.all([run.ok(c)[at].mean(axis=1) > 0.9 for c in needed], axis=0))
+    return np.asarray(np.all([run.ok(c)[at].mean(axis=1) > PARITY_MEASURED_SHARE for c in needed], axis=0))
 
 
 def pose_drift(nu: Array, eta: Array, dt: float) -> Array:

@@ -8,7 +8,14 @@ from __future__ import annotations
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import ATTITUDE_DRIFT_SD, SLOPE_START_SD, UNLOGGED_START_SD
+from rovval.diagnose.criteria import (
+    ATTITUDE_DRIFT_SD,
+    LEAST_ANGLE_START_SD,
+    LEAST_START_SD,
+    SLOPE_START_NOISE,
+    SLOPE_START_SD,
+    UNLOGGED_START_SD,
+)
 from rovval.diagnose.windows.noise import ANGLES
 from rovval.diagnose.windows.windows import VELOCITY_CHANNELS, Windows
 
@@ -48,9 +55,9 @@ def initial_state_sd(windows: Windows) -> Array:
     for index, _ in initial_states(windows):
         name = (*VELOCITY_CHANNELS, "phi", "theta", "z", "psi")[index]
         if run.measured(name):
-            least = 0.01 if name in ANGLES else 0.005
+            least = LEAST_ANGLE_START_SD if name in ANGLES else LEAST_START_SD
             found.append(max(noise.get(name, 0.0), least))
         else:
             pose = POSE_SLOPE.get(name, "")
-            found.append(max(3.0 * noise.get(pose, 0.0), SLOPE_START_SD) if run.measured(pose) else UNLOGGED_START_SD)
+            found.append(max(SLOPE_START_NOISE * noise.get(pose, 0.0), SLOPE_START_SD) if run.measured(pose) else UNLOGGED_START_SD)
     return np.array([*found, *[ATTITUDE_DRIFT_SD] * len(drifting_channels(windows))])

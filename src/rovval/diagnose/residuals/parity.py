@@ -14,14 +14,12 @@ import numpy as np
 from scipy import signal
 
 from rovval.core.data import Array, Flags
-from rovval.diagnose.criteria import DEAD_RECKONED_SHARE, PARITY_LEAST_SD
+from rovval.diagnose.criteria import DEAD_RECKONED_SHARE, PARITY_LEAST_SD, PARITY_SMOOTHING
 from rovval.diagnose.residuals.dead_reckoning import RELATIONS, fully_measured, measured_motion, pose_drift, without_margin
 from rovval.diagnose.residuals.fault_signatures import FaultSignatures, fault_signatures
 from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.windows.windows import Windows
 from rovval.effects import load
-
-SMOOTH = 11  # samples of the quadratic by which motion is smoothed for traces: a delay's is a slope, which noise would drown and correlate
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +92,7 @@ def parity_residuals(windows: Windows, columns: tuple[int, ...]) -> ParityResidu
     """Parity rows of every window and the trace that each sensor parameter among ``columns`` leaves in them."""
     nu, eta, whole = measured_motion(windows)
     nominal, usable = pose_drift(without_margin(nu), without_margin(eta), windows.run.dt), fully_measured(windows)
-    nu, eta = (signal.savgol_filter(a, SMOOTH, 2, axis=1) for a in (nu, eta))
+    nu, eta = (signal.savgol_filter(a, PARITY_SMOOTHING, 2, axis=1) for a in (nu, eta))
     of = fault_signatures(windows, nu, eta, usable)
     traces = np.zeros((*nominal.shape, len(columns)))
     for i, column in enumerate(columns):

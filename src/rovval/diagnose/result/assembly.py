@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from rovval.diagnose.decision.finding import Finding
 from rovval.diagnose.decision.unexplained import Unexplained as Rest
 from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.hypotheses.change_points import change_points
-from rovval.diagnose.inference.gap import axis_table, weighted_errors
+from rovval.diagnose.inference.gap import gap_by_axis, weighted_errors
 from rovval.diagnose.inference.shrinkage import shrinkage, worsened_axes
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.result.attribution import slices, worst
@@ -73,7 +74,7 @@ def assemble(
         verdict=decision.verdict,
         gap=_gap(problem, before, seed),
         causes=causes(problem, decision, before, finding.since, seed),
-        shrinkage=Shrinkage.model_validate(shrunk),
+        shrinkage=Shrinkage(**asdict(shrunk)),
         within_tolerance=_within_tolerance(problem, selection, decision, seed),
         ranking=tuple(Score(effect=name, score=score) for name, score in selection.ranking),
         not_testable=tuple(
@@ -86,7 +87,7 @@ def assemble(
         disturbance=_disturbance(problem),
         left=_unexplained(decision.unexplained),
         calibration=recalibration(problem, selection, decision, before, tolerance, seed, progress),
-        harm=tuple(AxisHarm(**row) for row in worsened_axes(shrunk)),
+        harm=tuple(AxisHarm(axis=axis, change=change) for axis, change in worsened_axes(shrunk).items()),
         parity=tuple(SensorFault.model_validate(fault, from_attributes=True) for fault in finding.faults),
         indications=Indications.model_validate(decision.indications, from_attributes=True) if decision.indications else None,
         heatmap=heat_map(problem.runs[0], before[0], seed),
@@ -122,7 +123,7 @@ def _settings(problem: Problem, tolerance: float) -> dict[str, Any]:
 
 def _gap(problem: Problem, before: list[Array], seed: int) -> Gap:
     """How large the gap is, in which regimes it lies and when it changes; ``before`` are the nominal simulator's residuals."""
-    axes = {axis: AxisGap.model_validate(row) for axis, row in axis_table(problem, before).items()}
+    axes = {axis: AxisGap(**asdict(row)) for axis, row in gap_by_axis(problem, before).items()}
     changes = list[float]()
     for part, error in zip(problem.runs, before, strict=True):
         mean = np.where(part.ok, error, 0.0).sum(axis=1) / np.maximum(part.ok.sum(axis=1), 1)

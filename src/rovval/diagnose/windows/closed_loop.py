@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import LOOP_EXPLAINED
+from rovval.diagnose.criteria import LOOP_EXPLAINED, LOOP_LEAST_SAMPLES
 from rovval.diagnose.windows.windows import Windows
 from rovval.vehicle.model import allocation
 
@@ -43,7 +43,7 @@ def loop_gain(part: Windows, angle: str, rate: str, axis: int) -> float:
         return 0.0
     moment = part.plant.thrust(part.actuation.inputs.speed) @ allocation(vehicle)[axis]
     use = run.ok(angle) & run.ok(rate) & part.actuation.known
-    if use.sum() < 10 or moment[use].std() == 0.0:
+    if use.sum() < LOOP_LEAST_SAMPLES or moment[use].std() == 0.0:
         return 0.0
     X = np.column_stack([np.ones(use.sum()), run.get(angle)[use], run.get(rate)[use]])
     found, *_ = np.linalg.lstsq(X, moment[use], rcond=None)
