@@ -1,4 +1,4 @@
-"""Which parameters logs can determine, their joint fit by re-simulation, and intervals that hold under autocorrelated residuals."""
+"""Identifiability: which parameters logs can determine, by the covariance of the linearised fit (Ljung 1999, chapter 4), and their joint fit."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""The noise model of the residuals: what is white in them, and the disturbances that are not.
+"""The noise model of the residuals: their white variance, and disturbances.
 
-The white variance of a channel at a time in the window is sensor noise (from the log) and model-form error (what no hypothesis of the library explains
-of it); in the metric in which the gap is told, tolerance and disturbances are part of it. Disturbances are found in what the whole library leaves; it
-is fitted again in the metric that has them as nuisances, and so on.
+The white variance of a channel at a time in the window is that of sensor noise (from the log) and of model-form error (what a fit of the whole library
+leaves of the residuals); in the metric of the gap it is also that of tolerances and disturbances. Disturbances are estimated from what the library
+leaves; then the library is fitted again with them as nuisances, and so on (`NOISE_MODEL_ROUNDS`).
 """
 
 from __future__ import annotations
@@ -46,10 +46,10 @@ class NoiseModel:
     """What is known of the residuals' covariance.
 
     Attributes:
-        runs: the windows of each run, with what disturbances of one standard deviation do to them.
+        runs: the windows of each run, with their response to disturbances.
         linear: linearisation of each run, disturbances among its nuisances.
         white_variance: of each channel at each time in the window (n, c), beside the disturbances.
-        total_variance: the same with tolerance and disturbances in it, in which the gap is told.
+        total_variance: the same with tolerance and disturbances in it, of the metric of the gap.
         design_effect: of the autocorrelation that is left.
         disturbance: the forces that nobody logged.
     """
@@ -66,8 +66,17 @@ def fit_noise_model(
     runs: tuple[Windows, ...], linear: tuple[Linearisation, ...], columns: tuple[int, ...], tolerance: Prior, folds: tuple[Fold, ...],
     channel_factor: Array, origin: Array,
 ) -> NoiseModel:  # fmt: skip
-    """The noise model of windows that are linearised about ``origin`` (k,), ``columns`` first; ``channel_factor`` (c,) multiplies the variances of
-    channels that an autopilot holds (`windows.closed_loop`)."""
+    """Estimate the noise model.
+
+    Args:
+        runs: the windows of each run.
+        linear: linearisation of each run about the nominal vehicle, ``columns`` first.
+        columns: slots that the library is fitted with, each with its typical size as prior.
+        tolerance: prior of a healthy vehicle.
+        folds: of the cross-validation.
+        channel_factor: on the variance of each channel (c,), for the loop gain of an autopilot (`windows.closed_loop`).
+        origin: parameters of the nominal vehicle.
+    """
     library = Prior({c: runs[0].plant.slots[c].parameter.typical for c in columns})
     sensor, expected = _expected_variance(runs, linear, Prior({})), _expected_variance(runs, linear, tolerance)
     plain = tuple(replace(one, S=one.S[..., : len(columns)], columns=columns) for one in linear)
@@ -94,8 +103,8 @@ def fit_noise_model(
 def equations_of_runs(
     runs: Sequence[Windows], linear: Sequence[Linearisation], variance: Array, sd: Callable[[Windows], Array]
 ) -> NormalEquations:
-    """Normal equations of every run's windows behind one another, weighed by ``variance`` (n, c), the nuisances of which ``sd`` gives the standard
-    deviations marginalised."""
+    """Normal equations of the windows of all runs, in their order, with white ``variance`` (n, c) and the nuisances of which ``sd`` gives the prior standard
+    deviations."""
     return concatenated([normal_equations(one, windows.ok, variance, sd(windows)) for windows, one in zip(runs, linear, strict=True)])
 
 

@@ -1,4 +1,4 @@
-"""How the windows answer body forces that the model does not have: any, and generic ones that depend on motion, place and thrusters."""
+"""Sensitivities of the windows to body forces that the model lacks: any, and generic ones that depend on motion, place and thrusters."""
 
 from __future__ import annotations
 
@@ -18,15 +18,17 @@ STEP = 0.05  # of a force, for its finite difference
 
 
 def generic_force_responses(parts: Sequence[Windows], beta: Array, features: Sequence[str] = ()) -> tuple[tuple[tuple[str, str], ...], list[Array]]:
-    """Forces on every axis with every feature that all runs have (of ``features``, where given): (axis, feature) of each, and each run's
-    answers (m, n, c, f) to forces as large as the thrusters' on that axis."""
+    """Sensitivities to a generic force on each axis for each feature that all runs have (of ``features``, where given), about ``beta`` (k,).
+
+    Returns (axis, feature) of the f forces, and sensitivities (m, n, c, f) of each run's windows to forces of the rms of the thrusters on the axis.
+    """
     banks, wrench = [force_features(part) for part in parts], typical_wrench(parts)
     names = tuple((axis, f) for axis in AXES for f in banks[0] if all(f in bank for bank in banks) and (not features or f in features))
     return names, [force_sensitivities(part, beta, [(a, bank[f] * wrench[AXES.index(a)]) for a, f in names]) for part, bank in zip(parts, banks, strict=True)]
 
 
 def force_features(windows: Windows) -> dict[str, Array]:
-    """What a generic force may depend on, on the run's grid (n,), each of unit rms."""
+    """What a generic force may depend on: series (run,) on the run's grid by name, each of unit rms, those left out that do not vary."""
     run = windows.run
     got = {c: np.nan_to_num(run.get(c)) for c in ("u", "v", "w", "p", "q", "r", "z", "phi", "theta", "psi") if run.measured(c)}
     found: dict[str, Array] = {"constant": np.ones(len(run))}
@@ -56,7 +58,7 @@ def force_features(windows: Windows) -> dict[str, Array]:
 
 
 def force_sensitivities(part: Windows, beta: Array, forces: Sequence[tuple[str, Array]]) -> Array:
-    """Sensitivity (m, n, c, f) to additional body forces given as an axis and a sequence on the run's grid."""
+    """Sensitivity (m, n, c, f) to f additional forces about ``beta`` (k,), each given as its axis and a series (run,) on the run's grid, N or N m."""
     bank = np.zeros((len(forces), len(part.run), 6))
     for i, (axis, sequence) in enumerate(forces):
         bank[i, :, AXES.index(axis)] = sequence
@@ -64,7 +66,7 @@ def force_sensitivities(part: Windows, beta: Array, forces: Sequence[tuple[str, 
 
 
 def wrench_sensitivities(part: Windows, beta: Array, bank: Array) -> Array:
-    """Sensitivity (m, n, c, f) to additional body forces and moments (f, run, 6), N and N m."""
+    """Sensitivity (m, n, c, f) to f additional series of body forces and moments ``bank`` (f, run, 6), N and N m, about ``beta`` (k,)."""
     pushed = replace(part, actuation=replace(part.actuation, inputs=replace(part.actuation.inputs, extra=bank)))
     m, which = part.count, np.arange(part.count)
     base, _ = simulate_windows(part, np.tile(beta, (m, 1)), part.nu0, part.eta0, which)

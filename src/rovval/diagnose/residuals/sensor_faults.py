@@ -48,7 +48,7 @@ class FittedFault:
     note: str = "fitted alone, by kinematics, without dynamics"
 
 
-def sensor_faults(parity_rows: ParityResiduals, windows: Windows, origin: Array) -> list[FittedFault]:
+def sensor_faults(parity: ParityResiduals, windows: Windows, origin: Array) -> list[FittedFault]:
     """Each sensor effect, and the scale factor of each axis, fitted to one run's parity residuals by itself.
 
     ``origin`` (k,) are the parameters of the vehicle's file. A fault is left out where windows are too few for their scatter to say how sure it is
@@ -56,20 +56,20 @@ def sensor_faults(parity_rows: ParityResiduals, windows: Windows, origin: Array)
     """
     found = list[FittedFault]()
     by_effect: dict[tuple[str, str], list[int]] = {}
-    for i, column in enumerate(parity_rows.columns):
-        if np.abs(parity_rows.traces[..., i]).max(initial=0.0) > 0:
+    for i, column in enumerate(parity.columns):
+        if np.abs(parity.signatures[..., i]).max(initial=0.0) > 0:
             by_effect.setdefault(_jointly(windows.plant.slots[column]), []).append(i)
-    total, count = float((_about(parity_rows, origin)[0] ** 2).sum()), int((np.abs(parity_rows.traces).max(axis=(1, 2), initial=0.0) > 0).sum())
+    total, count = float((_about(parity, origin)[0] ** 2).sum()), int((np.abs(parity.signatures).max(axis=(1, 2), initial=0.0) > 0).sum())
     for places in by_effect.values():
         if count < len(places) + FAULT_SPARE_WINDOWS:
             continue
-        value, score, H, loss = _fitted(parity_rows, origin, places)
+        value, score, H, loss = _fitted(parity, origin, places)
         bread = np.linalg.inv(H)
         error = np.sqrt(np.diag(bread @ (score.T @ score) @ bread))
         t = float(stats.t.ppf(0.95, count - len(places)))
         share = 1.0 - loss / total if total > 0 else 0.0
         for j, place in enumerate(places):
-            slot_id = parity_rows.columns[place]
+            slot_id = parity.columns[place]
             slot = windows.plant.slots[slot_id]
             low, high, was = float(value[j] - t * error[j]), float(value[j] + t * error[j]), float(origin[slot_id])
             found.append(
@@ -93,16 +93,16 @@ def _fitted(check: ParityResiduals, origin: Array, places: list[int]) -> tuple[A
     Residuals are not linear in a delay, hence Gauss-Newton steps as long as the fit gets better.
     """
     beta, columns = origin.copy(), [check.columns[i] for i in places]
-    rows, traces = _about(check, beta)
+    rows, signatures = _about(check, beta)
     for _ in range(STEPS):
-        score, H = _normal(rows, traces[..., places])
+        score, H = _normal(rows, signatures[..., places])
         trial = beta.copy()
         trial[columns] += np.linalg.solve(H, score.sum(axis=0))
         there, slopes = _about(check, trial)
         if (there**2).sum() >= (1.0 - CONVERGED) * (rows**2).sum():
             break
-        beta, rows, traces = trial, there, slopes
-    return (beta - origin)[columns], *_normal(rows, traces[..., places]), float((rows**2).sum())
+        beta, rows, signatures = trial, there, slopes
+    return (beta - origin)[columns], *_normal(rows, signatures[..., places]), float((rows**2).sum())
 
 
 def _normal(rows: Array, G: Array) -> tuple[Array, Array]:
@@ -112,9 +112,9 @@ def _normal(rows: Array, G: Array) -> tuple[Array, Array]:
 
 def _about(check: ParityResiduals, beta: Array) -> tuple[Array, Array]:
     """Parity residuals (m, q) and fault signatures (m, q, p) at the sensor parameters of ``beta`` (k,)."""
-    rows, traces = check.undone(beta)
+    rows, signatures = check.at_delays(beta)
     linear = np.array([0.0 if c in check.delays else beta[c] for c in check.columns])
-    return rows - traces @ linear, traces
+    return rows - signatures @ linear, signatures
 
 
 def _jointly(slot: Slot) -> tuple[str, str]:

@@ -1,4 +1,4 @@
-"""A log's channels as a diagnosis takes them: what counts as a sample, its white noise, and outliers set aside."""
+"""White noise of a log's channels, the samples that are measurements of their own, and outliers."""
 
 from __future__ import annotations
 
@@ -21,8 +21,11 @@ ANGLES = ("phi", "theta", "psi")
 
 
 def clean_channels(run: Run, channels: Sequence[str]) -> tuple[Array, Flags, Array, Flags]:
-    """Channel values (n, c), where they count, white noise of each (c,), and where isolated outliers were set aside (n,): no window begins
-    at one, since its start state would be the outlier."""
+    """Channels of a run without outliers: (values, good, noise, outlier).
+
+    Values (n, c) are zero where they are not ``good`` (n, c): not measured, drawn between two samples, or an outlier. ``noise`` (c,) is the standard
+    deviation of white noise, at least that of rounding. ``outlier`` (n,) are samples at which no window may begin.
+    """
     values = run.stack(tuple(channels))
     good = np.isfinite(values)
     noise, spoiled = np.zeros(len(channels)), np.zeros(len(run), dtype=bool)
@@ -31,7 +34,7 @@ def clean_channels(run: Run, channels: Sequence[str]) -> tuple[Array, Flags, Arr
         keep = np.zeros(len(run), dtype=bool)
         keep[real] = good[real, i]
         series = values[real, i]
-        wild = _wild(series, name)
+        wild = _outliers(series, name)
         spoiled[real] |= wild & keep[real]
         keep[real] &= ~wild
         noise[i] = max(white_noise(series, keep[real]), quantisation_step(run.get(name)) / np.sqrt(12.0))
@@ -40,14 +43,14 @@ def clean_channels(run: Run, channels: Sequence[str]) -> tuple[Array, Flags, Arr
 
 
 def sample_strides(run: Run, channels: Sequence[str]) -> tuple[int, ...]:
-    """Grid points per real sample of each channel: 1 at the grid's rate, 3 for a depth logged at 3 Hz. What alignment drew between two
-    samples is not evidence of its own."""
+    """Grid points per measured sample of each channel: 1 at the grid's rate, 3 for a depth logged at 3 Hz. What alignment interpolated between
+    two samples is no measurement of its own."""
     periods = [run.resampled[c].period_s if c in run.resampled else run.dt for c in channels]
     return tuple(max(1, round(period / run.dt)) for period in periods)
 
 
-def _wild(series: Array, name: str) -> Flags:
-    """Isolated samples far from the mean of their neighbours (n,)."""
+def _outliers(series: Array, name: str) -> Flags:
+    """Isolated samples (n,) far from the mean of their neighbours."""
     wild = np.zeros(len(series), dtype=bool)
     before, after = series[:-2] - series[1:-1], series[2:] - series[1:-1]
     bend = 0.5 * (wrap(before) + wrap(after)) if name in ANGLES else 0.5 * (before + after)
