@@ -38,9 +38,9 @@ class GapOnAxis:
 def squared_errors(problem: Problem, residuals: Sequence[Array]) -> dict[str, Array]:
     """Sum of squared errors (m,) of each measured axis in every window of all runs, in the channel's unit squared."""
     found: dict[str, list[Array]] = {}
-    for part, error in zip(problem.runs, residuals, strict=True):
-        for axis, channel in axis_channels(part).items():
-            found.setdefault(axis, []).append(np.where(part.ok[..., channel], error[..., channel] ** 2, 0.0).sum(axis=1))
+    for windows, error in zip(problem.runs, residuals, strict=True):
+        for axis, channel in axis_channels(windows).items():
+            found.setdefault(axis, []).append(np.where(windows.ok[..., channel], error[..., channel] ** 2, 0.0).sum(axis=1))
     return {axis: np.concatenate(values) for axis, values in found.items()}
 
 
@@ -69,9 +69,9 @@ def gap_by_axis(problem: Problem, residuals: Sequence[Array]) -> dict[str, GapOn
 def weighted_errors(problem: Problem, residuals: Sequence[Array]) -> dict[str, float]:
     """Sum of squared errors of each axis over the variance of the gap's metric; roll and pitch with their angles."""
     weight: dict[str, float] = {}
-    for part, error in zip(problem.runs, residuals, strict=True):
-        scaled = np.where(part.ok, error**2 / problem.gap.variance, 0.0).sum(axis=(0, 1))
-        for axis, value in zip(part.axes, scaled, strict=True):
+    for windows, error in zip(problem.runs, residuals, strict=True):
+        scaled = np.where(windows.ok, error**2 / problem.gap.variance, 0.0).sum(axis=(0, 1))
+        for axis, value in zip(windows.axes, scaled, strict=True):
             weight[axis] = weight.get(axis, 0.0) + float(value)
     return weight
 

@@ -90,6 +90,7 @@ class Posterior:
         return losses(self.dynamics, np.arange(len(step)), step, np.ones(len(self.dynamics.c), dtype=bool))
 
     def _below(self, among: np.ndarray) -> float:
+        """Cost after one linear step in the columns ``among`` (k,)."""
         slope = self.descent
         whole = float(self.total.c.sum()) + float((self.precision * self.departure**2).sum())
         return whole - float(slope @ self.solve(self.curvature, slope, among))

@@ -79,11 +79,11 @@ def refit_healthy(problem: Problem, before: Posterior, point: Posterior, slots: 
 def _begun(problem: Problem, seconds: float) -> Problem:
     """The problem with nothing but the first ``seconds`` of each window."""
     n = round(seconds / problem.runs[0].run.dt) + 1
-    parts = [
+    runs = [
         replace(p, steps=n - 1, y=p.y[:, :n], ok=p.ok[:, :n], disturbance_response=None if p.disturbance_response is None else p.disturbance_response[:, :n])
         for p in problem.runs if p.steps >= n
     ]  # fmt: skip
-    return replace(problem, runs=tuple(parts), likelihood=replace(problem.likelihood, variance=problem.likelihood.variance[:n])) if parts else problem
+    return replace(problem, runs=tuple(runs), likelihood=replace(problem.likelihood, variance=problem.likelihood.variance[:n])) if runs else problem
 
 
 def _columns(problem: Problem, slots: tuple[int, ...]) -> tuple[int, ...]:
@@ -119,9 +119,9 @@ def posterior_at(problem: Problem, beta: Array, columns: tuple[int, ...], own: i
     """The posterior about ``beta`` (p,) in ``columns``, of which the first ``own`` are effects'; with ``near``, sensitivities to the others and to initial
     states are taken from there."""
     if near is None:
-        there = whitened(problem, [linearise(part, beta, columns[:own], coarse=columns[own:]) for part in problem.runs])
+        there = whitened(problem, [linearise(windows, beta, columns[:own], coarse=columns[own:]) for windows in problem.runs])
     else:
-        mine = [linearise(part, beta, columns[:own], starts=False) for part in problem.runs]
+        mine = [linearise(windows, beta, columns[:own], starts=False) for windows in problem.runs]
         there = tuple(with_frozen_columns(one, other, columns[own:]) for one, other in zip(mine, near, strict=True))
     return _point(problem, beta, own, there)
 
@@ -156,7 +156,7 @@ def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...]) -> P
 def _clipped(problem: Problem, point: Posterior, step: Array) -> Array:
     """The step, stopped at the parameters' bounds (a parameter that rests there is reported as such)."""
     trial = point.beta.copy()
-    for slot, part in zip(point.columns, step, strict=True):
+    for slot, own in zip(point.columns, step, strict=True):
         parameter = problem.plant.slots[slot].parameter
-        trial[slot] = min(max(point.beta[slot] + part, parameter.low), parameter.high)
+        trial[slot] = min(max(point.beta[slot] + own, parameter.low), parameter.high)
     return trial

@@ -92,7 +92,7 @@ def worsened_axes(reduction: GapReduction) -> dict[str, float]:
 def held_out_residuals(problem: Problem, fitted: HypothesisFit) -> list[Array]:
     """Residual (m, n, c) of each run's windows with the parameters that the other folds give, best initial states taken out."""
     moved = held_out_linearisations(problem, fitted)
-    return [nuisance_corrected(one, part.ok, problem.gap.variance, initial_state_sd(part)) for part, one in zip(problem.runs, moved, strict=True)]
+    return [nuisance_corrected(one, windows.ok, problem.gap.variance, initial_state_sd(windows)) for windows, one in zip(problem.runs, moved, strict=True)]
 
 
 def held_out_linearisations(problem: Problem, fitted: HypothesisFit) -> list[Linearisation]:
@@ -100,11 +100,11 @@ def held_out_linearisations(problem: Problem, fitted: HypothesisFit) -> list[Lin
     step = np.zeros((problem.window_count, len(fitted.slots)))
     for fold, own in held_out_steps(problem, fitted):
         step[fold.test] = own
-    ends = np.cumsum([part.count for part in problem.runs])[:-1]
+    ends = np.cumsum([windows.count for windows in problem.runs])[:-1]
     found = []
-    for part, own in zip(problem.runs, np.split(step, ends), strict=True):
-        one = linearise(part, fitted.beta, fitted.slots)
-        found.append(replace(one, r=np.where(part.ok, one.r - np.einsum("wtck,wk->wtc", one.S, own), 0.0)))
+    for windows, own in zip(problem.runs, np.split(step, ends), strict=True):
+        one = linearise(windows, fitted.beta, fitted.slots)
+        found.append(replace(one, r=np.where(windows.ok, one.r - np.einsum("wtck,wk->wtc", one.S, own), 0.0)))
     return found
 
 
@@ -136,9 +136,9 @@ def _folds(problem: Problem) -> tuple[Fold, ...]:
 def _without(problem: Problem, fitted: HypothesisFit, fold: Fold, tolerance: float) -> Array:
     """Parameters (k,) with the fitted slots as the windows outside ``fold.test`` give them; the fit begins at the fit of all windows, whose sensitivities to
     coefficients within tolerance it keeps."""
-    parts = [_some(part, which) for part, which in _by_run(problem, problem.runs, fold.train) if which.any()]
+    runs = [_some(windows, which) for windows, which in _by_run(problem, problem.runs, fold.train) if which.any()]
     slopes = [(one.S[which], one.columns) for one, which in _by_run(problem, fitted.posterior.linear, fold.train) if which.any()]
-    less = pose(tuple(parts), Columns(), tolerance)
+    less = pose(tuple(runs), Columns(), tolerance)
     near = [replace(one, S=S, columns=columns) for one, (S, columns) in zip(less.nominal, slopes, strict=True)]
     point = map_fit(less, fitted.posterior.beta, fitted.slots, whitened(less, near))
     beta = problem.origin.copy()
@@ -146,13 +146,13 @@ def _without(problem: Problem, fitted: HypothesisFit, fold: Fold, tolerance: flo
     return beta
 
 
-def _some(part: Windows, which: np.ndarray) -> Windows:
+def _some(windows: Windows, which: np.ndarray) -> Windows:
     """The windows ``which`` (m,) of a run, their disturbances not estimated yet."""
-    kept = {name: getattr(part, name)[which] for name in ("start", "nu0", "eta0", "y", "ok")}
-    return replace(part, disturbance_response=None, **kept)
+    kept = {name: getattr(windows, name)[which] for name in ("start", "nu0", "eta0", "y", "ok")}
+    return replace(windows, disturbance_response=None, **kept)
 
 
 def _by_run(problem: Problem, items: Sequence[T], which: np.ndarray) -> Iterator[tuple[T, np.ndarray]]:
     """Each run's one of ``items``, with the part of ``which`` (all windows,) that is of its own windows (m,)."""
-    ends = np.cumsum([part.count for part in problem.runs])[:-1]
+    ends = np.cumsum([windows.count for windows in problem.runs])[:-1]
     return zip(items, np.split(which, ends), strict=True)

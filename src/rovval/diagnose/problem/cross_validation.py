@@ -34,8 +34,8 @@ def make_folds(run_of_window: np.ndarray, count: int = HELD_OUT_FOLDS) -> tuple[
     runs, m = np.unique(run_of_window), len(run_of_window)
     if len(runs) >= HELD_OUT_RUNS:
         return tuple(Fold(run_of_window != r, run_of_window == r) for r in runs)
-    part = np.arange(m) // HELD_OUT_BLOCK % count if m >= HELD_OUT_BLOCK * count else np.arange(m) * count // m
-    return tuple(Fold(part != p, part == p) for p in np.unique(part))
+    fold = np.arange(m) // HELD_OUT_BLOCK % count if m >= HELD_OUT_BLOCK * count else np.arange(m) * count // m
+    return tuple(Fold(fold != f, fold == f) for f in np.unique(fold))
 
 
 @dataclass(frozen=True, slots=True)

@@ -185,4 +185,5 @@ def corrected_residuals(problem: Problem, beta: Array | None = None) -> list[Arr
 
 
 def _parity_at(problem: Problem, beta: Array, columns: tuple[int, ...]) -> NormalEquations:
+    """Normal equations of the parity residuals of all runs about ``beta`` (k,)."""
     return concatenated([check.normal_equations(beta, columns, problem.design_effect) for check in problem.parity])

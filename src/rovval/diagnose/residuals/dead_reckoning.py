@@ -1,4 +1,4 @@
-"""Dead reckoning: measured velocities integrated through the measured attitude (Fossen 2011, eq. 2.40: eta' = J(eta) nu), less the measured pose."""
+"""Dead reckoning: measured velocities integrated through the measured attitude (Fossen 2021, 2.2: eta' = J(eta) nu), less the measured pose."""
 
 from __future__ import annotations
 

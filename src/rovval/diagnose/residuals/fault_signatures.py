@@ -55,6 +55,7 @@ class FaultSignatures:
         return _of_positions(self.nominal - undone), slopes
 
     def _step(self, column: int) -> float:
+        """Finite difference, in the unit of the parameter."""
         return STEP * self.windows.plant.slots[column].parameter.typical
 
     def _drift(self, faults: dict[int, float]) -> Array:
@@ -72,6 +73,7 @@ def fault_signatures(windows: Windows, nu: Array, eta: Array, usable: Flags) -> 
 
 
 def _drift_of(nu: Array, eta: Array, dt: float, usable: Flags) -> Array:
+    """Drift (m, rows, 6) of dead reckoning, zero in windows that are not usable."""
     rows = pose_drift(without_margin(nu), without_margin(eta), dt)
     rows[~usable] = 0.0
     return rows

@@ -100,6 +100,7 @@ class ParityResiduals:
         return _equations(rows, signatures[..., [self.columns.index(c) for c in columns]], columns)
 
     def _scaled(self, relations: Array) -> Array:
+        """Drift (m, rows, relations), m and rad, as residuals (m, q) in standard errors."""
         return np.asarray((relations / np.array(self.sigma)).reshape(self.rows.shape))
 
 
@@ -160,6 +161,7 @@ def _none(m: int, columns: tuple[int, ...], notes: tuple[str, ...]) -> ParityRes
 
 
 def _equations(rows: Array, signatures: Array, columns: tuple[int, ...]) -> NormalEquations:
+    """Normal equations of residuals (m, q) with signatures (m, q, k)."""
     turned = signatures.swapaxes(1, 2)
     return NormalEquations(turned @ signatures, (turned @ rows[..., None])[..., 0], (rows**2).sum(axis=1), columns)
 

@@ -119,6 +119,7 @@ def _steps(windows: Windows, beta: Array, column: int) -> tuple[float, float]:
 
 
 def _moved(beta: Array, to: Sequence[tuple[int, float]]) -> Array:
+    """``beta`` (k,) with other values of some slots."""
     there = beta.copy()
     for slot, value in to:
         there[slot] = value

@@ -27,12 +27,12 @@ def simulate_windows(windows: Windows, beta: Array, nu0: Array, eta0: Array, whi
     out = np.empty((len(which), windows.steps + 1, len(windows.channels)))
     fine = np.empty(len(which), dtype=bool)
     for begin in range(0, len(which), LANES):
-        part = slice(begin, begin + LANES)
+        block = slice(begin, begin + LANES)
         motion = windows.plant.simulate(
-            windows.actuation.inputs, windows.start[which[part]], windows.steps, nu0[part], eta0[part], beta[part]
+            windows.actuation.inputs, windows.start[which[block]], windows.steps, nu0[block], eta0[block], beta[block]
         )
-        predicted_channels(windows, motion.nu, motion.eta, out[part])
-        fine[part] = motion.stopped < 0
+        predicted_channels(windows, motion.nu, motion.eta, out[block])
+        fine[block] = motion.stopped < 0
     return out, fine
 
 

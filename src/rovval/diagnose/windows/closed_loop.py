@@ -19,29 +19,29 @@ from rovval.vehicle.model import allocation
 TILTS = {"roll": ("phi", "p", 3), "pitch": ("theta", "q", 4)}  # angle, its rate and the axis of the moment
 
 
-def loop_gains(parts: Sequence[Windows]) -> dict[str, float]:
+def loop_gains(runs: Sequence[Windows]) -> dict[str, float]:
     """Loop gain of roll and pitch, without unit: the mean over runs."""
-    return {axis: float(np.mean([loop_gain(part, *where) for part in parts])) for axis, where in TILTS.items()}
+    return {axis: float(np.mean([loop_gain(windows, *where) for windows in runs])) for axis, where in TILTS.items()}
 
 
-def variance_factors(parts: Sequence[Windows], gain: Mapping[str, float]) -> Array:
+def variance_factors(runs: Sequence[Windows], gain: Mapping[str, float]) -> Array:
     """Factor (c,) on the variance of each residual channel: (1 + loop gain)^2 for roll and pitch, else 1."""
-    channels = parts[0].channels
+    channels = runs[0].channels
     by_channel = {c: (1.0 + gain[axis]) ** 2 for axis, (angle, rate, _) in TILTS.items() for c in (angle, rate)}
     return np.array([by_channel.get(c, 1.0) for c in channels])
 
 
-def loop_gain(part: Windows, angle: str, rate: str, axis: int) -> float:
+def loop_gain(windows: Windows, angle: str, rate: str, axis: int) -> float:
     """Loop gain of one run: the thrusters' moment against an angle over the righting moment; 0 where they do not follow the angle.
 
     ``angle`` and ``rate`` are channels such as phi and p, ``axis`` the index of the moment among the six axes.
     Least squares of the thrusters' moment (from the recorded speeds) on angle and rate: M = m0 - k angle - d rate.
     """
-    run, vehicle = part.run, part.plant.vehicle
+    run, vehicle = windows.run, windows.plant.vehicle
     if not (run.measured(angle) and run.measured(rate)):
         return 0.0
-    moment = part.plant.thrust(part.actuation.inputs.speed) @ allocation(vehicle)[axis]
-    use = run.ok(angle) & run.ok(rate) & part.actuation.known
+    moment = windows.plant.thrust(windows.actuation.inputs.speed) @ allocation(vehicle)[axis]
+    use = run.ok(angle) & run.ok(rate) & windows.actuation.known
     if use.sum() < LOOP_LEAST_SAMPLES or moment[use].std() == 0.0:
         return 0.0
     X = np.column_stack([np.ones(use.sum()), run.get(angle)[use], run.get(rate)[use]])

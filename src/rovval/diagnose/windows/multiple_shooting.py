@@ -66,12 +66,13 @@ def cut_run(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Windows:
 
 
 def _cut(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Windows:
+    """The windows of ``window_s`` (s) in which inputs are known, the vehicle is out of contact and enough is measured; raises as `cut_run`."""
     plant, driven = Plant(vehicle, model), recorded_actuation(run, vehicle)
     channels = residual_channels(run)
     steps = round(window_s / run.dt) - 1
-    touching = in_contact(run, driven)
-    values, good, noise, wild = clean_channels(run, channels)
-    start = _starts(driven.known & ~touching, startable(run) & ~wild, steps)
+    contact = in_contact(run, driven)
+    values, good, noise, outlier = clean_channels(run, channels)
+    start = _starts(driven.known & ~contact, startable(run) & ~outlier, steps)
     inside = start[:, None] + np.arange(steps + 1)[None, :]
     possible = np.mean([1.0 / stride for stride in sample_strides(run, channels)])
     enough = good[inside].mean(axis=(1, 2)) >= MEASURED_SHARE * possible if len(start) else np.zeros(0, dtype=bool)
@@ -84,7 +85,7 @@ def _cut(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Windows:
     inside = start[:, None] + np.arange(steps + 1)[None, :]
     nu0, eta0, _ = start_states(run, start)
     return Windows(
-        run, plant, driven, channels, start, steps, nu0, eta0, values[inside], good[inside], noise, int(wild.sum()), float(touching.sum() * run.dt)
+        run, plant, driven, channels, start, steps, nu0, eta0, values[inside], good[inside], noise, int(outlier.sum()), float(contact.sum() * run.dt)
     )
 
 

@@ -28,18 +28,18 @@ def clean_channels(run: Run, channels: Sequence[str]) -> tuple[Array, Flags, Arr
     """
     values = run.stack(tuple(channels))
     good = np.isfinite(values)
-    noise, spoiled = np.zeros(len(channels)), np.zeros(len(run), dtype=bool)
+    noise, outliers = np.zeros(len(channels)), np.zeros(len(run), dtype=bool)
     for i, (name, stride) in enumerate(zip(channels, sample_strides(run, channels), strict=True)):
         real = np.arange(0, len(run), stride)
         keep = np.zeros(len(run), dtype=bool)
         keep[real] = good[real, i]
         series = values[real, i]
-        wild = _outliers(series, name)
-        spoiled[real] |= wild & keep[real]
-        keep[real] &= ~wild
+        outlier = _outliers(series, name)
+        outliers[real] |= outlier & keep[real]
+        keep[real] &= ~outlier
         noise[i] = max(white_noise(series, keep[real]), quantisation_step(run.get(name)) / np.sqrt(12.0))
         good[:, i] = keep
-    return np.where(good, values, 0.0), good, noise, spoiled
+    return np.where(good, values, 0.0), good, noise, outliers
 
 
 def sample_strides(run: Run, channels: Sequence[str]) -> tuple[int, ...]:
@@ -51,14 +51,14 @@ def sample_strides(run: Run, channels: Sequence[str]) -> tuple[int, ...]:
 
 def _outliers(series: Array, name: str) -> Flags:
     """Isolated samples (n,) far from the mean of their neighbours."""
-    wild = np.zeros(len(series), dtype=bool)
+    outlier = np.zeros(len(series), dtype=bool)
     before, after = series[:-2] - series[1:-1], series[2:] - series[1:-1]
     bend = 0.5 * (wrap(before) + wrap(after)) if name in ANGLES else 0.5 * (before + after)
     finite = bend[np.isfinite(bend)]
     spread = 1.4826 * float(np.median(np.abs(finite))) if len(finite) else 0.0
     with np.errstate(invalid="ignore"):
-        wild[1:-1] = np.abs(bend) > OUTLIER_SIGMA * max(spread, 2 * LEAST_NOISE[name])
-    return wild
+        outlier[1:-1] = np.abs(bend) > OUTLIER_SIGMA * max(spread, 2 * LEAST_NOISE[name])
+    return outlier
 
 
 def white_noise(series: Array, good: Flags) -> float:
