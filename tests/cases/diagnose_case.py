@@ -116,6 +116,11 @@ def bluerov2(folder: Path, name: str, seed: int, seconds: float, slop: float, *e
     return open_run(folder / name, "merlin")
 
 
+def with_values(run: Run, **values: Array) -> Run:
+    """The run with other values of some channels."""
+    return replace(run, values={**run.values, **values})
+
+
 def without(run: Run, *channels: str) -> Run:
     """The run with channels never logged."""
     return replace(

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from diagnose_case import foreign, merlin, own
 
+from rovval import effects
 from rovval.comparison import compare
 from rovval.core.data import Run
 from rovval.core.errors import UsageProblem
@@ -29,7 +30,7 @@ SURGE, LOSS = "quadratic_drag[surge].scale", "thruster_degraded[HFP].loss"
 
 @functools.cache
 def planted() -> tuple[Run, FitResult, tuple[float, ...]]:
-    run, seen = own(("quadratic_drag[surge]:scale=0.3", "thruster_degraded[HFP]:loss=0.25"), 1, 150.0), list[float]()
+    run, seen = own(("quadratic_drag[surge]:scale=0.3", "thruster_degraded[HFP]:loss=0.25"), 1, 100.0), list[float]()
     return run, fit([run], merlin(), ["quadratic_drag[surge]", LOSS], progress=lambda text, share: seen.append(share)), tuple(seen)
 
 
@@ -61,8 +62,8 @@ def test_a_vehicle_is_tuned_from_where_its_file_stands():
     tuned = parse(done.vehicle, "tuned")
     assert tuned.effects["inflow_loss"] == {"loss": 0.1}
     assert tuned.effects["thruster_misaligned[HAS]"]["yaw"] == 0.02
-    row = done.document["parameters"].get("thruster_misaligned[HAS].tilt")
-    assert row is None or row["was"] == 0.01
+    row = done.document["parameters"]["thruster_misaligned[HAS].tilt"]
+    assert row["was"] == 0.01 and row["value"] == pytest.approx(0.0, abs=0.01), "the log was flown without it"
 
 
 def test_an_undetermined_parameter_is_named_and_left():
@@ -76,11 +77,12 @@ def test_an_undetermined_parameter_is_named_and_left():
 
 
 def test_collinear_parameters_are_named_with_what_they_are_like():
-    """All thrusters 10 % weaker is all speeds 5 % less: one of the two has to go, and says because of what."""
+    """All thrusters 10 % weaker is all speeds 5 % less: the speeds are left as they were, and the row says beside what."""
     done = fit([own((), 3, 80.0)], merlin(), ["thrust", "rpm_scale"], calibration_slop=0.01)
-    confused = [u for u in done.document["undetermined"] if u["with"]]
-    assert confused
-    assert all(0.0 <= w["coherence"] <= 1.0 for u in confused for w in u["with"])
+    [row] = done.document["undetermined"]
+    assert row["parameter"] == "rpm_scale.scale" and len(done.document["parameters"]) == len(merlin().thrusters)
+    assert len(row["with"]) == 2 and all(0.8 < w["coherence"] <= 1.0 and w["parameter"] in row["why"] for w in row["with"])
+    assert {w["parameter"].partition(".")[0] for w in row["with"]} <= {e for e in effects.names() if effects.load(e).place == "input"} - {"rpm_scale"}
 
 
 def test_what_only_a_start_elsewhere_shows_is_no_namesake():
@@ -89,7 +91,7 @@ def test_what_only_a_start_elsewhere_shows_is_no_namesake():
     p = pose(parts, columns_of(hypotheses(parts)[0]), 0.05)
     drag, onset, mass = (p.plant.index[key] for key in ("linear_drag[surge].scale", "tether_snag.onset", "added_mass[surge].scale"))
     assert onset not in p.likelihood.total.columns
-    assert [row["parameter"] for row in confused_with(p, drag, (drag, onset, mass), "why")["with"]] == ["added_mass[surge].scale"]
+    assert [name for name, _ in confused_with(p, drag, (drag, onset, mass), "why").beside] == ["added_mass[surge].scale"]
 
 
 def test_nothing_to_tune_writes_the_vehicle_as_it_was():

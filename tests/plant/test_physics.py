@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 from rovval import vehicle as vehicles
 from rovval.core.frames import euler_from_quaternion, quaternion_from_euler, rotation_from_euler, rotation_from_quaternion, wrap
-from rovval.effects.lanes import reference_speed
 from rovval.effects.library import tether_drag, tether_tension
 from rovval.plant import Inputs, Plant, geometry, parse_settings
 from rovval.vehicle.model import as_matrix, rigid_body_mass
@@ -76,7 +75,6 @@ def test_steady_surge_speed():
     assert surge == pytest.approx(sum(gain.values()) * 0.70710678, rel=1e-3)
     expected = (-150.0 + np.sqrt(150.0**2 + 4 * 1500.0 * surge)) / 3000.0
     assert np.hypot(*out.nu[0, -1, :2]) == pytest.approx(expected, rel=0.02)  # the four are not quite a pure surge force
-    assert reference_speed(vehicle) > 0
 
 
 @pytest.mark.parametrize(("axis", "inertia", "added"), [(3, 1224.179892, 122.4179892), (4, 2234.271553, 223.4271553)])
@@ -146,13 +144,12 @@ def test_galilean_invariance_under_a_uniform_current():
 def test_fourth_order_in_the_step_with_the_lag_at_work():
     """Halving the step divides the error by sixteen; thruster speeds frozen over a step would make it two."""
     vehicle = cases.merlin()
-    rng = np.random.default_rng(31)
     speed = 1.0 + 0.5 * np.sin(np.outer(np.arange(61) * 0.5, [1, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6]))
     out = []
     for substeps in (1, 2, 4, 8, 64):
         plant = Plant(vehicle, substeps=substeps)
         beta = parse_settings(plant, ["thrust_lag:tau=0.4", "current_constant:north=0.2", "inflow_loss:loss=0.2"])
-        nu = np.array([[1.0, 1.0, 1.0, 0.4, 0.4, 0.4]]) + rng.normal(size=(1, 6)) * 0
+        nu = np.array([[1.0, 1.0, 1.0, 0.4, 0.4, 0.4]])
         out.append(plant.simulate(Inputs(0.5, speed, False), np.array([10]), 4, nu, np.zeros((1, 6)), beta[None]).nu[0, -1])
     errors = [np.abs(o - out[-1]).max() for o in out[:-1]]
     orders = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))

@@ -32,7 +32,7 @@ def test_lags_settle_and_first_order_is_exponential():
     first = lag.first_order(step, 0.05, 0.2)[:, 0]
     assert first[1:] == pytest.approx(1 - np.exp(-0.05 * np.arange(40) / 0.2))
     third = lag.third_order(step, 0.05)[:, 0]
-    assert third[-1] == pytest.approx(1.0, abs=1e-6) and third[2] > 0.5
+    assert third[-1] == pytest.approx(1.0, abs=1e-6)
     held, changed = lag.saturate(np.array([[3.0, -9.0]]), 5.0)
     assert held.tolist() == [[3.0, -5.0]] and changed.tolist() == [[False, True]]
 

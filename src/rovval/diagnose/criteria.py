@@ -23,6 +23,7 @@ SLOWEST_PING, PING_REGULARITY = 30, 0.9  # samples between pings at most, and sh
 AT_REST_S, AT_REST_M = 3.0, 0.03  # s, m: aground is at rest so long within the noise of a depth sensor (chosen)
 CONTACT_DEPTH_RANGE = 0.3  # m: contact is looked for in logs that change depth by more (chosen)
 CONTACT_DEPTH_MARGIN = 0.08  # m: within this of the ends of the depth range that the log covers (chosen)
+LOOP_LEAST_SAMPLES = 10  # samples from which a loop gain is estimated at all (chosen)
 LOOP_EXPLAINED = 0.05  # share of a moment's variance that angle and rate must account for, for an autopilot to be seen (chosen)
 FEWEST_WINDOWS = 3  # windows of a run: one to hold out, two to fit on
 MANY_WINDOWS = 6  # windows of a run: with fewer, shorter windows are tried (chosen)
@@ -32,37 +33,55 @@ MEASURED_SHARE = 0.6  # of a window's samples: with fewer measured it is left ou
 # -- residuals: sensitivities, parity and normal equations --------------------------------------------------------------------------
 
 UNLOGGED_START_SD = 0.3  # m/s, rad/s, rad: start of what was neither logged nor follows from the pose: anything slow is possible (chosen)
+LEAST_START_SD = 0.005  # m/s, rad/s, m: least error of a start of which the value itself was measured (chosen),
+LEAST_ANGLE_START_SD = 0.01  # rad: and of one that is an angle, half a degree (chosen)
+SLOPE_START_NOISE = 3.0  # times the noise of a logged pose: error of a start taken as its slope over a second (chosen)
 SLOPE_START_SD = 0.01  # m/s, rad/s: least error of a start taken as the slope of the logged pose over a second (chosen)
 ATTITUDE_DRIFT_SD = 0.004  # rad: slow error of an AHRS within a window, 0.2 degrees (MTi class data sheets)
 SIGN_SMOOTHING = 0.1  # of a velocity's rms: from there on a generic force that depends on its sign has reached its size (chosen)
 LEAST_AXIS_FORCE = 0.01  # of the largest axis's force, and that of the weight: no axis is held to have less, so that none is mute (chosen)
 PARITY_LEAST_SD = (0.005, 0.005, 0.002, 0.001, 0.001, 0.001)  # m, rad: noise of a parity relation below which no sensor is believed (chosen)
+PARITY_SMOOTHING = 11  # samples of the quadratic by which motion is smoothed for fault signatures: a delay's is a slope, which noise would drown
+PARITY_MEASURED_SHARE = 0.9  # of a window's samples, of every velocity and angle: with fewer measured, bridged gaps would look like faults (chosen)
 DEAD_RECKONED_SHARE = 0.5  # of its noise: a position that follows the integrated velocity closer was integrated from it (chosen)
+FAULT_SHARE = 0.05  # of the squared parity residuals, that a sensor fault must account for to be called significant (chosen)
 FAULT_SPARE_WINDOWS = 5  # windows more than parameters, from which their scatter says how sure a sensor fault is: six for one
 
 
-# -- inference: prior, noise model, disturbance, MAP fit, cross-validation, intervals -----------------------------------------------
+# -- problem and inference: prior, noise model, disturbance, cross-validation, MAP fit, intervals -----------------------------------
 
 HEALTHY_DEPARTURE = 3.5  # standard deviations of tolerance that healthy coefficients reach (tuning set: 3.3 of some hundred)
 OUT_OF_TOLERANCE = 5.0  # standard deviations of tolerance from which a coefficient is off by more than a tolerance of the stated size
+HELD_OUT_RUNS = 3  # runs from which one is held out at a time; of fewer, windows are (chosen)
+HELD_OUT_FOLDS = 5  # folds of windows (Hastie, Tibshirani and Friedman 2009, 7.10: five to ten)
 HELD_OUT_BLOCK = 2  # neighbouring windows that are held out together: 20 s, beyond the memory of hull and thrusters
+NOISE_MODEL_ROUNDS = 5  # of disturbance, form error and fit in turn: sizes then change by a few per cent
+INITIAL_DESIGN_EFFECT = 10.0  # of the first fit of the library, before anything is known of the residuals' autocorrelation (chosen)
+FORM_ERROR_SMOOTHING = 11  # samples, 1 s at 10 Hz: over which the variance of model-form error is smoothed along the window (chosen)
+DISTURBANCE_SEGMENTS = 12  # of a window, in each of which a force is constant: 0.8 s of 10 s, well below the period at which a small ROV rolls
+DISTURBANCE_ROUNDS = 10  # of expectation and maximisation (chosen)
+INITIAL_DISTURBANCE = 0.1  # of the thrusters' rms on an axis: rms of a disturbance, from which the estimate begins (chosen),
+INITIAL_MEMORY_S = 1.0  # s: and its correlation time (chosen)
 DISTURBANCE_WINDOWS = 6  # in fewer windows a steady force and a disturbance cannot be told apart, and none is fitted
 STEADY_FORCE_SD = 0.1  # prior of a steady force of the environment, as a share of the thrusters' rms on its axis
 SEGMENT_CORRELATION = (0.02, 0.98)  # limits of a disturbance's correlation from one segment of a window to the next
 COVERED_BY_NOISE = 0.05  # of the noise's variance: a component of a disturbance that does less than this changes no weight
 MAP_STEPS, QUICK_STEPS = 5, 3  # damped steps of a MAP fit, and of one that only has to show whether it is worth more
+STEP_SHARES = (1.0, 0.4, 0.1)  # of the Gauss-Newton step, that are tried in turn until one gains (chosen)
 STEP_WORTH = 1.0  # twice the log posterior: for a smaller gain no further step is taken
 RELINEARISED_FROM, RELINEARISED_TIMES = 10.0, 2  # twice the log posterior gained, from which frozen sensitivities are made anew; and how often at most
 PROGRESSIVE_S = (2.5, 5.0)  # s of each window that are fitted before the whole of it (chosen)
+ONSET_SHIFTS_S = (-12.0, -6.0, -3.0, -1.5, 1.5, 3.0, 6.0, 12.0)  # s by which a fitted onset is moved in turn, kept where that is better (chosen)
+BOOTSTRAP_RESAMPLES = 500  # of an interval's 5 % and 95 % quantiles (chosen; Efron and Tibshirani 1993 advise some 1000 for such)
 INTERVAL_PROBABILITY = 0.90  # of every interval that is stated
 HARMED_AXIS = 0.05  # an axis whose squared error grows by this share is named (chosen)
 MOST_REFITS = 5  # fits without a part of the logs: of more logs than that, a fifth is left out at a time
 IDENTIFIABLE_ALONE = 3.0  # standard errors with which a typical size shows while nothing else moves (chosen)
 IDENTIFIABLE_JOINTLY = 1.5  # the same while all that is tuned, and every tolerance, moves with it (chosen: a 90 % interval within a typical size)
 WIDEST_INTERVAL = 2.0  # typical sizes: a half interval beyond it, at the fitted point, is no answer (chosen)
-
 PRIOR_WIDTH = 4.0  # wide prior, in typical sizes: keeps a parameter that the log does not see from running away
-FEW_WINDOWS = 6  # chosen: windows that are too few to average the form of an equation over
+FEW_WINDOWS = 6  # windows: fewer are too few to average model-form error over (chosen)
+
 
 # -- hypotheses: which could be told by this log, and where their fits begin --------------------------------------------------------
 
@@ -178,6 +197,8 @@ BY_CHANCE = 0.02  # of the squared error: generic forces that reduce it by less 
 FURTHER_CAUSE_BELIEF = 0.4  # of the probability of a further cause: what one leaves unexplained has other names, too (opened sets: 16 of 45 were right)
 NEAR_GAIN = 0.05  # reduction of the gap, held out: an effect with less is not near the truth, whatever its evidence (chosen),
 NEAR_LITTLE = 3.0  # and this part of that counts (chosen)
+INDICATED_GAIN, INDICATED_EVIDENCE = 0.3, 2.0  # chosen: an effect with as much gain, and evidence at all, is mentioned though it is not named,
+INDICATED_LESS_GAIN, INDICATED_MORE_EVIDENCE = 0.15, 20.0  # and one with less gain and more evidence
 OPEN_GAP = 2.0 / 3.0  # share of a gap that neither noise nor tolerance accounts for, from which "no gap" would say too much (healthy logs: 0.51 at most)
 ACTING_FORCE = 0.3  # of the evidence of the generic forces on the strongest axis: others with more are told as well (chosen),
 MOST_ACTING = 3  # so many axes at most (chosen)

@@ -1,4 +1,10 @@
-"""The diagnosis as an algorithm."""
+"""The diagnosis as an algorithm.
+
+Logs are cut into windows, each simulated from its measured start (multiple shooting). An estimation problem is posed about the nominal vehicle; the
+effects of the library are its hypotheses. A healthy vehicle is fitted first, with every coefficient within its tolerance; beside it causes are added
+one at a time (forward selection), and what was found is named only if nothing speaks against it. Where something seems to begin in mid-log, the part
+after that is analysed by itself, and its answer counts if it explains the log clearly better.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +20,7 @@ from rovval.diagnose.hypotheses.library import hypotheses, initialised
 from rovval.diagnose.hypotheses.observability import observable
 from rovval.diagnose.inference.map_fit import healthy_fit
 from rovval.diagnose.problem.problem import corrected_residuals, pose
+from rovval.diagnose.residuals.sensor_faults import sensor_faults
 from rovval.diagnose.result.assembly import assemble
 from rovval.diagnose.result.diagnosis import Diagnosis
 from rovval.diagnose.search.forward import search
@@ -39,14 +46,17 @@ def diagnose(
     """Diagnose the gap between ``vehicle``'s simulator and one or several of its logs.
 
     Args:
-        runs: logs on the 10 Hz grid, all of this vehicle; three or more are held out one at a time, fewer in fifths.
+        runs: logs on the 10 Hz grid, all of this vehicle; three or more are held out one at a time, windows of fewer in fifths.
         vehicle: the vehicle as its file has it.
         model: the platform whose simulator is diagnosed.
         window_s: length (s) of the windows that are simulated from their measured start; a half or a quarter of it where logs are short.
         calibration_slop: tolerance: relative standard deviation of a healthy simulator's coefficients; an effect must explain more than that.
         seed: of bootstraps and permutations.
         without: effects or hypotheses to leave out of the library (the withheld-effect check does).
-        progress: told what is done and the share of the whole.
+        progress: called with what is being done and the share of the work that is done (0 to 1).
+
+    Returns:
+        The typed diagnosis; `rovval.report` puts it into words.
 
     Raises:
         BadInput: too little of a log can be simulated, or thruster inputs are missing.
@@ -71,7 +81,8 @@ def analyse(windows: tuple[Windows, ...], without: Sequence[str], tolerance: flo
     selection = search(problem, library, initialised(problem, library, healthy), healthy, seed, say)
     say("asking how much any systematic cause could explain", 0.85)
     residuals = corrected_residuals(problem)
-    return Finding(problem, untestable | unseen, selection, residuals, decide(problem, selection, residuals))
+    faults = tuple(f for check, part in zip(problem.parity, problem.runs, strict=True) for f in sensor_faults(check, part, problem.origin))
+    return Finding(problem, untestable | unseen, selection, residuals, faults, decide(problem, selection, residuals, faults))
 
 
 def _analysed_from(time: float, windows: Windows, without: Sequence[str], tolerance: float, seed: int) -> Finding | None:
@@ -83,4 +94,4 @@ def _analysed_from(time: float, windows: Windows, without: Sequence[str], tolera
 
 
 def _silent(text: str, share: float) -> None:
-    """Progress that nobody asked for."""
+    """Progress that is not reported."""

@@ -65,7 +65,7 @@ def test_an_offset_along_one_axis_is_tried_by_itself():
 
 
 def test_a_coefficient_that_slop_moves_competes_wherever_its_search_begins():
-    """Begun elsewhere, a dead band would else be held to its tolerance by slop's own column for it."""
+    """Begun elsewhere, a dead band would else be held to its tolerance by the column that its tolerance has."""
     p, library = posed()
     width = slot(p, "thruster_deadband.width")
     begun = [h for h in library if h.name == "thruster_deadband"]

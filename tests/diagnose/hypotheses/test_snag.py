@@ -1,4 +1,4 @@
-"""What holds the vehicle: a spring is found in the forces that are missing, and a log of one is told."""
+"""What holds the vehicle: a spring is found in the forces that are missing, and named in a log of one."""
 
 from __future__ import annotations
 

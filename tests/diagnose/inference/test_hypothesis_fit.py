@@ -1,13 +1,18 @@
-"""Fits of hypotheses: errors on a bound and of parameters that only place an effect."""
+"""Fits of hypotheses: what was planted comes back; errors on a bound and of parameters that only place an effect."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 import numpy as np
-from diagnose_case import posed, slot
+import pytest
+from diagnose_case import merlin, own, posed, slot
 
+from rovval.diagnose.hypotheses.hypothesis import columns_of
+from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis, standard_errors
+from rovval.diagnose.problem.problem import pose
+from rovval.diagnose.windows.multiple_shooting import cut_run
 
 
 def test_a_drag_that_is_gone_altogether_is_significant_though_it_rests_on_its_bound():
@@ -32,3 +37,26 @@ def test_what_only_places_an_effect_does_not_make_its_size_unsure():
     fitted = fit_hypothesis(p, beta, (north, phase, period))
     free, fixed = standard_errors(p, fitted), standard_errors(p, fitted, (phase, period))
     assert (fixed[1:] == 0.0).all() and 0.0 < fixed[0] <= free[0]
+
+
+@pytest.mark.parametrize(
+    ("name", "truth"),
+    [
+        ("quadratic_drag[surge]", {"scale": 0.4}),
+        ("thruster_degraded[HAS]", {"loss": 0.3}),
+        ("buoyancy_error", {"force": 60.0}),
+        ("inflow_loss", {"loss": 0.25}),
+    ],
+)
+def test_a_fit_recovers_what_was_planted(name, truth):
+    setting = f"{name}:" + ",".join(f"{p}={v}" for p, v in truth.items())
+    parts = (cut_run(own((setting,), 4, 120.0), merlin(), "fossen", 10.0),)
+    library = [h for h in hypotheses(parts)[0] if h.name == name]
+    problem = pose(parts, columns_of(library), 0.05)
+    done = fit_hypothesis(problem, problem.origin, library[0].slots)
+    for own_slot in library[0].slots:
+        p = problem.plant.slots[own_slot].parameter
+        if p.name in truth:
+            assert done.beta[own_slot] == pytest.approx(truth[p.name], abs=0.1 * p.typical)
+    assert done.evidence > 20
+    assert done.dynamics_loss.sum() < 0.6 * problem.gap.dynamics.c.sum()  # what is left is noise

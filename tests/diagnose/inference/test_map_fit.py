@@ -40,22 +40,22 @@ def test_no_cause_gains_by_another_start():
     assert all(again.beta[s] == p.origin[s] for s in slots)
 
 
-def test_a_coefficient_within_tolerance_settles_where_it_is():
+def test_a_coefficient_within_tolerance_is_fitted_where_it_is():
     p = posed(("thruster_degraded[HFP]:loss=0.05", "linear_drag[surge]:scale=-0.06",), seconds=100.0)[0]
     point = map_fit(p, p.origin, ())
     assert point.beta[slot(p, "thruster_degraded[HFP].loss")] == pytest.approx(0.05, abs=0.02)
     assert np.abs(point.standardised_departures()).max() < 2.5
-    assert generic_forces(p, point).evidence() < 0, "nothing systematic is left of a vehicle that is only slop away"
+    assert generic_forces(p, point).evidence() < 0, "nothing systematic is left of a vehicle whose coefficients are within tolerance"
 
 
-def test_an_effect_that_slop_must_imitate_strains_it():
+def test_an_effect_that_a_coefficient_imitates_makes_it_depart():
     p = posed(("thruster_degraded[HFP]:loss=0.5",), seconds=100.0)[0]
     point = map_fit(p, p.origin, ())
-    strained = p.plant.slots[point.columns[int(np.abs(point.standardised_departures()).argmax())]].key
-    assert strained == "thruster_degraded[HFP].loss" and np.abs(point.standardised_departures()).max() > 7.0
+    departed = p.plant.slots[point.columns[int(np.abs(point.standardised_departures()).argmax())]].key
+    assert departed == "thruster_degraded[HFP].loss" and np.abs(point.standardised_departures()).max() > 7.0
 
 
-def test_settling_the_true_effect_is_worth_more_than_slop_alone_and_no_step_makes_it_worse():
+def test_the_true_effect_has_more_evidence_than_tolerances_alone_and_no_step_makes_it_worse():
     p = posed(("inflow_loss:loss=0.3",), seconds=100.0)[0]
     alone = map_fit(p, p.origin, ())
     own_slot = slot(p, "inflow_loss.loss")

@@ -12,7 +12,7 @@ from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.inference.gap import squared_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, fit_hypothesis
-from rovval.diagnose.inference.shrinkage import held_out_linearisations, shrinkage, worsened_axes
+from rovval.diagnose.inference.shrinkage import GapReduction, held_out_linearisations, shrinkage, worsened_axes
 from rovval.diagnose.problem.problem import Problem, corrected_residuals, pose
 from rovval.diagnose.residuals.normal_equations import normal_equations
 from rovval.diagnose.residuals.nuisances import initial_state_sd
@@ -38,9 +38,9 @@ def test_windows_are_scored_as_the_total_scores_them(seeds):
 def test_every_axis_has_a_share_inside_its_interval():
     problem, found = fitted("inflow_loss", "inflow_loss:loss=0.25", 4)
     shrunk = shrinkage(problem, found, corrected_residuals(problem), 0)
-    assert shrunk["axes"].keys() == shrunk["axes_interval"].keys() == {"surge", "sway", "heave", "roll", "pitch", "yaw"}
-    assert all(shrunk["axes_interval"][a]["low"] <= share <= shrunk["axes_interval"][a]["high"] for a, share in shrunk["axes"].items())
-    assert shrunk["axes"]["surge"] > 0.9 and not worsened_axes(shrunk)
+    assert shrunk.axes.keys() == shrunk.axes_interval.keys() == {"surge", "sway", "heave", "roll", "pitch", "yaw"}
+    assert all(shrunk.axes_interval[a].low <= share <= shrunk.axes_interval[a].high for a, share in shrunk.axes.items())
+    assert shrunk.axes["surge"] > 0.9 and not worsened_axes(shrunk)
 
 
 def test_what_fits_only_noise_shrinks_no_axis():
@@ -49,14 +49,12 @@ def test_what_fits_only_noise_shrinks_no_axis():
     before, inside = (squared_errors(problem, corrected_residuals(problem, b)) for b in (None, found.beta))
     shrunk = shrinkage(problem, found, corrected_residuals(problem), 0)
     flattered = {a: 1 - inside[a].sum() / before[a].sum() for a in before}
-    assert sum(shrunk["axes"].values()) < sum(flattered.values())
-    assert max(shrunk["axes"].values()) < 0.02
-    assert shrunk["axes_interval"]["pitch"]["low"] < 0
+    assert sum(shrunk.axes.values()) < sum(flattered.values())
+    assert max(shrunk.axes.values()) < 0.02
+    assert shrunk.axes_interval["pitch"].low < 0
 
 
 def test_nothing_fitted_shrinks_nothing_and_a_worse_axis_is_named():
     problem, _ = fitted("cg_offset", "", 7)
-    assert shrinkage(problem, None, [], 0) == {
-        "total": 0.0, "low": 0.0, "high": 0.0, "of_explainable": 0.0, "axes": {}, "axes_interval": {}, "held_out": True
-    }  # fmt: skip
-    assert worsened_axes({"axes": {"surge": 0.4, "yaw": -0.051, "roll": -0.049}}) == [{"axis": "yaw", "change": 0.051}]
+    assert shrinkage(problem, None, [], 0) == GapReduction(0.0, 0.0, 0.0, 0.0, {}, {}, held_out=True)
+    assert worsened_axes(GapReduction(axes={"surge": 0.4, "yaw": -0.051, "roll": -0.049})) == {"yaw": 0.051}

@@ -1,6 +1,16 @@
-"""Where the gap lies: slices of one quantity are named once an axis."""
+"""Where the gap lies: regimes that hold more of it than their time, each quantity named once an axis."""
 
-from rovval.diagnose.result.attribution import Slice, worst
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from diagnose_case import merlin, own
+
+from rovval.diagnose.result.attribution import Slice, slices, worst
+from rovval.diagnose.windows.multiple_shooting import cut_run
+from rovval.diagnose.windows.windows import Windows, axis_channels
+
+RNG = np.random.default_rng
 
 
 def test_slices_of_one_quantity_are_named_once_an_axis():
@@ -10,3 +20,34 @@ def test_slices_of_one_quantity_are_named_once_an_axis():
     found = [slice_("yaw", "u < -0.3 m/s", 0.6), slice_("yaw", "|u| > 0.3 m/s", 0.7), slice_("sway", "|u| > 0.3 m/s", 0.5), slice_("yaw", "depth > 3 m", 0.4)]
     named = [(s.axis, s.regime) for s in worst(found, {"yaw": 1.0, "sway": 0.5})]
     assert named == [("yaw", "|u| > 0.3 m/s"), ("yaw", "depth > 3 m"), ("sway", "|u| > 0.3 m/s")]
+
+
+@pytest.fixture(scope="module")
+def part() -> Windows:
+    return cut_run(own((), 4, 240.0), merlin(), "fossen", 10.0)
+
+
+def test_a_gap_planted_in_a_regime_is_found_with_its_share(part):
+    """Nine tenths of the surge gap where u is in its strong forward range, the rest spread evenly elsewhere."""
+    channel, rng = axis_channels(part)["surge"], RNG(12)
+    u = part.y[..., channel]
+    strong = u > float(f"{np.quantile(np.abs(u), 0.8):.2g}")
+    error = np.zeros_like(part.y)
+    error[..., channel] = rng.choice([-1.0, 1.0], u.shape) * np.where(strong, np.sqrt(0.9 / strong.sum()), np.sqrt(0.1 / (~strong).sum()))
+    best = worst(slices(part, error, part.ok, 0), {"surge": 1.0})[0]
+    assert best.axis == "surge"
+    assert best.regime.startswith("u > ")
+    assert best.share == pytest.approx(0.9, abs=0.05)
+    assert best.low > 1.5
+    assert best.low <= best.lift <= best.high
+
+
+def test_an_even_gap_has_no_worst_place(part):
+    error = RNG(13).normal(size=part.y.shape)
+    assert not worst(slices(part, error, part.ok, 0), dict.fromkeys(axis_channels(part), 1 / 6))
+
+
+def test_idle_thrusters_and_all_regimes_have_names(part):
+    names = {s.regime for s in slices(part, RNG(15).normal(size=part.y.shape), part.ok, 0)}
+    assert {"HFP turning forward", "HFP turning backward", "first third of the run"} <= names
+    assert any(n.startswith("heading") for n in names)

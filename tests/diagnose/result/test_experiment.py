@@ -1,4 +1,4 @@
-"""What to fly next: manoeuvres that a vehicle can fly, told as thruster speeds."""
+"""What to fly next: manoeuvres that a vehicle can fly, as schedules of thruster speeds."""
 
 from __future__ import annotations
 

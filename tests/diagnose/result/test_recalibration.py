@@ -1,4 +1,4 @@
-"""A vehicle's file that is off in many coefficients at once: told with what it shrinks, never as a cause, and not told of one effect."""
+"""Recalibration: a file that is off in many coefficients at once is said to be, with what tuning them brings; it is no cause, and one effect is none."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from diagnose_case import LIBRARY, foreign, merlin, own
+from diagnose_case import LIBRARY, diagnosed, foreign, merlin
 from diagnosis_schema import check_document
 from real_data import real
 
@@ -50,7 +50,7 @@ def flown(folder: Path, seed: int) -> Run:
 
 
 @functools.cache
-def told(folder: Path) -> dict[str, Any]:
+def answered(folder: Path) -> dict[str, Any]:
     return written(diagnose([flown(folder, 11)], merlin()))
 
 
@@ -59,8 +59,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("another")
 
 
-def test_a_file_off_in_many_coefficients_is_told_and_is_no_cause(folder: Path):
-    d = told(folder)
+def test_a_file_off_in_many_coefficients_is_said_to_be_and_is_no_cause(folder: Path):
+    d = answered(folder)
     check_document(d)
     found = d["calibration"]
     assert d["verdict"] == "unknown" and d["causes"] == []
@@ -76,7 +76,7 @@ def test_a_file_off_in_many_coefficients_is_told_and_is_no_cause(folder: Path):
 
 
 def test_the_command_writes_a_vehicle_that_is_nearer_on_another_dive(folder: Path):
-    words = shlex.split(told(folder)["calibration"]["command"])
+    words = shlex.split(answered(folder)["calibration"]["command"])
     assert words[:2] == ["rovval", "fit"] and words[2] == flown(folder, 11).id
     names = words[words.index("--parameters") + 1].split(",")
     tuned = vehicle.parse(fit([flown(folder, 11)], merlin(), names).vehicle, "tuned")
@@ -88,14 +88,13 @@ def test_the_command_writes_a_vehicle_that_is_nearer_on_another_dive(folder: Pat
 
 @pytest.mark.parametrize("planted", [(), ("inflow_loss:loss=0.3",), ("quadratic_drag[surge]:scale=0.6",)])
 def test_a_healthy_log_and_one_cause_are_not_a_matter_of_calibration(planted: tuple[str, ...]):
-    found = diagnose([own(planted, 5, 100.0)], merlin())
+    found = diagnosed(planted)
     assert found.calibration is None and recalibration.sentence(found) == ""
     assert bool(found.causes) == bool(planted)
 
 
 def test_nor_are_they_of_an_independent_plant(tmp_path_factory: pytest.TempPathFactory):
-    folder = tmp_path_factory.getbasetemp() / "calibration"
-    folder.mkdir()
+    folder = tmp_path_factory.mktemp("calibration")
     for seed, planted in ((41, ()), (42, (("thruster_degraded", "HFP", 1.0),))):
         assert diagnose([foreign(folder, planted, seed, 150.0, 0.03)], merlin()).document()["calibration"] is None
 

@@ -18,11 +18,11 @@ from rovval.report.diagnosis.json import document as written
 
 
 def test_a_cause_that_healthy_coefficients_hide_is_found_beside_them():
-    """Thrust within its tolerance makes most of the gap, a weak current the rest: by itself it closes too little to be named."""
+    """Thrust within its tolerance makes most of the gap, a weak current the rest: by itself it brings too little to be named."""
     document = diagnose([own(("current_constant:north=0.03,east=0.015", "reverse_asymmetry:scale=0.1", "rpm_scale:scale=0.06"), 5, 240.0)], merlin()).document()
     (cause,) = document["causes"]
     assert "current_constant" in cause["group"] and document["shrinkage"]["total"] < FIRST_GAIN, document["sentence"]
-    assert document["beside_slop"]["low"] > COUNTED_REDUCTION
+    assert document["within_tolerance"]["low"] > COUNTED_REDUCTION
 
 
 def test_a_coefficient_surely_off_is_named_though_the_gap_is_another_axis():
@@ -42,9 +42,9 @@ def test_a_fault_of_a_sensor_that_the_kinematic_checks_deny_is_not_named():
     assert against.contradicted and not sufficient(against, alone=True) and against not in possible(p, [against])
 
 
-def test_what_slop_alone_makes_is_not_called_a_cause_beside_it():
+def test_what_tolerances_alone_make_is_no_cause():
     document = diagnose([own(("reverse_asymmetry:scale=0.1", "rpm_scale:scale=0.06"), 5, 240.0)], merlin()).document()
-    assert document["causes"] == [] and document["beside_slop"] is None
+    assert document["causes"] == [] and document["within_tolerance"] is None
 
 
 def test_a_coefficient_does_not_hide_behind_its_own_tolerance():

@@ -24,7 +24,7 @@ from rovval.vehicle import load
 
 
 def test_a_list_that_an_autopilot_holds_is_found(tmp_path: Path):
-    """It makes roll and pitch count little, and other coefficients within slop show more than the list itself."""
+    """It makes roll and pitch count little, and other coefficients within tolerance show more than the list itself."""
     document = diagnose([bluerov2(tmp_path, "list.csv", 12, 200.0, 0.03, ("cg_offset", "", -1.6))], load("bluerov2_heavy")).document()
     assert [c["effect"] for c in document["causes"]] == ["cg_offset"], document["sentence"]
 
@@ -59,27 +59,27 @@ def test_propellers_that_are_all_of_one_hand_are_found_where_the_file_has_them_i
     assert cause["effect"] == "propeller_torque" and cause["parameters"]["common"]["value"] < -0.02, document["sentence"]
 
 
-def test_what_the_finalists_kept_out_is_tried_where_none_of_them_stands(monkeypatch: pytest.MonkeyPatch):
-    """The first ones settled are none that is there, as where a bogus one promises much."""
+def test_what_the_candidates_kept_out_is_tried_where_none_of_them_is_admissible(monkeypatch: pytest.MonkeyPatch):
+    """The first ones fitted are none that is there, as where a bogus one promises much."""
     p, library = posed(("buoyancy_error:force=200",))
     asked = list[set[str]]()
 
-    def settled(problem: Problem, data: Any, hypotheses: list[Hypothesis], promised: dict[str, float], *rest: Any) -> list[Candidate]:
+    def first_bogus(problem: Problem, data: Any, hypotheses: list[Hypothesis], promised: dict[str, float], *rest: Any) -> list[Candidate]:
         asked.append({h.name for h in hypotheses})
         if len(asked) > 1:
             return candidates(problem, data, hypotheses, promised, *rest)
         bogus = [h for h in hypotheses if h.label == "linear_drag[yaw]"]
         return candidates(problem, data, bogus, {h.label: 50.0 for h in bogus}, *rest)
 
-    monkeypatch.setattr("rovval.diagnose.search.forward.candidates", settled)
+    monkeypatch.setattr("rovval.diagnose.search.forward.candidates", first_bogus)
     healthy = healthy_fit(p)
     found = search(p, library, initialised(p, library, healthy), healthy, 0, lambda *_: None)
     assert [n.hypothesis.name for n in found.causes] == ["buoyancy_error"]
-    assert asked[0] - asked[1] == {"linear_drag[yaw]"}, "what was settled is not settled again"
+    assert asked[0] - asked[1] == {"linear_drag[yaw]"}, "what was fitted is not fitted again"
 
 
 def test_a_depth_sensor_that_is_late_is_named_and_has_no_tolerance(tmp_path: Path):
-    """Half a sample of delay is nothing that a check of the depth is held to see, so it is no slop; a longer one is told by that check alone."""
+    """Half a sample of delay is nothing that a check of the depth is held to see, so it has no tolerance; a longer one shows in that check alone."""
     run = foreign(tmp_path, (("time_offset", "depth", 1.5),), 12, 200.0, 0.02)
     parts, _ = cut([run], merlin(), "fossen", 10.0)
     late = {parts[0].plant.slots[s].key for s in tolerance_prior(parts[0].plant, 0.05).sd if parts[0].plant.slots[s].effect == "time_offset"}
@@ -97,15 +97,15 @@ def test_a_depth_sensor_that_is_late_is_named_and_has_no_tolerance(tmp_path: Pat
     ],
     ids=["late", "early", "set down"],
 )
-def test_a_late_sensor_and_a_load_that_is_set_down_are_told_in_their_size(
+def test_a_late_sensor_and_a_load_that_is_set_down_are_found_in_their_size(
     planted: tuple[str, str, float], seed: int, effect: str, parameter: str, true: float | None, tmp_path: Path
 ):
     """From the independent plant: delays that are a good part of a roll's period, and a mass that leaves with its load."""
     run = foreign(tmp_path, (planted,), seed, 200.0, 0.02)
     cause = diagnose([run], merlin()).document()["causes"][0]
-    told = cause["parameters"][parameter]
+    found = cause["parameters"][parameter]
     assert cause["effect"] == effect
-    assert told["low"] < true < told["high"] if true else told["high"] < 0.0
+    assert found["low"] < true < found["high"] if true else found["high"] < 0.0
 
 
 def test_commands_that_come_most_of_a_second_late_are_found_though_no_slope_shows_it():

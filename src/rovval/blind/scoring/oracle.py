@@ -17,7 +17,7 @@ from rovval.blind.plant.spec import Array
 from rovval.core.data import Run
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of
 from rovval.diagnose.hypotheses.library import hypotheses, initialised
-from rovval.diagnose.hypotheses.snag import placed
+from rovval.diagnose.hypotheses.snag import onset_and_anchor
 from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.inference.map_fit import healthy_fit
@@ -124,7 +124,7 @@ def _from(problem: Problem, healthy: Posterior, data: NormalEquations, wanted: W
         moves[data.place(best.columns)] = _step(problem, data, best)[0]
         beta = start_of(problem, data, best, moves, beta, best.slots)
         if best.name in onsets:
-            place = placed(problem.runs, problem.plant, best.slots, onsets[best.name])
+            place = onset_and_anchor(problem.runs, problem.plant, best.slots, onsets[best.name])
             beta[list(place)] = list(place.values())
     return beta
 

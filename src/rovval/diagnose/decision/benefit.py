@@ -75,7 +75,7 @@ def benefit_as_filed(problem: Problem, fit: HypothesisFit, residuals: list[Array
     """With every other coefficient as the file has it; ``residuals`` are the nominal vehicle's."""
     before, after = weighted_errors(problem, residuals), weighted_errors(problem, corrected_residuals(problem, fit.beta))
     shrunk = shrinkage(problem, fit, residuals, 0)
-    return Benefit(before, after, shrunk["low"] > 0, followed(problem, before, after))
+    return Benefit(before, after, shrunk.low > 0, followed(problem, before, after))
 
 
 def benefit_beside(problem: Problem, fit: HypothesisFit, healthy: Posterior, residuals: list[Array]) -> Benefit:

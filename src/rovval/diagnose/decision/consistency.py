@@ -45,7 +45,7 @@ def inconsistencies(problem: Problem, weight: Mapping[str, float]) -> list[Incon
 
 def _drift(check: ParityResiduals, angle: str) -> float:
     """What all faults of sensors leave of the drift, rms in rad; 0 where the log does not check it."""
-    return check.sigma[check.used.index(angle)] if angle in check.used else 0.0
+    return check.sigma[check.relations.index(angle)] if angle in check.relations else 0.0
 
 
 def _rate_error(problem: Problem, windows: Windows, check: ParityResiduals, angle: str, rate: str) -> float:

@@ -10,6 +10,7 @@ from rovval.diagnose.criteria import ONSET_CLEARER, ONSET_SEARCHED
 from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.inference.laplace import laplace_evidence
 from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.residuals.sensor_faults import FittedFault
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.search.onset import Onset, evidence_with_onset
 
@@ -23,6 +24,7 @@ class Finding:
         untestable: effects and hypotheses that the log cannot test, with the reason.
         selection: what the search found.
         residuals: the nominal vehicle's, per run (windows, samples, channels).
+        faults: of sensors, each fitted to the parity residuals by itself.
         decision: the verdict.
         since: s since the run's start from which the log was searched; None for all of it.
     """
@@ -31,6 +33,7 @@ class Finding:
     untestable: Mapping[str, str]
     selection: Selection
     residuals: list[Array]
+    faults: tuple[FittedFault, ...]
     decision: Decision
     since: float | None = None
 

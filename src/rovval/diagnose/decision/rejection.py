@@ -66,7 +66,7 @@ class Case:
         axes: axes on which the causes act.
         generic_instead: evidence of generic forces on those axes in the causes' place.
         generic_beside: evidence of those beside the causes; 0 where not ``held_out``.
-        benefits: of the causes; the first as the file has it, a second beside coefficients within tolerance where none is strained.
+        benefits: of the causes; the first as the file has it, a second beside coefficients within tolerance where none of these is out of tolerance.
         variation: of each cause by name, the evidence that its value varies.
         sensors: whether they are faults of sensors that the parity residuals see, which a force may imitate.
     """

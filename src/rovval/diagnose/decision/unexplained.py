@@ -21,7 +21,7 @@ class Accounted:
 
     Attributes:
         noise: what the noise of the sensors alone makes.
-        tolerance: what coefficients and sensors within their tolerance close, fitted without any cause.
+        tolerance: what coefficients and sensors within their tolerance take away, fitted without any cause.
         departure: largest standardised departure of these coefficients from the file, in standard deviations of their priors.
     """
 
@@ -31,7 +31,7 @@ class Accounted:
 
     @property
     def share(self) -> float:
-        """Noise and tolerance together; a fit with a coefficient far beyond its tolerance is no healthy vehicle and accounts for nothing."""
+        """Noise and tolerance in sum; a fit with a coefficient far beyond its tolerance is no healthy vehicle and accounts for nothing."""
         return self.noise + (0.0 if self.departure > OUT_OF_TOLERANCE else self.tolerance)
 
 
@@ -40,10 +40,10 @@ class Unexplained:
     """What the causes leave unexplained; all of the gap where none is named.
 
     Attributes:
-        axes: axes on which generic forces would close most of it, the first most; of an open gap the one with the largest share of the gap.
+        axes: axes on which generic forces would take most of it away, the first most; of an open gap the one with the largest share of the gap.
         depends_on: features that such a force on the first axis varies with, the strongest first; empty where it varies with none.
         share: share (1) of the squared error that generic forces take away on held-out windows; 0 of an open gap.
-        strained: coefficient furthest beyond its tolerance and its standardised departure; None where none is.
+        departed: coefficient furthest beyond its tolerance and its standardised departure; None where none is.
         inconstant: effects that come near, but whose value would have to change along the log.
         accounted: of an open gap, the share (1) of it that noise and tolerance account for; None where a force, a coefficient or an effect
             is surely at work.
@@ -52,7 +52,7 @@ class Unexplained:
     axes: tuple[str, ...]
     depends_on: tuple[str, ...] = ()
     share: float = 0.0
-    strained: tuple[str, float] | None = None
+    departed: tuple[str, float] | None = None
     inconstant: tuple[str, ...] = ()
     accounted: float | None = None
 
@@ -64,15 +64,15 @@ def accounted(problem: Problem, healthy: Posterior) -> Accounted:
 
 
 def unexplained(problem: Problem, forces: GenericForces, point: Posterior, inconstant: Sequence[str] = ()) -> Unexplained:
-    """On which axes generic forces would close most of what is left at ``point``, and what that resembles."""
+    """On which axes generic forces would take away most of what is left at ``point``, and what that resembles."""
     by_axis = sorted(((axis, forces.evidence([axis])) for axis in AXES), key=lambda item: -item[1])
     axes = [axis for axis, gain in by_axis if gain > ACTING_FORCE * by_axis[0][1]][:MOST_ACTING] or [by_axis[0][0]]
     by_feature = sorted(((f, forces.evidence([axes[0]], f)) for f in forces.features), key=lambda item: -item[1])
     depends = [f for f, gain in by_feature if gain > VARYING_FORCE * by_feature[0][1] and gain > 0][:MOST_VARYING]
     departures = zip(point.columns[point.effect_count :], point.standardised_departures(), strict=True)
     beyond = [(problem.plant.slots[c].key, float(z)) for c, z in departures if abs(z) > OUT_OF_TOLERANCE]
-    strained = max(beyond, key=lambda one: abs(one[1]), default=None)
-    return Unexplained(tuple(axes), tuple(depends), forces.held_out_gain(problem.folds), strained, tuple(inconstant))
+    departed = max(beyond, key=lambda one: abs(one[1]), default=None)
+    return Unexplained(tuple(axes), tuple(depends), forces.held_out_gain(problem.folds), departed, tuple(inconstant))
 
 
 def open_gap(problem: Problem, known: Accounted, residuals: list[Array]) -> Unexplained | None:

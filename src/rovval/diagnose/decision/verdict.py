@@ -6,7 +6,7 @@ left; faults of sensors that the parity residuals isolate by themselves stay, wh
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -21,10 +21,12 @@ from rovval.diagnose.criteria import (
     NEAR_LITTLE,
     OUT_OF_TOLERANCE,
 )
+from rovval.diagnose.decision.indications import Indications, indications
 from rovval.diagnose.decision.rejection import Assessment, assess, of_sensor
 from rovval.diagnose.decision.unexplained import Accounted, Unexplained, accounted, open_gap, unexplained
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.residuals.sensor_faults import FittedFault
 from rovval.diagnose.search.baseline import SelectedCause
 from rovval.diagnose.search.discrepancy import GenericForces, generic_forces, nominal_forces
 from rovval.diagnose.search.forward import Selection
@@ -49,6 +51,7 @@ class Decision:
         departure: largest standardised departure of a coefficient that is no cause's, in standard deviations of its prior.
         accounted: what of the gap needs no cause.
         unexplained: what is left; None where nothing is.
+        indications: what points to a cause where none is named; None where causes are.
     """
 
     verdict: Verdict
@@ -62,10 +65,11 @@ class Decision:
     departure: float
     accounted: Accounted
     unexplained: Unexplained | None
+    indications: Indications | None = None
 
 
-def decide(problem: Problem, selection: Selection, residuals: list[Array]) -> Decision:
-    """The verdict on what a search found; ``residuals`` are the nominal vehicle's."""
+def decide(problem: Problem, selection: Selection, residuals: list[Array], faults: Sequence[FittedFault]) -> Decision:
+    """The verdict on what a search found; ``residuals`` are the nominal vehicle's, ``faults`` of sensors those that parity residuals show."""
     general = generic_forces(problem, selection.healthy)
     assessed = _assessed(problem, selection, general, residuals)
     if assessed and assessed.inconstant and not assessed.rejected:
@@ -75,7 +79,9 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array]) -> De
         assessed = replace(assessed, remainder=True)
     if selection.fit and assessed and (assessed.by_parity or not assessed.rejected):
         return _isolated(problem, selection, selection.fit, assessed)
-    return _not_isolated(problem, selection, assessed, general, residuals)
+    decision = _not_isolated(problem, selection, assessed, general, residuals)
+    first = selection.steps[0] if selection.steps else ()
+    return replace(decision, indications=indications(first, decision.accounted, faults))
 
 
 def _assessed(problem: Problem, selection: Selection, general: GenericForces, residuals: list[Array]) -> Assessment | None:

@@ -1,4 +1,4 @@
-"""A hypothesis: the parameters of one effect, set free, and the point from which their fit begins."""
+"""A hypothesis: the parameters of one effect, set free, and the initial point of their fit."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from rovval.diagnose.residuals.ridge import Prior
 from rovval.effects import Effect, load
 from rovval.plant import Plant
 
-WHOLE = -1  # in place of a slot: all that the initial point sets, as one column from no effect to all of it
-WHOLE_SIZE = 0.5  # typical size of that column: half of what the initial point sets
+START_SCALE = -1  # in place of a slot: the factor on all that the initial point sets, from 0 (no effect) to 1 (all of it)
+START_SCALE_TYPICAL = 0.5  # typical size of that factor: half of what the initial point sets
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,11 +24,11 @@ class Hypothesis:
         name: effect and target as in ``--effect``: ``inflow_loss``, ``thruster_degraded[HFP]``.
         label: the name with its initial point, ``waves@3``; unique in a library.
         slots: places of all its parameters in the plant's parameters beta.
-        columns: columns of the linearisation that it sets free: slots, or the ids of ``directions``.
+        columns: columns of the linearisation that it sets free: slots, or the ids of ``displaced``.
         sd: (len(columns),) standard deviations of their wide prior, in the parameters' units.
         at: (slot, value) that the initial point sets before anything is fitted.
-        directions: the displaced columns: sensitivities about the initial point, not about no effect.
-        evident: the forces that are missing show it, so that it is fitted whatever its linearisation promises.
+        displaced: columns whose sensitivities are taken at the initial point, not at no effect; empty where it begins at no effect.
+        evident: whether the forces that the nominal vehicle lacks show it, so that it is fitted whatever its linearisation promises.
     """
 
     name: str
@@ -56,9 +56,9 @@ class Hypothesis:
         return self.of.strip("[]")
 
     @property
-    def whole(self) -> bool:
-        """Whether it begins with its full size, well away from no effect, and not with a slope."""
-        return any(d.slot == WHOLE for d in self.displaced)
+    def from_full_size(self) -> bool:
+        """Whether its fit begins with all of the effect at once, away from no effect, where no slope shows it."""
+        return any(d.slot == START_SCALE for d in self.displaced)
 
 
 def columns_of(library: Sequence[Hypothesis]) -> Columns:
@@ -73,10 +73,10 @@ def from_nothing(plant: Plant, name: str, label: str, slots: tuple[int, ...]) ->
 
 
 def displaced(plant: Plant, label: str, slots: tuple[int, ...], free: tuple[int, ...], at: tuple[tuple[int, float], ...], next_id: int) -> Hypothesis:
-    """A hypothesis that begins where ``at`` sets some of its ``slots``, with the others that are ``free``, or with `WHOLE`; its columns are numbered
-    from ``next_id`` on."""
+    """A hypothesis that begins where ``at`` sets some of its ``slots``, with the others ``free``, or with `START_SCALE`; its columns are
+    numbered from ``next_id`` on."""
     directions = tuple(DisplacedColumn(next_id + i, at, slot) for i, slot in enumerate(free))
-    sd = tuple(PRIOR_WIDTH * (plant.slots[s].parameter.typical if s != WHOLE else WHOLE_SIZE) for s in free)
+    sd = tuple(PRIOR_WIDTH * (plant.slots[s].parameter.typical if s != START_SCALE else START_SCALE_TYPICAL) for s in free)
     return Hypothesis(label.partition("@")[0], label, slots, tuple(d.id for d in directions), sd, at, directions)
 
 

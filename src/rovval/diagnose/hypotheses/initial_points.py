@@ -22,8 +22,8 @@ from rovval.diagnose.criteria import (
     PERIOD_STARTS,
     WHOLE_STARTS,
 )
-from rovval.diagnose.hypotheses.hypothesis import WHOLE, Hypothesis, displaced, from_nothing
-from rovval.diagnose.hypotheses.snag import held_from, mid_log_spring
+from rovval.diagnose.hypotheses.hypothesis import START_SCALE, Hypothesis, displaced, from_nothing
+from rovval.diagnose.hypotheses.snag import from_springs, mid_log_spring
 from rovval.diagnose.windows.windows import Windows
 from rovval.plant import Plant
 
@@ -46,7 +46,7 @@ class Hints:
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """One effect on one axis or thruster of a plant: its ``name`` as in ``--effect``, and the ``slots`` of its parameters that the log can tell."""
+    """One effect on one axis or thruster of a plant: its ``name`` as in ``--effect``, and the ``slots`` of its parameters that the log can show."""
 
     plant: Plant
     name: str
@@ -63,41 +63,41 @@ def initial_points(target: Target, windows: Sequence[Windows], hints: Hints, nex
     ``next_id`` on."""
     plant, name, effect, slots = target.plant, target.name, target.effect, target.slots
     if effect.has("anchor"):
-        return held_from(plant, name, slots, hints.springs or [mid_log_spring(windows, plant, slots)], next_id)
+        return from_springs(plant, name, slots, hints.springs or [mid_log_spring(windows, plant, slots)], next_id)
     grids = _grids(target, windows, hints)
     if not grids:
-        far = _far(target, next_id)
-        return [*_near(target), *_apart(target), *far, *_levers(target, next_id + len(far))]
+        far = _away_from_no_effect(target, next_id)
+        return [*_from_no_effect(target), *_one_at_a_time(target), *far, *_with_levers(target, next_id + len(far))]
     by_role: dict[str, int] = {target.parameter(s).role: s for s in slots}
-    free = tuple(s for s in slots if s not in grids and target.parameter(s).name not in effect.refines) or (WHOLE,)
+    free = tuple(s for s in slots if s not in grids and target.parameter(s).name not in effect.refines) or (START_SCALE,)
     points = [dict(zip(grids, point, strict=True)) for point in product(*grids.values())]
-    most = WHOLE_STARTS if free == (WHOLE,) else MOST_STARTS
+    most = WHOLE_STARTS if free == (START_SCALE,) else MOST_STARTS
     chosen = points if len(points) <= most else [points[i] for i in np.linspace(0, len(points) - 1, most).astype(int)]
-    chosen = [point | _met(by_role, point, hints.periods) for point in chosen]
+    chosen = [point | _wave_period(by_role, point, hints.periods) for point in chosen]
     return [displaced(plant, f"{name}@{i}", slots, free, tuple(at.items()), next_id + i * len(free)) for i, at in enumerate(chosen)]
 
 
-def _met(by_role: Mapping[str, int], point: Mapping[int, float], periods: Mapping[float | None, Sequence[float]]) -> dict[int, float]:
-    """The period of the waves that run where those of an initial point do: a vehicle under way meets them at another one."""
+def _wave_period(by_role: Mapping[str, int], point: Mapping[int, float], periods: Mapping[float | None, Sequence[float]]) -> dict[int, float]:
+    """The period of the waves that run in the direction of an initial point: a vehicle under way sees them at their period of encounter, which is another."""
     of_waves = periods.get(point.get(by_role.get("direction", -1)), ()) if "period" in by_role and "direction" in by_role else ()
     return {by_role["period"]: of_waves[0]} if of_waves else {}
 
 
-def _near(target: Target) -> list[Hypothesis]:
+def _from_no_effect(target: Target) -> list[Hypothesis]:
     """All parameters from no effect; where some only refine the others, these without them first, and not with them where each of them is tried
-    alone: an axis on which nothing moves would take up whatever is left."""
+    alone: an axis on which nothing moves would fit whatever is left."""
     plain = tuple(s for s in target.slots if target.parameter(s).name not in target.effect.refines)
     sets = {target.name: plain} | ({f"{target.name}@fine": target.slots} if len(plain) < len(target.slots) and not target.effect.separable else {})
     return [from_nothing(target.plant, target.name, label, slots) for label, slots in sets.items()]
 
 
-def _apart(target: Target) -> list[Hypothesis]:
-    """Each parameter without the others, where they may be apart: three that are free for one that is off are evidence lost."""
+def _one_at_a_time(target: Target) -> list[Hypothesis]:
+    """Each parameter without the others, where the effect is separable: three that are free for one that is off cost evidence."""
     each = [(s, f"{target.name}@{target.parameter(s).name}") for s in target.slots if target.effect.separable]
     return [from_nothing(target.plant, target.name, label, (s,)) for s, label in each]
 
 
-def _far(target: Target, next_id: int) -> list[Hypothesis]:
+def _away_from_no_effect(target: Target, next_id: int) -> list[Hypothesis]:
     """Initial points well away from no effect: a vehicle that tumbles in simulation shows no useful slope of its trim there, nor do
     commands that came a second late and step from one level to the next; a lag of half a second is no multiple of a short one."""
     found = list[Hypothesis]()
@@ -106,13 +106,13 @@ def _far(target: Target, next_id: int) -> list[Hypothesis]:
         for value in (p.null + size * p.typical for size in target.effect.far):
             if p.low <= value <= p.high:
                 label = f"{target.name}@far{len(found)}"
-                found.append(displaced(target.plant, label, target.slots, (WHOLE,), ((slot, value),), next_id + len(found)))
+                found.append(displaced(target.plant, label, target.slots, (START_SCALE,), ((slot, value),), next_id + len(found)))
     return found
 
 
-def _levers(target: Target, next_id: int) -> list[Hypothesis]:
+def _with_levers(target: Target, next_id: int) -> list[Hypothesis]:
     """Initial points with the force well away from the origin, ahead and astern by `LEVER_SHARE` of the thrusters' reach: a force that is not there
-    yet turns nothing, wherever it would act, and once it is there the other levers show."""
+    yet has no moment, wherever it would act; once it is there its other levers have a slope."""
     levers = [s for s in target.slots if target.parameter(s).role == "lever"]
     if not levers:
         return []

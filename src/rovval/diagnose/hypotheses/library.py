@@ -50,7 +50,7 @@ def _untestable(effect: effects.Effect, windows: Sequence[Windows]) -> str:
     """Why the logs cannot test an effect: a channel that it needs is missing, or never near enough; "" where they can."""
     if missing := [c for c in effect.needs if not _logged(windows, c)]:
         return f"needs {', '.join(missing)}, which this log does not hold"
-    far = [f"no {c} below {reach:g} {channel(c).unit}" for c, reach in effect.within.items() if _least(windows, c) >= reach]
+    far = [f"no {c} below {reach:g} {channel(c).unit}" for c, reach in effect.within.items() if _lowest(windows, c) >= reach]
     return f"{', '.join(far)} in this log" if far else ""
 
 
@@ -58,14 +58,14 @@ def _logged(windows: Sequence[Windows], name: str) -> bool:
     return all(part.run.measured(name) for part in windows)
 
 
-def _least(windows: Sequence[Windows], name: str) -> float:
+def _lowest(windows: Sequence[Windows], name: str) -> float:
     return min(float(np.nanmin(part.run.get(name))) for part in windows)
 
 
 def initialised(problem: Problem, library: Sequence[Hypothesis], healthy: Posterior) -> list[Hypothesis]:
     """The hypotheses of a library with the initial points that the log suggests: what oscillates at the periods of the residual about ``healthy``, the
-    vehicle with its coefficients within tolerance; what begins during the log where that begins to err; what holds the vehicle where the missing
-    forces lead."""
+    vehicle with its coefficients within tolerance; what begins during the log where that begins to err; a spring that holds the vehicle where the missing
+    forces point."""
     names = {h.name for h in library}
     held = springs(problem) if any(h.effect.has("anchor") for h in library) else []
     hints = Hints(_periods(problem, names, healthy), gap_change_points(problem), held)
@@ -75,10 +75,10 @@ def initialised(problem: Problem, library: Sequence[Hypothesis], healthy: Poster
 
 def _periods(problem: Problem, names: set[str], healthy: Posterior) -> dict[float | None, Sequence[float]]:
     """Periods of the residual (s); those of waves by the direction towards which they run."""
-    met = [period for period, _ in spectral_lines(problem, healthy)]
-    periods: dict[float | None, Sequence[float]] = {None: met}
+    encounter = [period for period, _ in spectral_lines(problem, healthy)]
+    periods: dict[float | None, Sequence[float]] = {None: encounter}
     for slot in problem.plant.slots:
         p, towards = slot.parameter, [d for p in effects.load(slot.effect).parameters if p.role == "direction" for d in p.starts]
         if p.role == "period" and towards and slot.hypothesis in names:
-            periods |= wave_periods(problem, healthy, met, (p.low, p.high), towards)
+            periods |= wave_periods(problem, healthy, encounter, (p.low, p.high), towards)
     return periods

@@ -1,4 +1,4 @@
-"""Initial points of what holds the vehicle to a point, such as a tether that has snagged.
+"""Initial points of a spring that holds the vehicle to a point, such as a tether that has snagged.
 
 No slope leads from no effect to a spring that holds a vehicle, and each place is a local minimum of its own. So the force and moment that each half
 of a window lacks are worked out first, in the linearised model; then a spring towards a point, slack within a radius, is fitted to them from
@@ -18,7 +18,7 @@ from rovval.core.channels import AXES
 from rovval.core.data import Array
 from rovval.core.frames import rotation_from_euler
 from rovval.diagnose.criteria import SPRING_APART_S, SPRING_EVIDENT_SHARE, SPRING_LEAST_STIFFNESS, SPRING_STARTS
-from rovval.diagnose.hypotheses.hypothesis import WHOLE, Hypothesis, displaced
+from rovval.diagnose.hypotheses.hypothesis import START_SCALE, Hypothesis, displaced
 from rovval.diagnose.hypotheses.spectrum import interpolated
 from rovval.diagnose.problem.disturbance import segment_indicators
 from rovval.diagnose.problem.problem import Problem
@@ -138,22 +138,22 @@ def _simplex(at: Array) -> Array:
     return np.asarray(at + np.vstack([np.zeros(4), max(float(at[3]), 0.5) * np.eye(4)]))
 
 
-def held_from(plant: Plant, name: str, slots: tuple[int, ...], found: Sequence[Mapping[str, float]], next_id: int) -> list[Hypothesis]:
+def from_springs(plant: Plant, name: str, slots: tuple[int, ...], found: Sequence[Mapping[str, float]], next_id: int) -> list[Hypothesis]:
     """One hypothesis for each spring that was ``found``: its fit begins with all of that spring at once."""
     own = [(slot, plant.slots[slot].parameter) for slot in slots]
     at = [tuple((slot, float(np.clip(spring[p.name], p.low, p.high))) for slot, p in own if p.name in spring) for spring in found]
-    begun = [displaced(plant, f"{name}@{i}", slots, (WHOLE,), one, next_id + i) for i, one in enumerate(at)]
+    begun = [displaced(plant, f"{name}@{i}", slots, (START_SCALE,), one, next_id + i) for i, one in enumerate(at)]
     return [replace(h, evident=spring.get("share", 0.0) >= SPRING_EVIDENT_SHARE) for h, spring in zip(begun, found, strict=True)]
 
 
 def mid_log_spring(windows: Sequence[Windows], plant: Plant, slots: tuple[int, ...]) -> Spring:
     """A spring of typical stiffness towards where the vehicle was in the middle of the first log: what competes until `springs` are known."""
     first = plant.slots[slots[0]].parameter
-    at = placed(windows, plant, slots, float(windows[0].start[len(windows[0].start) // 2]) * windows[0].run.dt)
+    at = onset_and_anchor(windows, plant, slots, float(windows[0].start[len(windows[0].start) // 2]) * windows[0].run.dt)
     return {first.name: first.typical} | {plant.slots[slot].parameter.name: value for slot, value in at.items()}
 
 
-def placed(windows: Sequence[Windows], plant: Plant, slots: tuple[int, ...], t: float) -> dict[int, float]:
+def onset_and_anchor(windows: Sequence[Windows], plant: Plant, slots: tuple[int, ...], t: float) -> dict[int, float]:
     """Values of the slots that an onset at ``t`` (s since the first run's start) fixes: the onset, and where the vehicle was then."""
     run, found = windows[0].run, dict[int, float]()
     for slot in slots:

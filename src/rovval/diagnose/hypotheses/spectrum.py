@@ -2,8 +2,8 @@
 
 A force of a period that is a little off is out of step with the true one after a few hundred seconds, and no slope leads there. So every period is
 tried on a body of one time constant, which needs no simulation: its velocity after a window's start is regressed on the residual velocities
-(north, east, down) of all windows, a least-squares periodogram for samples with gaps (Lomb 1976). A vehicle that is under way meets
-waves at another period than theirs (Doppler): for those the phase is taken where the vehicle was, with the dispersion relation of
+(north, east, down) of all windows, a least-squares periodogram for samples with gaps (Lomb 1976). A vehicle that is under way sees
+waves at their period of encounter (Doppler): for those the phase is taken where the vehicle was, with the dispersion relation of
 deep water, k = omega^2 / g (Faltinsen 1990, table 2.1).
 """
 
@@ -58,12 +58,12 @@ def spectral_lines(problem: Problem, point: Posterior) -> tuple[tuple[float, flo
 
 
 def wave_periods(
-    problem: Problem, point: Posterior, met: Sequence[float], bounds: tuple[float, float], directions: Iterable[float]
+    problem: Problem, point: Posterior, encounter: Sequence[float], bounds: tuple[float, float], directions: Iterable[float]
 ) -> dict[float | None, Sequence[float]]:
     """Periods of the waves that explain most of the residual at ``point``, by the direction towards which they run.
 
     Args:
-        met: periods (s) at which the vehicle met them, the strongest first; theirs are looked for close by.
+        encounter: periods of encounter (s), at which the moving vehicle saw them, the strongest first; theirs are looked for close by.
         bounds: shortest and longest period (s).
         directions: tried, in rad from north.
 
@@ -71,11 +71,11 @@ def wave_periods(
         One period (s) for each direction; nothing where a log does not say where the vehicle was.
     """
     runs, placed = _velocities(problem, point), all(part.run.measured(c) for part in problem.runs for c in ("x", "y", "z"))
-    met = [period for period in met if bounds[0] <= period <= bounds[1]][:WAVE_LINES]
-    if not runs or not placed or not met:
+    seen = [period for period in encounter if bounds[0] <= period <= bounds[1]][:WAVE_LINES]
+    if not runs or not placed or not seen:
         return {}
     step, gravity = 1.0 / (PER_TURN * _duration(runs)), problem.plant.vehicle.water.gravity
-    about = np.concatenate([np.arange((1.0 - WAVE_DOPPLER) / period, (1.0 + WAVE_DOPPLER) / period, step) for period in met])
+    about = np.concatenate([np.arange((1.0 - WAVE_DOPPLER) / period, (1.0 + WAVE_DOPPLER) / period, step) for period in seen])
     rates = np.unique(np.clip(about, 1.0 / bounds[1], 1.0 / bounds[0]))
     found = dict[float | None, Sequence[float]]()
     for direction in directions:

@@ -1,8 +1,9 @@
-"""How large the gap is: per axis rms, integral absolute error and noise floor, and how each shrinks with an effect added."""
+"""How large the gap is: rms, integral absolute error and noise floor by axis, and the squared errors that reductions are ratios of."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,18 +14,39 @@ from rovval.diagnose.windows.windows import axis_channels
 ANGULAR = ("roll", "pitch", "yaw")
 
 
+@dataclass(frozen=True, slots=True)
+class GapOnAxis:
+    """Prediction error of the nominal simulator on one axis.
+
+    Attributes:
+        unit: of ``rms`` and ``floor_rms``: m/s or rad/s; m or rad where no velocity was logged.
+        channel: the measured channel that it is an error of.
+        rms: root mean square error, in ``unit``.
+        iae: integral of the absolute error over time, in ``unit`` times seconds.
+        floor_rms: white noise of the sensor, in ``unit``.
+        share: of the weighted squared error of all axes.
+    """
+
+    unit: str
+    channel: str
+    rms: float
+    iae: float
+    floor_rms: float
+    share: float
+
+
 def squared_errors(problem: Problem, residuals: Sequence[Array]) -> dict[str, Array]:
-    """Sum of squared errors of each measured axis in every window, all runs behind one another (m,)."""
+    """Sum of squared errors (m,) of each measured axis in every window of all runs, in the channel's unit squared."""
     found: dict[str, list[Array]] = {}
-    for part, error in zip(problem.runs, residuals, strict=True):
-        for axis, channel in axis_channels(part).items():
-            found.setdefault(axis, []).append(np.where(part.ok[..., channel], error[..., channel] ** 2, 0.0).sum(axis=1))
+    for windows, error in zip(problem.runs, residuals, strict=True):
+        for axis, channel in axis_channels(windows).items():
+            found.setdefault(axis, []).append(np.where(windows.ok[..., channel], error[..., channel] ** 2, 0.0).sum(axis=1))
     return {axis: np.concatenate(values) for axis, values in found.items()}
 
 
-def axis_table(problem: Problem, residuals: Sequence[Array]) -> dict[str, dict[str, object]]:
-    """The ``gap.axes`` table: rms, iae, noise floor and share of the weighted gap of each measured axis."""
-    rows: dict[str, dict[str, object]] = {}
+def gap_by_axis(problem: Problem, residuals: Sequence[Array]) -> dict[str, GapOnAxis]:
+    """Prediction error of each measured axis; ``residuals`` (m, n, c) of each run, as `problem.corrected_residuals` gives them."""
+    rows: dict[str, GapOnAxis] = {}
     weight = weighted_errors(problem, residuals)
     total = sum(weight.values()) or 1.0
     for axis, channel in axis_channels(problem.runs[0]).items():
@@ -33,28 +55,28 @@ def axis_table(problem: Problem, residuals: Sequence[Array]) -> dict[str, dict[s
         name = problem.runs[0].channels[channel]
         pose = name in ("x", "y", "z", "phi", "theta", "psi")
         unit = ("rad" if axis in ANGULAR else "m") if pose else ("rad/s" if axis in ANGULAR else "m/s")
-        rows[axis] = {
-            "unit": unit,
-            "channel": name,
-            "rms": float(np.sqrt(np.mean(error**2))),
-            "iae": float(np.abs(error).sum() * problem.runs[0].run.dt),
-            "floor_rms": floor,
-            "share": weight[axis] / total,
-        }
+        rows[axis] = GapOnAxis(
+            unit=unit,
+            channel=name,
+            rms=float(np.sqrt(np.mean(error**2))),
+            iae=float(np.abs(error).sum() * problem.runs[0].run.dt),
+            floor_rms=floor,
+            share=weight[axis] / total,
+        )
     return rows
 
 
 def weighted_errors(problem: Problem, residuals: Sequence[Array]) -> dict[str, float]:
-    """Each axis's part of the gap in the metric of the contest (roll and pitch with their angles)."""
+    """Sum of squared errors of each axis over the variance of the gap's metric; roll and pitch with their angles."""
     weight: dict[str, float] = {}
-    for part, error in zip(problem.runs, residuals, strict=True):
-        scaled = np.where(part.ok, error**2 / problem.gap.variance, 0.0).sum(axis=(0, 1))
-        for axis, value in zip(part.axes, scaled, strict=True):
+    for windows, error in zip(problem.runs, residuals, strict=True):
+        scaled = np.where(windows.ok, error**2 / problem.gap.variance, 0.0).sum(axis=(0, 1))
+        for axis, value in zip(windows.axes, scaled, strict=True):
             weight[axis] = weight.get(axis, 0.0) + float(value)
     return weight
 
 
 def noise_floor_loss(problem: Problem) -> Array:
-    """What white sensor noise alone contributes to each window's loss (m,): the floor of the explainable part."""
+    """Loss of each window (m,) that white sensor noise alone makes: no model explains it."""
     share = [np.where(p.ok, p.noise**2 / problem.gap.variance, 0.0).sum(axis=(1, 2)) for p in problem.runs]
     return np.concatenate(share)

@@ -1,7 +1,7 @@
-"""Confirm a hypothesis by re-simulation: settle its parameters with coefficients within tolerance beside them, its evidence, its held-out losses.
+"""The fit of a hypothesis by re-simulation, jointly with coefficients within tolerance: parameters, evidence, held-out losses, standard errors.
 
-The evidence is twice the log Bayes factor over nothing at all (Laplace): a departure of coefficients that a hypothesis needs beside it costs what its prior
-says, so a hypothesis that leaves a coefficient eight sigma off does not win by letting the coefficients do the work.
+The evidence is twice the log Bayes factor over the vehicle as its file has it, by Laplace's approximation (Kass and Raftery 1995). A departure of
+coefficients that a hypothesis needs beside it costs what its prior says, so that none wins by letting the coefficients do the work.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 from scipy import stats
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import INTERVAL_PROBABILITY, QUICK_STEPS
+from rovval.diagnose.criteria import INTERVAL_PROBABILITY, ONSET_SHIFTS_S, QUICK_STEPS
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import map_fit, moved_to
 from rovval.diagnose.problem.cross_validation import Fold
@@ -21,13 +21,20 @@ from rovval.diagnose.problem.problem import Problem, gap_equations_at
 from rovval.diagnose.residuals.normal_equations import Whitened
 from rovval.diagnose.residuals.ridge import losses
 
-ONSET_SEARCH_S = (-12.0, -6.0, -3.0, -1.5, 1.5, 3.0, 6.0, 12.0)
-
 
 @dataclass(frozen=True, slots=True)
 class HypothesisFit:
-    """``beta`` (k,) the vehicle with the effects and nominal coefficients; ``posterior`` where both were fitted; ``evidence``; held-out losses per
-    window (m,) about ``beta``: ``loss`` of dynamics and parity, ``dynamics_loss`` of the dynamics alone, as shrinkage is reported."""
+    """A hypothesis fitted to all windows, and scored on held-out ones.
+
+    Attributes:
+        slots: its parameters.
+        beta: parameters (p,) of the plant with the fitted slots, all others as the vehicle's file has them.
+        posterior: the joint fit of the slots and of coefficients within tolerance.
+        evidence: twice the log Bayes factor over the vehicle as its file has it.
+        loss: weighted squared residuals (m,) of each window about ``beta``, held out, in the metric of the gap: dynamics and parity.
+        dynamics_loss: the same (m,) of the dynamics alone, of which the reduction of the gap is stated.
+        at_bound: those of the slots that rest at a bound.
+    """
 
     slots: tuple[int, ...]
     beta: Array
@@ -38,26 +45,26 @@ class HypothesisFit:
     at_bound: tuple[int, ...]
 
     def without_sensitivities(self) -> HypothesisFit:
-        """The fit without its slopes, which are the bulk of it; it cannot be gone on from."""
+        """The fit without its linearisation, which is the bulk of its memory; no further fit can begin from it."""
         return replace(self, posterior=replace(self.posterior, whitened=()))
 
 
 def fit_hypothesis(problem: Problem, start: Array, slots: tuple[int, ...]) -> HypothesisFit:
-    """Fit ``slots`` from ``start`` by re-simulation of all windows; score each fold with the parameters that the others give."""
-    return _scored(problem, _onset_tuned(problem, map_fit(problem, start, slots), slots), slots)
+    """Fit ``slots`` from ``start`` (p,) by re-simulation of all windows, and score each fold with the parameters that the others give."""
+    return _scored(problem, _with_onset_searched(problem, map_fit(problem, start, slots), slots), slots)
 
 
 def fit_quickly(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[Whitened, ...]) -> HypothesisFit:
-    """As `fit_hypothesis`, quicker: frozen sensitivities of the tolerances from nearby, few rounds, an onset where it began."""
+    """As `fit_hypothesis`, in fewer steps (`QUICK_STEPS`): sensitivities to coefficients within tolerance are those of ``near``, and no onset is searched."""
     return _scored(problem, map_fit(problem, start, slots, near, QUICK_STEPS), slots)
 
 
-def _onset_tuned(problem: Problem, point: Posterior, slots: tuple[int, ...]) -> Posterior:
-    """An onset moved along the log in shrinking steps, since windows before it carry no slope towards it; then all settled again."""
+def _with_onset_searched(problem: Problem, point: Posterior, slots: tuple[int, ...]) -> Posterior:
+    """The posterior with onsets searched along the log, to which windows before them have no sensitivity; all else is then fitted again."""
     onsets = [s for s in slots if problem.plant.slots[s].parameter.role == "onset"]
     best = point
     for slot in onsets:
-        for shift in ONSET_SEARCH_S:
+        for shift in ONSET_SHIFTS_S:
             trial = moved_to(problem, best, slot, max(best.beta[slot] + shift, problem.plant.slots[slot].parameter.low))
             if trial.predicted_cost() < best.predicted_cost():
                 best = trial
@@ -65,18 +72,19 @@ def _onset_tuned(problem: Problem, point: Posterior, slots: tuple[int, ...]) -> 
 
 
 def _scored(problem: Problem, point: Posterior, slots: tuple[int, ...]) -> HypothesisFit:
+    """The fit of which ``point`` is the posterior, with its evidence and held-out losses."""
     beta = problem.origin.copy()
     beta[list(slots)] = point.beta[list(slots)]
     bounds = [(problem.plant.slots[s].parameter.low, problem.plant.slots[s].parameter.high) for s in slots]
-    resting = tuple(s for s, (low, high) in zip(slots, bounds, strict=True) if not low < beta[s] < high and (low, high) != (0.0, 1.0))
+    at_bound = tuple(s for s, (low, high) in zip(slots, bounds, strict=True) if not low < beta[s] < high and (low, high) != (0.0, 1.0))
     found = laplace_evidence(problem, point)
-    fitted = HypothesisFit(slots, beta, point, found, problem.gap.total.c, problem.gap.dynamics.c, resting)
+    fitted = HypothesisFit(slots, beta, point, found, problem.gap.total.c, problem.gap.dynamics.c, at_bound)
     loss, dynamic_loss = _held_losses(problem, fitted)
     return replace(fitted, loss=loss, dynamics_loss=dynamic_loss)
 
 
 def _held_losses(problem: Problem, fitted: HypothesisFit) -> tuple[Array, Array]:
-    """Losses (m,) with and without the kinematic checks, each window scored with the parameters that other folds give."""
+    """Held-out losses (m,): (of dynamics and parity, of the dynamics alone)."""
     dynamic, data = gap_equations_at(problem, fitted.beta, fitted.slots)
     own, loss, dynamic_loss = np.arange(len(fitted.slots)), data.c.copy(), dynamic.c.copy()
     for fold, step in held_out_steps(problem, fitted):
@@ -86,17 +94,17 @@ def _held_losses(problem: Problem, fitted: HypothesisFit) -> tuple[Array, Array]
 
 
 def held_out_steps(problem: Problem, fitted: HypothesisFit) -> list[tuple[Fold, Array]]:
-    """Each fold with the step (k,) of the fitted slots that its training windows give, as its held-out losses are scored with."""
+    """Each fold with the step (k,) of the fitted slots that its training windows ask for; its held-out windows are scored with that."""
     slots = [problem.plant.slots[s].parameter.role for s in fitted.slots]
     moves = np.array([role != "onset" for role in slots], dtype=bool)  # no fold extrapolates an onset
     return [(fold, np.where(moves, fitted.posterior.step(fold.train)[: len(slots)], 0.0)) for fold in problem.folds]
 
 
 def standard_errors(problem: Problem, fitted: HypothesisFit, fixed: Sequence[int] = ()) -> Array:
-    """Standard errors (k,) of the fitted slots that hold under autocorrelated residuals and coefficients within tolerance: the sandwich of the joint fit.
+    """Standard errors (k,) of the fitted slots under autocorrelated residuals and coefficients within tolerance, in the parameters' units.
 
-    Scores are summed over pairs of windows; where these are few, never less than the inflated covariance. The other coefficients are
-    off by the declared tolerance, of which the joint fit takes out what the log shows. Slots that are ``fixed`` stand where they are: no error.
+    The sandwich covariance of the joint fit (White 1982), with scores summed over pairs of neighbouring windows, and the posterior covariance of the
+    other coefficients; never less than the covariance of the linearised fit times the design effect. Slots that are ``fixed`` have no error.
     """
     point, k = fitted.posterior, len(fitted.slots)
     free, bread = np.array([c not in fixed for c in point.columns]), np.zeros_like(point.curvature)
@@ -111,8 +119,8 @@ def standard_errors(problem: Problem, fitted: HypothesisFit, fixed: Sequence[int
 
 
 def significance(problem: Problem, fitted: HypothesisFit, slots: tuple[int, ...]) -> float:
-    """Largest departure of ``slots`` from where the vehicle stands, in standard errors that include coefficients within tolerance. Parameters that only
-    place an effect (an onset, a period) have no null of their own: they do not count, and stand where they are."""
+    """Largest departure of ``slots`` from the vehicle's file, in standard errors. Parameters that only place an effect (an onset, a period) have no null
+    value of their own: they do not count, and are held fixed."""
     sized = [s for s in slots if not only_places(problem, s)]
     error = standard_errors(problem, fitted, [s for s in slots if s not in sized])
     return max(float(abs(fitted.beta[s] - problem.origin[s]) / max(error[fitted.slots.index(s)], 1e-12)) for s in sized)
@@ -124,6 +132,7 @@ def only_places(problem: Problem, slot: int) -> bool:
 
 
 def confidence_interval(value: float, error: float, blocks: int) -> tuple[float, float]:
-    """Two-sided interval at `INTERVAL_PROBABILITY` with Student's t on half as many degrees of freedom as windows."""
+    """Two-sided interval of `INTERVAL_PROBABILITY` about ``value``, of standard error ``error``: Student's t with a degree of freedom
+    for two of ``blocks`` windows."""
     t = float(stats.t.ppf(0.5 + INTERVAL_PROBABILITY / 2, max(blocks // 2 - 1, 2)))
     return value - t * error, value + t * error

@@ -1,9 +1,9 @@
-"""Which parameters logs can determine, their joint fit by re-simulation, and intervals that hold under autocorrelated residuals."""
+"""Identifiability: which parameters logs can determine, by the covariance of the linearised fit (Ljung 1999, chapter 4), and their joint fit."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,48 +21,83 @@ from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.coherence import coherence
 
 
-def identifiable(problem: Problem, wanted: Sequence[int]) -> tuple[tuple[int, ...], dict[int, dict[str, Any]]]:
-    """Which slots these logs can determine, and why not the others; the least determined leaves first."""
-    out, left = dict[int, dict[str, Any]](), list(wanted)
+@dataclass(frozen=True, slots=True)
+class Unidentified:
+    """Why logs do not determine a parameter.
+
+    Attributes:
+        why: the reason in words.
+        beside: the parameters that it is most confused with, each with the coherence of the two sensitivities.
+    """
+
+    why: str
+    beside: tuple[tuple[str, float], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class IdentifiableFit:
+    """A joint fit of the parameters that logs determine.
+
+    Attributes:
+        fit: the fit; None where no parameter is left.
+        low, high: 90 % interval of each fitted slot (k,), in the parameter's unit.
+        unidentified: the others, by slot.
+    """
+
+    fit: HypothesisFit | None
+    low: Array
+    high: Array
+    unidentified: dict[int, Unidentified]
+
+
+def identifiable(problem: Problem, wanted: Sequence[int]) -> tuple[tuple[int, ...], dict[int, Unidentified]]:
+    """Which of the slots ``wanted`` these logs can determine, and why not the others.
+
+    First each by itself (`IDENTIFIABLE_ALONE`), then jointly with coefficients within tolerance, by the covariance of the linearised fit; the least
+    determined is left out until all that are left are determined (`IDENTIFIABLE_JOINTLY`).
+    """
+    out, left = dict[int, Unidentified](), list(wanted)
     information = problem.likelihood.total.A.sum(axis=0) / problem.design_effect
     typical = {s: problem.plant.slots[s].parameter.typical for s in (*wanted, *problem.tolerance.sd)}
     for slot in wanted:
         at = int(problem.likelihood.total.place((slot,))[0])
-        if (seen := float(np.sqrt(information[at, at])) * typical[slot]) < IDENTIFIABLE_ALONE:
+        if (errors := float(np.sqrt(information[at, at])) * typical[slot]) < IDENTIFIABLE_ALONE:
             left.remove(slot)
-            why = f"not excited: a typical size would show with {seen:.1f} standard errors in these logs, {IDENTIFIABLE_ALONE:g} are needed"
-            out[slot] = unidentified_row(why)
+            why = f"not excited: a typical size would show with {errors:.1f} standard errors in these logs, {IDENTIFIABLE_ALONE:g} are needed"
+            out[slot] = Unidentified(why)
     while left:
         tolerated = [c for c in problem.tolerance.sd if c not in left]
         free = problem.likelihood.total.place((*left, *tolerated))
         prior = [PRIOR_WIDTH * typical[s] for s in left] + [problem.tolerance.sd[c] for c in tolerated]
         covariance = np.linalg.inv(information[np.ix_(free, free)] + np.diag(1.0 / np.array(prior) ** 2))
-        shown = np.array([typical[s] for s in left]) / np.sqrt(np.diag(covariance)[: len(left)])
-        if shown.min() >= IDENTIFIABLE_JOINTLY:
+        errors_of = np.array([typical[s] for s in left]) / np.sqrt(np.diag(covariance)[: len(left)])
+        if errors_of.min() >= IDENTIFIABLE_JOINTLY:
             break
-        worst = left.pop(int(shown.argmin()))
-        why = f"not told apart: a typical size shows with {shown.min():.1f} standard errors while the others move"
+        worst = left.pop(int(errors_of.argmin()))
+        why = f"not told apart: a typical size shows with {errors_of.min():.1f} standard errors while the others move"
         out[worst] = confused_with(problem, worst, (*left, *tolerated), why)
     return tuple(left), out
 
 
-def confused_with(problem: Problem, slot: int, others: Sequence[int], why: str) -> dict[str, Any]:
-    """What a slot that is excited is confused with: tuned ones and coefficients within tolerance, by coherence; what only a start elsewhere shows (an
-    onset, a period) has no signature of its own."""
+def confused_with(problem: Problem, slot: int, others: Sequence[int], why: str) -> Unidentified:
+    """A slot with the two of ``others`` whose sensitivities are most coherent with its own; parameters that have no sensitivity at the nominal vehicle (an
+    onset, a period of an effect of no size) are passed over."""
     others = [s for s in others if s != slot and s in problem.likelihood.total.columns]
     beside = sorted(((problem.plant.slots[s].key, coherence(problem.likelihood.total, (slot,), (s,))) for s in others), key=lambda x: -x[1])
     named = " and ".join(f"{name} ({value:.2f})" for name, value in beside[:2])
-    return unidentified_row(f"{why}; most like {named}" if named else why, beside[:2])
+    return Unidentified(f"{why}; most like {named}" if named else why, tuple(beside[:2]))
 
 
 def fit_identifiable(
     problem: Problem, slots: tuple[int, ...], near: Posterior | None = None, kept: Sequence[int] = ()
-) -> tuple[HypothesisFit | None, Array, Array, dict[int, dict[str, Any]]]:
-    """The joint fit with its 90 % intervals; slots whose interval says nothing at the fitted point are put back and the rest refitted.
+) -> IdentifiableFit:
+    """The joint fit of ``slots``; one whose interval at the fitted point is too wide (`WIDEST_INTERVAL`) is put back to the file's value and the rest fitted
+    again.
 
-    With ``near``, quickly, from there and with frozen sensitivities of the tolerances there; ``kept`` are fitted whatever their interval.
+    With ``near`` a quick fit that begins there and keeps its sensitivities to coefficients within tolerance; slots ``kept`` are fitted whatever
+    their interval.
     """
-    out = dict[int, dict[str, Any]]()
+    out = dict[int, Unidentified]()
     while slots:
         fitted = fit_hypothesis(problem, problem.origin, slots) if near is None else fit_quickly(problem, near.beta, slots, near.whitened)
         errors = standard_errors(problem, fitted)
@@ -71,14 +106,9 @@ def fit_identifiable(
         half = 0.5 * (high - low) / [problem.plant.slots[s].parameter.typical for s in slots]
         half[[s in kept for s in slots]] = 0.0
         if half.max() <= WIDEST_INTERVAL:
-            return fitted, low, high, out
+            return IdentifiableFit(fitted, low, high, out)
         worst = slots[int(half.argmax())]
-        why = f"not told apart: its 90 % interval with slop of the others is +-{half.max():.1f} typical sizes"
+        why = f"not told apart: its 90 % interval with tolerance of the others is +-{half.max():.1f} typical sizes"
         out[worst] = confused_with(problem, worst, tuple(dict.fromkeys((*slots, *problem.tolerance.sd))), why)
         slots = tuple(s for s in slots if s != worst)
-    return None, np.zeros(0), np.zeros(0), out
-
-
-def unidentified_row(why: str, beside: Sequence[tuple[str, float]] = ()) -> dict[str, Any]:
-    """The row of a parameter that is left where it was: why, and what it is confused with."""
-    return {"why": why, "with": [{"parameter": name, "coherence": value} for name, value in beside]}
+    return IdentifiableFit(None, np.zeros(0), np.zeros(0), out)

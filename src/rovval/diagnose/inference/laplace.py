@@ -1,4 +1,4 @@
-"""A point in parameter space where effects and coefficients within tolerance are fitted: cost, step and evidence there, by its linearisation."""
+"""Laplace approximation of the posterior of effects and coefficients within tolerance (MacKay 1992; Kass and Raftery 1995): cost, step, evidence."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rovval.diagnose.residuals.ridge import losses
 
 @dataclass(frozen=True, slots=True)
 class Posterior:
-    """Quadratic expansion of the log posterior about ``beta``, effects and tolerances together (Laplace approximation: MacKay 1992).
+    """Quadratic expansion of the log posterior about ``beta``, effects and coefficients within tolerance (Laplace approximation: MacKay 1992).
 
     Cost is twice the negative log posterior times the design effect: squared residuals plus precision times squared departures.
 
@@ -47,56 +47,58 @@ class Posterior:
 
     @property
     def descent(self) -> Array:
-        """Descent of loss and prior along each column."""
+        """Negative half gradient of the cost (k,)."""
         return np.asarray(self.total.b.sum(axis=0) - self.precision * self.departure)
 
     @property
     def curvature(self) -> Array:
-        """Second derivative of loss and prior."""
+        """Half the Hessian of the cost (k, k), Gauss-Newton approximation."""
         return np.asarray(self.total.A.sum(axis=0) + np.diag(self.precision))
 
     def cost(self) -> float:
-        """Loss and prior here, what stays in the tangent at its best."""
+        """Cost at the point, columns that are moved in the linearisation only at their optimum."""
         return self._below(self.tangent_only)
 
     def predicted_cost(self) -> float:
-        """Loss and prior once one more linear step of every column is taken."""
+        """Cost that the linearisation predicts after one more step in every column."""
         return self._below(np.ones(len(self.columns), dtype=bool))
 
     def step(self, which: np.ndarray) -> Array:
-        """Gauss-Newton step (len(columns),) that the windows ``which`` ask for."""
+        """Gauss-Newton step (k,) of the windows ``which`` (m,)."""
         slope = self.total.b[which].sum(axis=0) - self.precision * self.departure
         return self.solve(self.total.A[which].sum(axis=0) + np.diag(self.precision), slope)
 
     def solve(self, H: Array, slope: Array, among: np.ndarray | None = None) -> Array:
-        """H^-1 slope for the columns that are free to go that way; columns pushed against a bound stay."""
+        """H^-1 slope (k,) in the columns ``among`` (all by default); zero for a column that it would push beyond the bound it is on."""
         free = (self.bound_side * slope <= 0) if among is None else (self.bound_side * slope <= 0) & among
         step = np.zeros(len(slope))
         step[free] = np.linalg.solve(H[np.ix_(free, free)], slope[free])
         return step
 
     def standardised_departures(self) -> Array:
-        """Departure of each coefficient that has a tolerance in standard deviations of its tolerance, one linear step ahead."""
+        """Standardised departure of each coefficient within tolerance, in standard deviations of its prior, one linear step ahead."""
         step = self.solve(self.curvature, self.descent)
         return np.asarray((self.departure + step)[self.effect_count :] * np.sqrt(self.precision[self.effect_count :]))
 
     def largest_departure(self) -> float:
-        """Standard deviations by which the most strained healthy coefficient is off."""
+        """Largest absolute standardised departure; 0 without tolerances."""
         return float(np.abs(self.standardised_departures()).max(initial=0.0))
 
     def dynamics_loss(self) -> Array:
-        """Loss of the dynamics per window (m,), what stays in the tangent at its best."""
+        """Weighted squared residual (m,) of the dynamics in each window, columns that are moved in the linearisation only at their optimum."""
         step = self.solve(self.curvature, self.descent, self.tangent_only)
         return losses(self.dynamics, np.arange(len(step)), step, np.ones(len(self.dynamics.c), dtype=bool))
 
     def _below(self, among: np.ndarray) -> float:
+        """Cost after one linear step in the columns ``among`` (k,)."""
         slope = self.descent
         whole = float(self.total.c.sum()) + float((self.precision * self.departure**2).sum())
         return whole - float(slope @ self.solve(self.curvature, slope, among))
 
 
 def resampled_evidence(problem: Problem, point: Posterior, counts: Array) -> Array:
-    """Twice the log evidence (d,) of a point on windows weighted by ``counts`` (d, m), over the vehicle as it is (Laplace; MacKay 1992)."""
+    """Twice the log Bayes factor (d,) of the model fitted at ``point`` over the vehicle as its file has it, for d resamples in which each window occurs
+    ``counts`` (d, m) times (Laplace approximation: Kass and Raftery 1995, section 4.1)."""
     found = np.empty(len(counts))
     k = len(point.columns)
     flat = point.total.A.reshape(len(point.total.A), -1)
@@ -111,5 +113,5 @@ def resampled_evidence(problem: Problem, point: Posterior, counts: Array) -> Arr
 
 
 def laplace_evidence(problem: Problem, point: Posterior) -> float:
-    """Evidence of a point on every window once."""
+    """Twice the log Bayes factor of the model fitted at ``point`` over the vehicle as its file has it, on every window once."""
     return float(resampled_evidence(problem, point, np.ones((1, problem.window_count)))[0])

@@ -1,8 +1,7 @@
-"""MAP fit of effects and coefficients within tolerance together by re-simulation: the most probable point of both, linearised there.
+"""MAP fit by re-simulation: the most probable values of effects and of coefficients within tolerance, by a damped Gauss-Newton iteration.
 
-Slop moves in the simulation itself, not only in its tangent: a coefficient that has to go far from its tolerance is seen to, and what a
-hypothesis then still gains is gained over a vehicle whose coefficients are as good as a careful calibration makes them. The sensors'
-tolerances, small and nearly linear, stay in the tangent.
+Coefficients within tolerance move in the simulation itself, not only in its linearisation: the gain of a hypothesis is then one over a vehicle whose
+coefficients are as a careful calibration would have them. The sensors' tolerances, small and nearly linear, stay in the linearisation.
 """
 
 from __future__ import annotations
@@ -20,6 +19,7 @@ from rovval.diagnose.criteria import (
     QUICK_STEPS,
     RELINEARISED_FROM,
     RELINEARISED_TIMES,
+    STEP_SHARES,
     STEP_WORTH,
 )
 from rovval.diagnose.inference.laplace import Posterior
@@ -28,15 +28,12 @@ from rovval.diagnose.residuals.normal_equations import Whitened, with_frozen_col
 from rovval.diagnose.residuals.sensitivities import linearise
 from rovval.plant import Plant
 
-SHORTER = (1.0, 0.4, 0.1)  # shares of the Gauss-Newton step that are tried
-
 
 def map_fit(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[Whitened, ...] | None = None, rounds: int = MAP_STEPS) -> Posterior:
-    """Fit ``slots`` and coefficients within tolerance jointly from ``start``.
+    """Fit ``slots`` and coefficients within tolerance jointly from ``start`` (p,), in ``rounds`` steps at most; the posterior at the optimum.
 
-    With ``near``, the sensitivities of coefficients within tolerance and of the windows' starts are taken from a linearisation nearby; else
-    they are made at ``start``, and
-    made anew, `RELINEARISED_TIMES` times at most, where the fit ends far from it. Slop moves in the simulation all the same.
+    Sensitivities to the slots are taken anew at every step. Those to coefficients within tolerance and to initial states are frozen: those of ``near``, or
+    of ``start``, and then taken anew `RELINEARISED_TIMES` times at most where the fit ends far from it.
     """
     if near is not None:
         return _descended(problem, posterior_at(problem, start, _columns(problem, slots), len(slots), near), near, rounds)
@@ -55,9 +52,11 @@ def healthy_fit(problem: Problem) -> Posterior:
 
 
 def progressive_start(problem: Problem, start: Array, slots: tuple[int, ...]) -> Array:
-    """Parameters (k,) of the MAP fit from ``start`` to the beginning of each window, and from there to more of it. Over ten seconds
-    a vehicle that rolls freely, or that something
-    holds, forgets how it began, and a fit of the whole window from far away ends in the first of many valleys."""
+    """Parameters (p,) of MAP fits from ``start`` to the first `PROGRESSIVE_S` of each window, one after the other.
+
+    Over a whole window a vehicle that rolls freely, or is held, loses the phase of its motion, and a fit from far away ends in the nearest of many local
+    minima; over short windows the loss has few.
+    """
     beta = start
     for seconds in PROGRESSIVE_S:
         beta = map_fit(_begun(problem, seconds), beta, slots).beta
@@ -65,8 +64,10 @@ def progressive_start(problem: Problem, start: Array, slots: tuple[int, ...]) ->
 
 
 def refit_healthy(problem: Problem, before: Posterior, point: Posterior, slots: tuple[int, ...]) -> Posterior:
-    """The healthy vehicle, settled again from where they are at ``point``, its ``slots`` gone, or as it was ``before`` where that is better:
-    every search is local, and no cause is to gain by another start."""
+    """The healthy fit begun at the coefficients of ``point``, its ``slots`` null, where that ends better than the fit ``before``; else ``before``.
+
+    Every fit is local: a cause must not gain over the healthy vehicle by another start alone.
+    """
     start = point.beta.copy()
     start[list(slots)] = problem.origin[list(slots)]
     if map_fit(problem, start, (), before.whitened, QUICK_STEPS).predicted_cost() >= before.predicted_cost():
@@ -78,19 +79,20 @@ def refit_healthy(problem: Problem, before: Posterior, point: Posterior, slots: 
 def _begun(problem: Problem, seconds: float) -> Problem:
     """The problem with nothing but the first ``seconds`` of each window."""
     n = round(seconds / problem.runs[0].run.dt) + 1
-    parts = [
+    runs = [
         replace(p, steps=n - 1, y=p.y[:, :n], ok=p.ok[:, :n], disturbance_response=None if p.disturbance_response is None else p.disturbance_response[:, :n])
         for p in problem.runs if p.steps >= n
     ]  # fmt: skip
-    return replace(problem, runs=tuple(parts), likelihood=replace(problem.likelihood, variance=problem.likelihood.variance[:n])) if parts else problem
+    return replace(problem, runs=tuple(runs), likelihood=replace(problem.likelihood, variance=problem.likelihood.variance[:n])) if runs else problem
 
 
 def _columns(problem: Problem, slots: tuple[int, ...]) -> tuple[int, ...]:
+    """The slots, then every other one that has a tolerance."""
     return (*slots, *(c for c in problem.tolerance.sd if c not in slots))
 
 
 def _descended(problem: Problem, point: Posterior, slopes: tuple[Whitened, ...], rounds: int) -> Posterior:
-    """The point that damped steps reach, the tolerances' ``slopes`` kept."""
+    """The point that ``rounds`` damped steps reach at most, with frozen sensitivities ``slopes`` to coefficients within tolerance."""
     for _ in range(rounds):
         better = _better(problem, point, slopes)
         if better is None:
@@ -102,28 +104,30 @@ def _descended(problem: Problem, point: Posterior, slopes: tuple[Whitened, ...],
 
 
 def moved_to(problem: Problem, point: Posterior, slot: int, value: float) -> Posterior:
-    """The point with one slot elsewhere, frozen sensitivities of the tolerances kept."""
+    """The posterior about the same point with one slot at ``value``, sensitivities to coefficients within tolerance frozen."""
     beta = point.beta.copy()
     beta[slot] = value
     return posterior_at(problem, beta, point.columns, point.effect_count, point.whitened)
 
 
 def tangent_slots(plant: Plant) -> frozenset[int]:
-    """Slots that stay in the tangent as long as they are within tolerance: those of the sensors."""
+    """Slots whose departures within tolerance are moved in the linearisation only: those of the sensors."""
     return frozenset(i for i, slot in enumerate(plant.slots) if effects.load(slot.effect).place == "sensor")
 
 
 def posterior_at(problem: Problem, beta: Array, columns: tuple[int, ...], own: int, near: tuple[Whitened, ...] | None = None) -> Posterior:
-    """Linearise about ``beta``: all columns, or the effects' own with frozen sensitivities of all others and of the windows' starts from ``near``."""
+    """The posterior about ``beta`` (p,) in ``columns``, of which the first ``own`` are effects'; with ``near``, sensitivities to the others and to initial
+    states are taken from there."""
     if near is None:
-        there = whitened(problem, [linearise(part, beta, columns[:own], coarse=columns[own:]) for part in problem.runs])
+        there = whitened(problem, [linearise(windows, beta, columns[:own], coarse=columns[own:]) for windows in problem.runs])
     else:
-        mine = [linearise(part, beta, columns[:own], starts=False) for part in problem.runs]
+        mine = [linearise(windows, beta, columns[:own], starts=False) for windows in problem.runs]
         there = tuple(with_frozen_columns(one, other, columns[own:]) for one, other in zip(mine, near, strict=True))
     return _point(problem, beta, own, there)
 
 
 def _point(problem: Problem, beta: Array, own: int, there: tuple[Whitened, ...]) -> Posterior:
+    """The posterior about ``beta`` of which ``there`` is the linearisation."""
     dynamic, data = equations_of(problem, beta, there)
     columns = data.columns
     parameters = [problem.plant.slots[s].parameter for s in columns]
@@ -136,9 +140,9 @@ def _point(problem: Problem, beta: Array, own: int, there: tuple[Whitened, ...])
 
 
 def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...]) -> Posterior | None:
-    """The next point of a damped Gauss-Newton iteration, None where no step gains more than a `STEP_WORTH`."""
+    """The next point of the damped Gauss-Newton iteration; None where none of `STEP_SHARES` gains more than `STEP_WORTH`."""
     step = np.where(point.tangent_only, 0.0, point.solve(point.curvature, point.descent))
-    for share in SHORTER:
+    for share in STEP_SHARES:
         beta = _clipped(problem, point, share * step)
         data = equations_with_frozen(problem, beta, point.whitened)
         if data is None:
@@ -152,7 +156,7 @@ def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...]) -> P
 def _clipped(problem: Problem, point: Posterior, step: Array) -> Array:
     """The step, stopped at the parameters' bounds (a parameter that rests there is reported as such)."""
     trial = point.beta.copy()
-    for slot, part in zip(point.columns, step, strict=True):
+    for slot, own in zip(point.columns, step, strict=True):
         parameter = problem.plant.slots[slot].parameter
-        trial[slot] = min(max(point.beta[slot] + part, parameter.low), parameter.high)
+        trial[slot] = min(max(point.beta[slot] + own, parameter.low), parameter.high)
     return trial

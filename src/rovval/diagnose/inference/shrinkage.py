@@ -1,4 +1,4 @@
-"""How far the gap shrinks with effects added: in all and per axis, on windows that the parameters were not fitted on.
+"""Held-out reduction of the prediction error by effects that are added ("shrinkage" in the document): in all and by axis.
 
 Every window is scored with the parameters that the other folds give, in the model linearised about the fitted point, as the held-out
 losses of `fit_hypothesis` are; intervals are 90 % block bootstraps over windows.
@@ -6,9 +6,9 @@ losses of `fit_hypothesis` are; intervals are 90 % block bootstraps over windows
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
-from typing import Any, TypeVar
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -28,45 +28,71 @@ from rovval.diagnose.windows.windows import Windows
 
 T = TypeVar("T")
 
-NO_SHRINKAGE = {"total": 0.0, "low": 0.0, "high": 0.0, "of_explainable": 0.0, "axes": {}, "axes_interval": {}, "held_out": True}
+@dataclass(frozen=True, slots=True)
+class AxisInterval:
+    """90 % interval of an axis's reduction."""
+
+    low: float
+    high: float
 
 
-def shrinkage(problem: Problem, fitted: HypothesisFit | None, before: list[Array], seed: int) -> dict[str, Any]:
-    """1 - gap(with effects) / gap(nominal), with the share of what lies above the noise floor and the same for each measured axis.
+@dataclass(frozen=True, slots=True)
+class GapReduction:
+    """Relative reduction of the squared prediction error by effects that are added: 1 - error after / error before, without unit.
 
-    ``before`` are the nominal vehicle's residuals, as `problem.corrected_residuals` gives them.
+    Attributes:
+        total: over all axes, each residual weighted by its covariance; negative where the error grows.
+        low, high: 90 % interval of ``total``.
+        of_explainable: the same as a share of the error above the noise floor of the sensors, 1 at most.
+        axes: reduction of each measured axis; empty where nothing was added.
+        axes_interval: its interval.
+        held_out: whether every window was scored with parameters that were fitted without it.
+    """
+
+    total: float = 0.0
+    low: float = 0.0
+    high: float = 0.0
+    of_explainable: float = 0.0
+    axes: Mapping[str, float] = field(default_factory=dict)
+    axes_interval: Mapping[str, AxisInterval] = field(default_factory=dict)
+    held_out: bool = True
+
+
+def shrinkage(problem: Problem, fitted: HypothesisFit | None, before: list[Array], seed: int) -> GapReduction:
+    """Held-out reduction of the squared prediction error by the effects of ``fitted``; zero where it is None.
+
+    ``before`` are the nominal vehicle's residuals (m, n, c) of each run, as `problem.corrected_residuals` gives them; ``seed`` is the bootstrap's.
     """
     if fitted is None:
-        return dict(NO_SHRINKAGE)
+        return GapReduction()
     return shrinkage_of(problem, fitted.dynamics_loss, held_out_residuals(problem, fitted), before, seed)
 
 
-def shrinkage_of(problem: Problem, loss: Array, after: list[Array], before: list[Array], seed: int) -> dict[str, Any]:
-    """The shrinkage of held-out losses (m,) and residuals ``after`` over the nominal vehicle's ``before``."""
+def shrinkage_of(problem: Problem, loss: Array, after: list[Array], before: list[Array], seed: int) -> GapReduction:
+    """The reduction from held-out losses (m,) and residuals ``after``, over the nominal vehicle's residuals ``before``: (m, n, c) of each run."""
     value, low, high = shrinkage_interval(problem.gap.dynamics.c, loss, seed)
     nominal, now = squared_errors(problem, before), squared_errors(problem, after)
     measured = {axis: square > 0 for axis, square in nominal.items() if square.sum() > 0}
     axes = {axis: shrinkage_interval(nominal[axis][seen], now[axis][seen], seed) for axis, seen in measured.items()}
-    return {
-        "total": value,
-        "low": low,
-        "high": high,
-        "of_explainable": _explainable(problem, loss),
-        "axes": {axis: share for axis, (share, _, _) in axes.items()},
-        "axes_interval": {axis: {"low": bottom, "high": top} for axis, (_, bottom, top) in axes.items()},
-        "held_out": True,
-    }
+    return GapReduction(
+        total=value,
+        low=low,
+        high=high,
+        of_explainable=_explainable(problem, loss),
+        axes={axis: share for axis, (share, _, _) in axes.items()},
+        axes_interval={axis: AxisInterval(bottom, top) for axis, (_, bottom, top) in axes.items()},
+    )
 
 
-def worsened_axes(shrunk: dict[str, Any]) -> list[dict[str, Any]]:
-    """Axes that get more than `HARMED_AXIS` worse with the effects added."""
-    return [{"axis": axis, "change": -share} for axis, share in shrunk["axes"].items() if share < -HARMED_AXIS]
+def worsened_axes(reduction: GapReduction) -> dict[str, float]:
+    """Relative growth of the squared error on each axis where it grows by more than `HARMED_AXIS` with the effects added."""
+    return {axis: -share for axis, share in reduction.axes.items() if share < -HARMED_AXIS}
 
 
 def held_out_residuals(problem: Problem, fitted: HypothesisFit) -> list[Array]:
     """Residual (m, n, c) of each run's windows with the parameters that the other folds give, best initial states taken out."""
     moved = held_out_linearisations(problem, fitted)
-    return [nuisance_corrected(one, part.ok, problem.gap.variance, initial_state_sd(part)) for part, one in zip(problem.runs, moved, strict=True)]
+    return [nuisance_corrected(one, windows.ok, problem.gap.variance, initial_state_sd(windows)) for windows, one in zip(problem.runs, moved, strict=True)]
 
 
 def held_out_linearisations(problem: Problem, fitted: HypothesisFit) -> list[Linearisation]:
@@ -74,23 +100,25 @@ def held_out_linearisations(problem: Problem, fitted: HypothesisFit) -> list[Lin
     step = np.zeros((problem.window_count, len(fitted.slots)))
     for fold, own in held_out_steps(problem, fitted):
         step[fold.test] = own
-    ends = np.cumsum([part.count for part in problem.runs])[:-1]
+    ends = np.cumsum([windows.count for windows in problem.runs])[:-1]
     found = []
-    for part, own in zip(problem.runs, np.split(step, ends), strict=True):
-        one = linearise(part, fitted.beta, fitted.slots)
-        found.append(replace(one, r=np.where(part.ok, one.r - np.einsum("wtck,wk->wtc", one.S, own), 0.0)))
+    for windows, own in zip(problem.runs, np.split(step, ends), strict=True):
+        one = linearise(windows, fitted.beta, fitted.slots)
+        found.append(replace(one, r=np.where(windows.ok, one.r - np.einsum("wtck,wk->wtc", one.S, own), 0.0)))
     return found
 
 
 def _explainable(problem: Problem, loss: Array) -> float:
-    """Share of the gap above the noise floor that is closed, on held-out windows."""
+    """Reduction on held-out windows as a share of the weighted squared error above the noise floor, 1 at most."""
     gap, floor = float(problem.gap.dynamics.c.sum()), float(noise_floor_loss(problem).sum())
     return float(min((gap - float(loss.sum())) / max(gap - floor, 1e-12), 1.0))
 
 
-def refitted_shrinkage(problem: Problem, fitted: HypothesisFit, before: Sequence[Array], tolerance: float, seed: int) -> dict[str, Any]:
-    """As `shrinkage.shrinkage`, each fold scored with the parameters that a fit without its windows gives; the gap is told in ``problem``'s
-    metric, as every other shrinkage is."""
+def refitted_shrinkage(problem: Problem, fitted: HypothesisFit, before: Sequence[Array], tolerance: float, seed: int) -> GapReduction:
+    """As `shrinkage`, each fold scored with the parameters that a fit by re-simulation without its windows gives, rather than one linear step.
+
+    ``tolerance`` is relative: noise and disturbances of the remaining windows are estimated anew with it.
+    """
     loss, now = np.zeros(problem.window_count), [residual.copy() for residual in before]
     for fold in _folds(problem):
         beta = _without(problem, fitted, fold, tolerance)
@@ -106,10 +134,11 @@ def _folds(problem: Problem) -> tuple[Fold, ...]:
 
 
 def _without(problem: Problem, fitted: HypothesisFit, fold: Fold, tolerance: float) -> Array:
-    """Parameters (k,) of the fitted slots that the other windows give, from where all of them stood; frozen sensitivities of the tolerances stay."""
-    parts = [_some(part, which) for part, which in _by_run(problem, problem.runs, fold.train) if which.any()]
+    """Parameters (k,) with the fitted slots as the windows outside ``fold.test`` give them; the fit begins at the fit of all windows, whose sensitivities to
+    coefficients within tolerance it keeps."""
+    runs = [_some(windows, which) for windows, which in _by_run(problem, problem.runs, fold.train) if which.any()]
     slopes = [(one.S[which], one.columns) for one, which in _by_run(problem, fitted.posterior.linear, fold.train) if which.any()]
-    less = pose(tuple(parts), Columns(), tolerance)
+    less = pose(tuple(runs), Columns(), tolerance)
     near = [replace(one, S=S, columns=columns) for one, (S, columns) in zip(less.nominal, slopes, strict=True)]
     point = map_fit(less, fitted.posterior.beta, fitted.slots, whitened(less, near))
     beta = problem.origin.copy()
@@ -117,13 +146,13 @@ def _without(problem: Problem, fitted: HypothesisFit, fold: Fold, tolerance: flo
     return beta
 
 
-def _some(part: Windows, which: np.ndarray) -> Windows:
-    """The windows ``which`` (m,) of a run, the disturbances of which nobody knows yet."""
-    kept = {name: getattr(part, name)[which] for name in ("start", "nu0", "eta0", "y", "ok")}
-    return replace(part, disturbance_response=None, **kept)
+def _some(windows: Windows, which: np.ndarray) -> Windows:
+    """The windows ``which`` (m,) of a run, their disturbances not estimated yet."""
+    kept = {name: getattr(windows, name)[which] for name in ("start", "nu0", "eta0", "y", "ok")}
+    return replace(windows, disturbance_response=None, **kept)
 
 
 def _by_run(problem: Problem, items: Sequence[T], which: np.ndarray) -> Iterator[tuple[T, np.ndarray]]:
-    """What belongs to each run, with which (m,) of its windows are meant."""
-    ends = np.cumsum([part.count for part in problem.runs])[:-1]
+    """Each run's one of ``items``, with the part of ``which`` (all windows,) that is of its own windows (m,)."""
+    ends = np.cumsum([windows.count for windows in problem.runs])[:-1]
     return zip(items, np.split(which, ends), strict=True)

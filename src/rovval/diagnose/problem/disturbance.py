@@ -2,7 +2,7 @@
 
 Under an autopilot the thrusters answer whatever pushes the vehicle. A replay gets their answers without the push, and errs by both; unless the push
 is a nuisance of the fit, that error is read as a fault of the model (closed-loop identification: Ljung 1999, section 13.4). The force on an axis is
-an Ornstein-Uhlenbeck process (Uhlenbeck and Ornstein 1930), constant in each of `SEGMENTS` segments of a window; its standard deviation and its
+an Ornstein-Uhlenbeck process (Uhlenbeck and Ornstein 1930), constant in each of `DISTURBANCE_SEGMENTS` segments of a window; its standard deviation and its
 correlation time are found by expectation and maximisation (Dempster, Laird and Rubin 1977) on what the whole library and steady forces of the
 environment leave.
 """
@@ -18,18 +18,23 @@ from scipy.linalg import block_diag
 
 from rovval.core.channels import AXES
 from rovval.core.data import Array
-from rovval.diagnose.criteria import COVERED_BY_NOISE, SEGMENT_CORRELATION, STEADY_FORCE_SD
+from rovval.diagnose.criteria import (
+    COVERED_BY_NOISE,
+    DISTURBANCE_ROUNDS,
+    DISTURBANCE_SEGMENTS,
+    INITIAL_DISTURBANCE,
+    INITIAL_MEMORY_S,
+    SEGMENT_CORRELATION,
+    STEADY_FORCE_SD,
+)
 from rovval.diagnose.residuals.external_forces import force_sensitivities, generic_force_responses, typical_wrench
 from rovval.diagnose.residuals.normal_equations import Linearisation, NormalEquations, concatenated, normal_equations
 from rovval.diagnose.residuals.nuisances import initial_state_sd
 from rovval.diagnose.residuals.ridge import Prior, ridge_step
 from rovval.diagnose.windows.windows import Windows
 
-SEGMENTS = 12  # of a window in which a force holds still: 0.8 s of 10 s, well below the period at which a small ROV rolls
-ROUNDS = 10  # of expectation and maximisation
-FIRST, FIRST_S = 0.1, 1.0  # guesses: of the thrusters' own rms on an axis, and the time in which a force forgets itself
 ENVIRONMENT = ("constant", "cos heading", "sin heading", "depth", "time")  # systematic forces that are no disturbance
-LEAST = 1e-6  # of the same: smaller is none
+LEAST = 1e-6  # of the thrusters' rms on an axis: smaller is none, and a covariance stays invertible
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,8 +54,13 @@ class Disturbance:
 
 @dataclass(frozen=True, slots=True)
 class UnitResponses:
-    """What forces as large as the thrusters' rms ``wrench`` (6,), N and N m, do to the windows of each run: ``segments`` (m, n, c, 6 * SEGMENTS) by a
-    force on one axis in one segment of every window, ``steady`` (m, n, c, f) by steady forces of the environment."""
+    """What forces of the thrusters' rms on each axis do to the residual channels.
+
+    Attributes:
+        wrench: rms of the thrusters on each axis (6,), N and N m.
+        segments: response of each run's windows (m, n, c, 6 s) to such a force on one axis in one of their s segments.
+        steady: response of each run's windows (m, n, c, f) to steady forces of the environment.
+    """
 
     wrench: Array
     segments: tuple[Array, ...]
@@ -74,7 +84,7 @@ def no_disturbance() -> Disturbance:
 
 def initial_disturbance(responses: UnitResponses) -> Disturbance:
     """The guess that expectation and maximisation begins with."""
-    return Disturbance(FIRST * responses.wrench, np.full(len(AXES), FIRST_S), ())
+    return Disturbance(INITIAL_DISTURBANCE * responses.wrench, np.full(len(AXES), INITIAL_MEMORY_S), ())
 
 
 def estimate_disturbance(
@@ -89,7 +99,7 @@ def estimate_disturbance(
         replace(one, r=np.where(windows.ok, one.r - S @ strength, 0.0))
         for windows, one, S in zip(runs, left, responses.steady, strict=True)
     ]
-    segment_s = (runs[0].steps + 1) * runs[0].run.dt / SEGMENTS
+    segment_s = (runs[0].steps + 1) * runs[0].run.dt / DISTURBANCE_SEGMENTS
     share, correlation = before.rms / responses.wrench, np.exp(-segment_s / before.memory_s)
     share, correlation = _expectation_maximisation(_equations(runs, less, responses.segments, variance), share, correlation)
     root = np.linalg.cholesky(_covariance(share, correlation))
@@ -101,7 +111,7 @@ def unit_forces(windows: Windows) -> list[tuple[str, Array]]:
     return [(axis, on) for axis in AXES for on in segment_indicators(windows)]
 
 
-def segment_indicators(windows: Windows, count: int = SEGMENTS) -> list[Array]:
+def segment_indicators(windows: Windows, count: int = DISTURBANCE_SEGMENTS) -> list[Array]:
     """Series (run,) on the run's grid that are one in the first, second, ... of ``count`` segments of every window, and zero elsewhere."""
     edges = np.linspace(0, windows.steps + 1, count + 1).round().astype(int)
     found = [np.zeros(len(windows.run)) for _ in range(count)]
@@ -136,17 +146,17 @@ def _expectation_maximisation(data: NormalEquations, share: Array, correlation: 
 
     Expectation: posterior mean and covariance of every window's forces. Maximisation: their mean second moments over windows and segments.
     """
-    for _ in range(ROUNDS):
+    for _ in range(DISTURBANCE_ROUNDS):
         cover = np.linalg.inv(data.A + np.linalg.inv(_covariance(share, correlation)))
         mean = np.einsum("wij,wj->wi", cover, data.b)
-        square = (cover + mean[:, :, None] * mean[:, None, :]).mean(axis=0).reshape(len(AXES), SEGMENTS, len(AXES), SEGMENTS)
+        square = (cover + mean[:, :, None] * mean[:, None, :]).mean(axis=0).reshape(len(AXES), DISTURBANCE_SEGMENTS, len(AXES), DISTURBANCE_SEGMENTS)
         own = np.einsum("aiaj->aij", square)
-        alone, next_one = np.einsum("aii->a", own) / SEGMENTS, np.einsum("aii->a", own[:, :-1, 1:]) / (SEGMENTS - 1)
+        alone, next_one = np.einsum("aii->a", own) / DISTURBANCE_SEGMENTS, np.einsum("aii->a", own[:, :-1, 1:]) / (DISTURBANCE_SEGMENTS - 1)
         share, correlation = np.sqrt(alone), np.clip(next_one / alone, *SEGMENT_CORRELATION)
     return share, correlation
 
 
 def _covariance(share: Array, correlation: Array) -> Array:
-    """Covariance (6 SEGMENTS, 6 SEGMENTS) of the forces: the correlation of two segments falls geometrically with the number between them."""
-    apart = np.abs(np.subtract.outer(np.arange(SEGMENTS), np.arange(SEGMENTS)))
+    """Covariance (6 s, 6 s) of the forces in the s segments of a window: correlation falls geometrically with the number of segments between."""
+    apart = np.abs(np.subtract.outer(np.arange(DISTURBANCE_SEGMENTS), np.arange(DISTURBANCE_SEGMENTS)))
     return np.asarray(block_diag(*[max(s, LEAST) ** 2 * m**apart for s, m in zip(share, correlation, strict=True)]))

@@ -1,8 +1,8 @@
-"""The noise model of the residuals: what is white in them, and the disturbances that are not.
+"""The noise model of the residuals: their white variance, and disturbances.
 
-The white variance of a channel at a time in the window is sensor noise (from the log) and model-form error (what no hypothesis of the library explains
-of it); in the metric in which the gap is told, tolerance and disturbances are part of it. Disturbances are found in what the whole library leaves; it
-is fitted again in the metric that has them as nuisances, and so on.
+The white variance of a channel at a time in the window is that of sensor noise (from the log) and of model-form error (what a fit of the whole library
+leaves of the residuals); in the metric of the gap it is also that of tolerances and disturbances. Disturbances are estimated from what the library
+leaves; then the library is fitted again with them as nuisances, and so on (`NOISE_MODEL_ROUNDS`).
 """
 
 from __future__ import annotations
@@ -13,7 +13,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import DISTURBANCE_WINDOWS, LEAST_NOISE
+from rovval.diagnose.criteria import (
+    DISTURBANCE_WINDOWS,
+    FORM_ERROR_SMOOTHING,
+    INITIAL_DESIGN_EFFECT,
+    LEAST_NOISE,
+    NOISE_MODEL_ROUNDS,
+)
 from rovval.diagnose.problem.cross_validation import Fold, FoldSums, cross_validate
 from rovval.diagnose.problem.disturbance import (
     Disturbance,
@@ -34,20 +40,16 @@ from rovval.diagnose.residuals.nuisances import initial_state_sd, nuisance_sd
 from rovval.diagnose.residuals.ridge import Prior, estimated_design_effect
 from rovval.diagnose.windows.windows import Windows
 
-PASSES = 5  # then sizes stand to within a few per cent
-SMOOTH = 11  # samples over which the unexplained variance is smoothed along the window (1 s at 10 Hz)
-FIRST_DESIGN_EFFECT = 10.0  # of the first fit of the library, before anything is known of the residuals' autocorrelation
-
 
 @dataclass(frozen=True, slots=True)
 class NoiseModel:
     """What is known of the residuals' covariance.
 
     Attributes:
-        runs: the windows of each run, with what disturbances of one standard deviation do to them.
+        runs: the windows of each run, with their response to disturbances.
         linear: linearisation of each run, disturbances among its nuisances.
         white_variance: of each channel at each time in the window (n, c), beside the disturbances.
-        total_variance: the same with tolerance and disturbances in it, in which the gap is told.
+        total_variance: the same with tolerance and disturbances in it, of the metric of the gap.
         design_effect: of the autocorrelation that is left.
         disturbance: the forces that nobody logged.
     """
@@ -64,13 +66,22 @@ def fit_noise_model(
     runs: tuple[Windows, ...], linear: tuple[Linearisation, ...], columns: tuple[int, ...], tolerance: Prior, folds: tuple[Fold, ...],
     channel_factor: Array, origin: Array,
 ) -> NoiseModel:  # fmt: skip
-    """The noise model of windows that are linearised about ``origin`` (k,), ``columns`` first; ``channel_factor`` (c,) multiplies the variances of
-    channels that an autopilot holds (`windows.closed_loop`)."""
+    """Estimate the noise model.
+
+    Args:
+        runs: the windows of each run.
+        linear: linearisation of each run about the nominal vehicle, ``columns`` first.
+        columns: slots that the library is fitted with, each with its typical size as prior.
+        tolerance: prior of a healthy vehicle.
+        folds: of the cross-validation.
+        channel_factor: on the variance of each channel (c,), for the loop gain of an autopilot (`windows.closed_loop`).
+        origin: parameters of the nominal vehicle.
+    """
     library = Prior({c: runs[0].plant.slots[c].parameter.typical for c in columns})
     sensor, expected = _expected_variance(runs, linear, Prior({})), _expected_variance(runs, linear, tolerance)
     plain = tuple(replace(one, S=one.S[..., : len(columns)], columns=columns) for one in linear)
     first = equations_of_runs(runs, plain, expected, initial_state_sd)
-    design_effect = estimated_design_effect(first, cross_validate(FoldSums.of(first, folds), library, FIRST_DESIGN_EFFECT).step)
+    design_effect = estimated_design_effect(first, cross_validate(FoldSums.of(first, folds), library, INITIAL_DESIGN_EFFECT).step)
     best = cross_validate(FoldSums.of(first, folds), library, design_effect).step
     white = expected + _form_variance(runs, plain, expected, best)
     total = white * channel_factor
@@ -79,7 +90,7 @@ def fit_noise_model(
         return NoiseModel(runs, linear, total, total, design_effect, no_disturbance())
     responses = unit_responses(runs, origin)
     disturbance = initial_disturbance(responses)
-    for _ in range(PASSES):
+    for _ in range(NOISE_MODEL_ROUNDS):
         left = [replace(one, r=np.where(windows.ok, one.r - one.S @ best, 0.0)) for windows, one in zip(runs, plain, strict=True)]
         disturbance = estimate_disturbance(runs, responses, left, white, design_effect, disturbance)
         disturbed, beside = _with_disturbances(runs, plain, disturbance.response)
@@ -92,8 +103,8 @@ def fit_noise_model(
 def equations_of_runs(
     runs: Sequence[Windows], linear: Sequence[Linearisation], variance: Array, sd: Callable[[Windows], Array]
 ) -> NormalEquations:
-    """Normal equations of every run's windows behind one another, weighed by ``variance`` (n, c), the nuisances of which ``sd`` gives the standard
-    deviations marginalised."""
+    """Normal equations of the windows of all runs, in their order, with white ``variance`` (n, c) and the nuisances of which ``sd`` gives the prior standard
+    deviations."""
     return concatenated([normal_equations(one, windows.ok, variance, sd(windows)) for windows, one in zip(runs, linear, strict=True)])
 
 
@@ -135,7 +146,7 @@ def _form_variance(runs: Sequence[Windows], linear: Sequence[Linearisation], var
         rest = nuisance_corrected(left, windows.ok, variance, nuisance_sd(windows))
         total += (rest**2 * windows.ok).sum(axis=0)
         count += windows.ok.sum(axis=0)
-    kernel = np.ones(SMOOTH) / SMOOTH
+    kernel = np.ones(FORM_ERROR_SMOOTHING) / FORM_ERROR_SMOOTHING
     mean = total / np.maximum(count, 1)
-    padded = np.pad(mean, ((SMOOTH // 2, SMOOTH // 2), (0, 0)), mode="edge")
+    padded = np.pad(mean, ((FORM_ERROR_SMOOTHING // 2, FORM_ERROR_SMOOTHING // 2), (0, 0)), mode="edge")
     return np.stack([np.convolve(padded[:, i], kernel, mode="valid") for i in range(mean.shape[1])], axis=1)

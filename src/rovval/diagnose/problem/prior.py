@@ -1,4 +1,4 @@
-"""What a healthy simulator and healthy sensors may be off by, before anything is blamed: the prior that detection stands on.
+"""The prior of a healthy vehicle: by how much its coefficients and sensors may be off without being a cause.
 
 Coefficients are off by the declared calibration tolerance (`--calibration-slop`, one standard deviation, relative). Trim, mounting and sensors have
 tolerances of their own; each effect states its own (`effects.Tolerance`): what a careful installation of an ROV reaches.
@@ -13,19 +13,21 @@ from rovval.plant import Plant
 
 
 def tolerance_prior(plant: Plant, relative: float) -> Prior:
-    """Standard deviation by plant slot of what a healthy simulator and log may be off by, as each effect states it; empty where ``relative``, the
-    relative calibration tolerance, is zero."""
+    """Prior of the plant's parameters at a healthy vehicle, as each effect states it, about the values of the vehicle's file.
+
+    ``relative`` is the calibration tolerance, a relative standard deviation; the prior is empty where it is zero.
+    """
     if relative <= 0:
         return Prior({})
     stated = ((i, slot, slot.parameter.tolerance) for i, slot in enumerate(plant.slots))
     return Prior({i: t.of(slot.parameter, plant.vehicle, slot.target, relative) for i, slot, t in stated if t is not None})
 
 
-
-
 def loosened_by_closed_loop(prior: Prior, plant: Plant, gain: Mapping[str, float]) -> Prior:
-    """The tolerances of what turns the vehicle about an axis that an autopilot steadies with the loop ``gain``, and of how it rights itself, wider by as
-    much as the motion shows less of them (`effects.Tolerance`)."""
+    """The prior with wider tolerances for the moments about axes that an autopilot steadies, whose size its motion shows the less (`effects.Tolerance`).
+
+    ``gain`` is the loop gain by axis (`windows.closed_loop.loop_gains`).
+    """
     sd = dict(prior.sd)
     for s in sd:
         slot = plant.slots[s]

@@ -1,7 +1,7 @@
 """The estimation problem: windows of all runs, what is known beforehand of coefficients, noise and disturbances, and the two metrics of residuals.
 
-A *metric* is the covariance V = diag(variance) + J Sigma J^T in which residuals are weighed. In that of the *likelihood*, in which models are fitted
-and compared, disturbances are nuisances beside the initial states. In that of the *gap*, in which the prediction error and its reduction are told,
+A *metric* is the covariance V = diag(variance) + J Sigma J^T in which residuals are weighted. In that of the *likelihood*, in which models are fitted
+and compared, disturbances are nuisances beside the initial states. In that of the *gap*, in which the prediction error and its reduction are stated,
 they count as error, and the variance holds what they and the tolerances make.
 """
 
@@ -63,7 +63,7 @@ class Problem:
         tolerance: prior of the coefficients and sensors of a healthy vehicle.
         nominal: residuals and nuisances of each run at the nominal vehicle; no parameter columns, which are the bulk of a linearisation.
         likelihood: metric in which models are fitted and compared.
-        gap: metric in which the prediction error and its reduction are told.
+        gap: metric in which the prediction error and its reduction are stated.
         parity: parity residuals of each run.
         folds: windows that are held out together.
         design_effect: by how much autocorrelated residuals say less than independent ones (Kish 1965).
@@ -185,4 +185,5 @@ def corrected_residuals(problem: Problem, beta: Array | None = None) -> list[Arr
 
 
 def _parity_at(problem: Problem, beta: Array, columns: tuple[int, ...]) -> NormalEquations:
+    """Normal equations of the parity residuals of all runs about ``beta`` (k,)."""
     return concatenated([check.normal_equations(beta, columns, problem.design_effect) for check in problem.parity])

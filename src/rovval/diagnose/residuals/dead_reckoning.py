@@ -1,4 +1,4 @@
-"""Dead reckoning of the windows: measured velocities through the measured attitude, less the measured pose."""
+"""Dead reckoning: measured velocities integrated through the measured attitude (Fossen 2021, 2.2: eta' = J(eta) nu), less the measured pose."""
 
 from __future__ import annotations
 
@@ -6,20 +6,24 @@ import numpy as np
 
 from rovval.core.data import Array, Flags
 from rovval.core.frames import euler_rates, rotation_from_euler, wrap
+from rovval.diagnose.criteria import PARITY_MEASURED_SHARE
 from rovval.diagnose.windows.windows import Windows
 
-ROW_EVERY = 10  # samples between rows of a window: poses 1 s apart, whose errors are nearly independent
+ROW_EVERY = 10  # samples between the poses that are compared: 1 s apart, their errors are nearly independent
 RELATIONS = ("x", "y", "z", "phi", "theta", "psi")
 MARGIN = 15  # samples before and after a window that a sensor's memory needs: the longest delay of the library, 1.5 s
 
 
 def measured_motion(windows: Windows) -> tuple[Array, Array, Flags]:
-    """Velocities and poses of the windows and the `MARGIN` before and after them (m, MARGIN + n + MARGIN, 6), gaps bridged linearly, and which relations
-    the log can serve (6,). Beyond the log's ends the vehicle moves on as it does there."""
+    """Measured motion of the windows with a margin before and after each: (velocities, poses, checkable).
+
+    Velocities and poses are (m, MARGIN + n + MARGIN, 6), SI units and radians, gaps bridged linearly; beyond the log's ends the vehicle goes on at its mean
+    velocity there. ``checkable`` (6,) says which components of the pose the log holds with the velocities that they follow from.
+    """
     run = windows.run
     nu = np.stack([_bridged(run.get(c)) for c in ("u", "v", "w", "p", "q", "r")], axis=-1)
     eta = np.stack([_bridged(run.get(c), angle=c in RELATIONS[3:]) for c in RELATIONS], axis=-1)
-    nu, eta = _gone_on(nu, eta, run.dt)
+    nu, eta = _extended(nu, eta, run.dt)
     at = windows.start[:, None] + np.arange(windows.steps + 1 + 2 * MARGIN)[None, :]
     nu, eta = nu[at], eta[at]
     attitude = all(run.measured(c) for c in RELATIONS[3:])
@@ -29,20 +33,21 @@ def measured_motion(windows: Windows) -> tuple[Array, Array, Flags]:
 
 
 def without_margin(samples: Array) -> Array:
-    """The windows themselves of `measured` samples."""
+    """The samples (m, n, 6) of the windows themselves."""
     return samples[:, MARGIN:-MARGIN]
 
 
 def fully_measured(windows: Windows) -> Flags:
-    """Windows (m,) in which velocity and attitude were measured nearly throughout (bridged gaps would look like faults)."""
+    """Windows (m,) in which velocities and attitude were measured nearly throughout; in others bridged gaps would look like faults."""
     run = windows.run
     at = windows.start[:, None] + np.arange(windows.steps + 1)[None, :]
     needed = [c for c in ("u", "v", "w", "p", "q", "r", "phi", "theta", "psi") if run.measured(c)]
-    return np.asarray(np.all([run.ok(c)[at].mean(axis=1) > 0.9 for c in needed], axis=0))
+    return np.asarray(np.all([run.ok(c)[at].mean(axis=1) > PARITY_MEASURED_SHARE for c in needed], axis=0))
 
 
 def pose_drift(nu: Array, eta: Array, dt: float) -> Array:
-    """Dead-reckoned less measured pose (m, rows, 6) at every row, mean of the window taken out. Trapezoidal rule."""
+    """Dead-reckoned less measured pose (m, rows, 6), m and rad, every `ROW_EVERY` samples of ``nu`` and ``eta`` (m, n, 6); the mean over the window taken
+    out. Trapezoidal rule; ``dt`` in seconds."""
     world = np.einsum("mnij,mnj->mni", rotation_from_euler(eta[..., 3:]), nu[..., :3])
     rates = np.concatenate([world, euler_rates(eta[..., 3:], nu[..., 3:])], axis=-1)
     path = np.concatenate([np.zeros_like(rates[:, :1]), np.cumsum(0.5 * dt * (rates[:, 1:] + rates[:, :-1]), axis=1)], axis=1)
@@ -53,14 +58,14 @@ def pose_drift(nu: Array, eta: Array, dt: float) -> Array:
 
 
 def wrap_angles(rows: Array) -> Array:
-    """Differences of the last three relations (angles) wrapped; rows (..., 6 relations)."""
+    """Pose differences (..., 6) with the three angles wrapped to (-pi, pi]."""
     out = np.array(rows)
     out[..., 3:] = wrap(out[..., 3:])
     return out
 
 
-def _gone_on(nu: Array, eta: Array, dt: float) -> tuple[Array, Array]:
-    """The log with `MARGIN` samples more at both ends, at the mean velocities of as many samples there."""
+def _extended(nu: Array, eta: Array, dt: float) -> tuple[Array, Array]:
+    """Velocities and poses (run, 6) with `MARGIN` more samples at both ends, at the mean velocities of as many samples there."""
     steps = np.arange(1, MARGIN + 1)[:, None] * dt
     ahead, after = nu[:MARGIN].mean(axis=0), nu[-MARGIN:].mean(axis=0)
     before = eta[0] - steps[::-1] * _rates(ahead, eta[0])
@@ -69,12 +74,13 @@ def _gone_on(nu: Array, eta: Array, dt: float) -> tuple[Array, Array]:
 
 
 def _rates(nu: Array, eta: Array) -> Array:
-    """Change of one pose (6,) per second."""
+    """Time derivative (6,) of one pose ``eta`` (6,) at velocities ``nu`` (6,)."""
     world = rotation_from_euler(eta[None, 3:])[0] @ nu[:3]
     return np.concatenate([world, euler_rates(eta[None, 3:], nu[None, 3:])[0]])
 
 
 def _bridged(values: Array, angle: bool = False) -> Array:
+    """A channel (run,) with gaps filled linearly and angles unwrapped; zeros where it was never measured."""
     good = np.isfinite(values)
     if not good.any():
         return np.zeros_like(values)

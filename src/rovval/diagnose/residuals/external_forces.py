@@ -1,4 +1,4 @@
-"""How the windows answer body forces that the model does not have: any, and generic ones that depend on motion, place and thrusters."""
+"""Sensitivities of the windows to body forces that the model lacks: any, and generic ones that depend on motion, place and thrusters."""
 
 from __future__ import annotations
 
@@ -17,16 +17,19 @@ from rovval.vehicle.model import allocation
 STEP = 0.05  # of a force, for its finite difference
 
 
-def generic_force_responses(parts: Sequence[Windows], beta: Array, features: Sequence[str] = ()) -> tuple[tuple[tuple[str, str], ...], list[Array]]:
-    """Forces on every axis with every feature that all runs have (of ``features``, where given): (axis, feature) of each, and each run's
-    answers (m, n, c, f) to forces as large as the thrusters' on that axis."""
-    banks, wrench = [force_features(part) for part in parts], typical_wrench(parts)
+def generic_force_responses(runs: Sequence[Windows], beta: Array, features: Sequence[str] = ()) -> tuple[tuple[tuple[str, str], ...], list[Array]]:
+    """Sensitivities to a generic force on each axis for each feature that all runs have (of ``features``, where given), about ``beta`` (k,).
+
+    Returns (axis, feature) of the f forces, and sensitivities (m, n, c, f) of each run's windows to forces of the rms of the thrusters on the axis.
+    """
+    banks, wrench = [force_features(windows) for windows in runs], typical_wrench(runs)
     names = tuple((axis, f) for axis in AXES for f in banks[0] if all(f in bank for bank in banks) and (not features or f in features))
-    return names, [force_sensitivities(part, beta, [(a, bank[f] * wrench[AXES.index(a)]) for a, f in names]) for part, bank in zip(parts, banks, strict=True)]
+    forces = [[(axis, bank[f] * wrench[AXES.index(axis)]) for axis, f in names] for bank in banks]
+    return names, [force_sensitivities(windows, beta, own) for windows, own in zip(runs, forces, strict=True)]
 
 
 def force_features(windows: Windows) -> dict[str, Array]:
-    """What a generic force may depend on, on the run's grid (n,), each of unit rms."""
+    """What a generic force may depend on: series (run,) on the run's grid by name, each of unit rms, those left out that do not vary."""
     run = windows.run
     got = {c: np.nan_to_num(run.get(c)) for c in ("u", "v", "w", "p", "q", "r", "z", "phi", "theta", "psi") if run.measured(c)}
     found: dict[str, Array] = {"constant": np.ones(len(run))}
@@ -55,38 +58,38 @@ def force_features(windows: Windows) -> dict[str, Array]:
     return {n: f for n, f in scaled.items() if n == "constant" or np.std(f) > 1e-3}
 
 
-def force_sensitivities(part: Windows, beta: Array, forces: Sequence[tuple[str, Array]]) -> Array:
-    """Sensitivity (m, n, c, f) to additional body forces given as an axis and a sequence on the run's grid."""
-    bank = np.zeros((len(forces), len(part.run), 6))
+def force_sensitivities(windows: Windows, beta: Array, forces: Sequence[tuple[str, Array]]) -> Array:
+    """Sensitivity (m, n, c, f) to f additional forces about ``beta`` (k,), each given as its axis and a series (run,) on the run's grid, N or N m."""
+    bank = np.zeros((len(forces), len(windows.run), 6))
     for i, (axis, sequence) in enumerate(forces):
         bank[i, :, AXES.index(axis)] = sequence
-    return wrench_sensitivities(part, beta, bank)
+    return wrench_sensitivities(windows, beta, bank)
 
 
-def wrench_sensitivities(part: Windows, beta: Array, bank: Array) -> Array:
-    """Sensitivity (m, n, c, f) to additional body forces and moments (f, run, 6), N and N m."""
-    pushed = replace(part, actuation=replace(part.actuation, inputs=replace(part.actuation.inputs, extra=bank)))
-    m, which = part.count, np.arange(part.count)
-    base, _ = simulate_windows(part, np.tile(beta, (m, 1)), part.nu0, part.eta0, which)
+def wrench_sensitivities(windows: Windows, beta: Array, bank: Array) -> Array:
+    """Sensitivity (m, n, c, f) to f additional series of body forces and moments ``bank`` (f, run, 6), N and N m, about ``beta`` (k,)."""
+    pushed = replace(windows, actuation=replace(windows.actuation, inputs=replace(windows.actuation.inputs, extra=bank)))
+    m, which = windows.count, np.arange(windows.count)
+    base, _ = simulate_windows(windows, np.tile(beta, (m, 1)), windows.nu0, windows.eta0, which)
     S = np.zeros((*base.shape, len(bank)))
     each = max(1, LANES // m)
     for begin in range(0, len(bank), each):
         chosen = np.arange(begin, min(begin + each, len(bank)))
         lanes = len(chosen) * m
         motion = pushed.plant.simulate(
-            pushed.actuation.inputs, np.tile(part.start, len(chosen)), part.steps, np.tile(part.nu0, (len(chosen), 1)),
-            np.tile(part.eta0, (len(chosen), 1)), np.tile(beta, (lanes, 1)), np.repeat(chosen, m), np.full(lanes, STEP),
+            pushed.actuation.inputs, np.tile(windows.start, len(chosen)), windows.steps, np.tile(windows.nu0, (len(chosen), 1)),
+            np.tile(windows.eta0, (len(chosen), 1)), np.tile(beta, (lanes, 1)), np.repeat(chosen, m), np.full(lanes, STEP),
         )  # fmt: skip
-        out = predicted_channels(part, motion.nu, motion.eta).reshape(len(chosen), *base.shape)
-        S[..., chosen] = np.moveaxis(channel_difference(part, out, base[None]) / STEP, 0, -1)
+        out = predicted_channels(windows, motion.nu, motion.eta).reshape(len(chosen), *base.shape)
+        S[..., chosen] = np.moveaxis(channel_difference(windows, out, base[None]) / STEP, 0, -1)
     return S
 
 
-def typical_wrench(parts: Sequence[Windows]) -> Array:
+def typical_wrench(runs: Sequence[Windows]) -> Array:
     """Rms force of the thrusters on each axis (6,), N and N m; at least `LEAST_AXIS_FORCE` of the largest."""
     total = np.zeros(6)
-    for part in parts:
-        wrench = part.plant.thrust(part.actuation.inputs.speed) @ allocation(part.plant.vehicle).T
-        total += np.mean(wrench**2, axis=0) / len(parts)
-    weight = part.plant.vehicle.weight
+    for windows in runs:
+        wrench = windows.plant.thrust(windows.actuation.inputs.speed) @ allocation(windows.plant.vehicle).T
+        total += np.mean(wrench**2, axis=0) / len(runs)
+    weight = windows.plant.vehicle.weight
     return np.asarray(np.maximum(np.sqrt(total), LEAST_AXIS_FORCE * max(float(np.sqrt(total.max())), LEAST_AXIS_FORCE * weight)))

@@ -1,7 +1,8 @@
-"""What late sensors leave in the parity rows: of a vehicle that turns, half a second of it is not ten times a twentieth.
+"""Fault signatures: how the drift of dead reckoning changes with each parameter of a sensor.
 
-An angle is held against its rate, and both are of one sensor: no delay shows there, though the windows slide along what else is wrong there. (At no
-delay that slide is a trace as any other, by which a tolerance of half a sample takes up some of what is wrong there: a real tank run has much of it.)
+Of most faults the drift is a linear function; of a delay it is not, in a vehicle that turns, and the signature is taken at the delay itself. An angle
+and its rate come from one sensor, so that no delay shows in their relation: at a delay, the signatures of the three angles are zero. (At no delay they
+are not: there the windows slide along whatever else is wrong with the relation, which the tolerance of a delay may take up.)
 """
 
 from __future__ import annotations
@@ -21,35 +22,44 @@ STEP = 0.25  # finite-difference step, in typical sizes
 
 @dataclass(frozen=True, slots=True)
 class FaultSignatures:
-    """Smooth measured motion ``nu`` and ``eta`` (m, margin + n + margin, 6) of the windows, ``usable`` (m,) of them, its drift ``as_is`` (m, rows, 6), and
-    what sensors make of it (`traced`)."""
+    """The measured motion of one run's windows, of which the signatures are computed.
+
+    Attributes:
+        windows: the windows.
+        nu, eta: smoothed velocities and poses (m, margin + n + margin, 6), SI units and radians.
+        usable: windows (m,) that were measured nearly throughout; of the others every signature is zero.
+        nominal: drift (m, rows, 6) of the motion as it was measured, m and rad.
+    """
 
     windows: Windows
     nu: Array
     eta: Array
     usable: Flags
-    as_is: Array
+    nominal: Array
 
     def of(self, column: int) -> Array:
-        """Change of the drift (m, rows, 6) per unit of a fault, at none."""
+        """Signature (m, rows, 6) of the plant slot ``column``: change of the drift per unit of it, at its null value."""
         step = self._step(column)
-        return wrap_angles(self._drift({column: step}) - self.as_is) / step
+        return wrap_angles(self._drift({column: step}) - self.nominal) / step
 
-    def late(self, delays: dict[int, float]) -> tuple[Array, dict[int, Array]]:
-        """What sensors that are late by ``delays`` (column: seconds) make of the drift (m, rows, 6): the drift as it is, less that of the motion once
-        they are undone; and its change per second more of each."""
+    def of_delays(self, delays: dict[int, float]) -> tuple[Array, dict[int, Array]]:
+        """The part (m, rows, 6) of the drift that ``delays`` (slot: seconds) cause, and its change per second more of each.
+
+        The part is the drift as it was measured less that of the motion with the delays taken back.
+        """
         undone = self._drift({c: -value for c, value in delays.items()})
         slopes = dict[int, Array]()
         for column in delays:
             step = self._step(column)
-            slopes[column] = _of_places(undone - self._drift({c: -value - step * (c == column) for c, value in delays.items()})) / step
-        return _of_places(self.as_is - undone), slopes
+            slopes[column] = _of_positions(undone - self._drift({c: -value - step * (c == column) for c, value in delays.items()})) / step
+        return _of_positions(self.nominal - undone), slopes
 
     def _step(self, column: int) -> float:
+        """Finite difference, in the unit of the parameter."""
         return STEP * self.windows.plant.slots[column].parameter.typical
 
     def _drift(self, faults: dict[int, float]) -> Array:
-        """Drift of the motion as sensors with ``faults`` (column: value) would have logged it."""
+        """Drift (m, rows, 6) of the motion as sensors with ``faults`` (slot: value) would have logged it."""
         plant, beta = self.windows.plant, self.windows.plant.null.copy()
         beta[list(faults)] += list(faults.values())
         log = Log(self.nu, self.eta, self.windows.run.dt, self.nu[:, 0], self.eta[:, 0])
@@ -58,16 +68,17 @@ class FaultSignatures:
 
 
 def fault_signatures(windows: Windows, nu: Array, eta: Array, usable: Flags) -> FaultSignatures:
-    """Traces of a smooth motion."""
+    """Signatures of a smoothed motion ``nu``, ``eta`` (m, margin + n + margin, 6); ``usable`` (m,) are the windows that were measured nearly throughout."""
     return FaultSignatures(windows, nu, eta, usable, _drift_of(nu, eta, windows.run.dt, usable))
 
 
 def _drift_of(nu: Array, eta: Array, dt: float, usable: Flags) -> Array:
+    """Drift (m, rows, 6) of dead reckoning, zero in windows that are not usable."""
     rows = pose_drift(without_margin(nu), without_margin(eta), dt)
     rows[~usable] = 0.0
     return rows
 
 
-def _of_places(rows: Array) -> Array:
-    """Rows (m, rows, 6) with the relations of angles taken out."""
+def _of_positions(rows: Array) -> Array:
+    """Drift (m, rows, 6) with that of the three angles set to zero."""
     return np.concatenate([rows[..., :3], np.zeros_like(rows[..., 3:])], axis=-1)

@@ -1,4 +1,4 @@
-"""Inner products of residual and sensitivities per window, in a weighted metric with the initial states marginalised.
+"""Normal equations of each window in a weighted metric, nuisance parameters marginalised.
 
 With V = diag(variance) + J Sigma0 J^T (variance: noise, tolerance and unexplained residual of a channel at a time in the window), every
 linear question, held-out gains, coherence, bootstrap, is answered from A = S^T V^-1 S, b = S^T V^-1 r and c = r^T V^-1 r of
@@ -43,7 +43,7 @@ class NormalEquations:
 
 
 def concatenated(parts: list[NormalEquations]) -> NormalEquations:
-    """Windows of several runs behind one another."""
+    """Normal equations of the windows of several runs, in their order."""
     if len(parts) == 1:
         return replace(parts[0], offset=None)
     return NormalEquations(
@@ -56,9 +56,16 @@ def concatenated(parts: list[NormalEquations]) -> NormalEquations:
 
 @dataclass(frozen=True, slots=True)
 class Whitened:
-    """A linearisation in the metric: residual ``r``, nuisances ``J``, ``columns`` and ``valid`` as in `Linearisation`; slopes ``x`` (m, n c, k) over the
-    standard errors, of which ``root`` (m, n c) is the inverse (0: no measurement); nuisances ``q`` (m, n c, s) turned so that
-    S^T V^-1 S = x^T x - y^T y =: ``A`` (m, k, k) with ``y`` = q^T x (m, s, k)."""
+    """A linearisation in the metric V = diag(variance) + J Sigma0 J^T, from which normal equations of many residuals are quick.
+
+    Attributes:
+        r, J, columns, valid: as of `Linearisation`.
+        root: inverse standard error of each sample (m, n c); 0 where nothing was measured.
+        q: nuisances (m, n c, s) over the standard errors, orthogonalised so that S^T V^-1 S = x^T x - y^T y.
+        x: sensitivities (m, n c, k) over the standard errors.
+        y: q^T x (m, s, k).
+        A: S^T V^-1 S (m, k, k).
+    """
 
     r: Array
     J: Array
@@ -72,19 +79,26 @@ class Whitened:
 
     @property
     def linear(self) -> Linearisation:
-        """The linearisation itself; slopes are 0 where nothing was measured."""
+        """The linearisation itself; sensitivities are 0 where nothing was measured."""
         S = self.x / np.where(self.root > 0, self.root, 1.0)[..., None]
         return Linearisation(self.r, S.reshape(*self.r.shape, len(self.columns)), self.J, self.columns, self.valid)
 
     def normal_equations(self, r: Array) -> NormalEquations:
-        """Products of a residual ``r`` (m, n, c) with these slopes."""
-        whiten = r.reshape(self.root.shape) * self.root
-        z = _onto(self.q, whiten)
-        return NormalEquations(self.A, _onto(self.x, whiten) - _onto(self.y, z), (whiten**2).sum(axis=1) - (z**2).sum(axis=1), self.columns)
+        """Normal equations of other residuals ``r`` (m, n, c) with these sensitivities."""
+        scaled = r.reshape(self.root.shape) * self.root
+        z = _onto(self.q, scaled)
+        return NormalEquations(self.A, _onto(self.x, scaled) - _onto(self.y, z), (scaled**2).sum(axis=1) - (z**2).sum(axis=1), self.columns)
 
 
 def normal_equations(linear: Linearisation, ok: np.ndarray, variance: Array, spread: Array) -> NormalEquations:
-    """Products of every window; ``variance`` (n, c), ``spread`` (s,) standard error of its first nuisances, which are marginalised."""
+    """Normal equations of every window of ``linear``.
+
+    Args:
+        linear: residuals and sensitivities.
+        ok: where residuals hold a measurement (m, n, c).
+        variance: white part of their covariance (n, c).
+        spread: prior standard deviation (s,) of the first s nuisances, which are marginalised; the others are left out.
+    """
     m, k = len(linear.r), linear.S.shape[-1]
     A, b, c = np.zeros((m, k, k)), np.zeros((m, k)), np.zeros(m)
     for w in range(m):
@@ -96,7 +110,7 @@ def normal_equations(linear: Linearisation, ok: np.ndarray, variance: Array, spr
 
 
 def whiten(linear: Linearisation, ok: np.ndarray, variance: Array, spread: Array) -> Whitened:
-    """A linearisation in the metric, kept for products with many residuals; arguments as for `products`."""
+    """A linearisation in the metric, kept for normal equations with further residuals; arguments as of `normal_equations`."""
     m, n, k = len(linear.r), linear.r[0].size, linear.S.shape[-1]
     root, q, x, y = np.empty((m, n)), np.empty((m, n, len(spread))), _columns_first(m, n, k), np.empty((m, len(spread), k))
     for w in range(m):
@@ -105,7 +119,7 @@ def whiten(linear: Linearisation, ok: np.ndarray, variance: Array, spread: Array
 
 
 def with_frozen_columns(own: Linearisation, other: Whitened, columns: tuple[int, ...]) -> Whitened:
-    """A linearisation with further ``columns``, whose slopes are taken from another one nearby, and its nuisances with them."""
+    """A linearisation with further ``columns`` whose sensitivities, and those to the nuisances, are taken from another one at a point nearby."""
     place, k, m = [other.columns.index(c) for c in columns], len(own.columns), len(own.r)
     x = _columns_first(m, other.root.shape[1], k + len(place))
     mine = x[..., :k] = own.S.reshape(*other.root.shape, k) * other.root[..., None]
@@ -122,7 +136,7 @@ def with_frozen_columns(own: Linearisation, other: Whitened, columns: tuple[int,
 
 
 def _window(linear: Linearisation, w: int, ok: np.ndarray, variance: Array, spread: Array) -> tuple[Array, Array, Array, Array]:
-    """Of one window: inverse standard errors (n c,), turned nuisances (n c, s), scaled slopes (n c, k), and the product of the latter two."""
+    """Of one window: inverse standard errors (n c,), orthogonalised nuisances q (n c, s), scaled sensitivities x (n c, k), and q^T x (s, k)."""
     root = np.where(ok[w], 1.0 / np.sqrt(variance), 0.0).reshape(-1)
     x = linear.S[w].reshape(len(root), -1) * root[:, None]
     j = linear.J[w].reshape(len(root), -1)[:, : len(spread)] * root[:, None] * spread
@@ -141,12 +155,12 @@ def _gram(a: Array, b: Array) -> Array:
 
 
 def _columns_first(m: int, n: int, k: int) -> Array:
-    """Room for (m, n, k) in which a column lies in one piece: they are made, and taken from one another, one by one."""
+    """Empty array (m, n, k) in which each column of k is contiguous, since columns are written and read one by one."""
     return np.empty((m, k, n)).swapaxes(1, 2)
 
 
 def nuisance_corrected(linear: Linearisation, ok: np.ndarray, variance: Array, spread: Array) -> Array:
-    """Residual (m, n, c) with the best of the first nuisances of each window, as many as ``spread`` has, taken out."""
+    """Residuals (m, n, c) less their MAP fit by the first s nuisances of each window; arguments as of `normal_equations`."""
     out = np.array(linear.r)
     root = 1.0 / np.sqrt(variance)
     for w in range(len(out)):

@@ -1,6 +1,6 @@
-"""The lanes of a linearisation: which simulations, of every window, its derivatives are taken from.
+"""The simulations that a linearisation is made of: every window at the point itself, and one finite difference away from it in each variable.
 
-Nominal, each initial state, each effect parameter one step away; start points away from the point reached count as columns of their own.
+Variables are the initial states, the parameters, and displaced columns: directions that begin at another point.
 """
 
 from __future__ import annotations
@@ -19,8 +19,13 @@ STEP = 0.25  # finite-difference step as a share of a parameter's typical size
 
 @dataclass(frozen=True, slots=True)
 class DisplacedColumn:
-    """A column that does not start at the point reached but where the slots ``at`` are moved to (an onset, a period): the sensitivity
-    there to ``slot``, or, where ``slot`` is -1, the change from the point reached to there. ``id`` is past the plant's slots."""
+    """A column of a linearisation that is taken at another point: an effect has no sensitivity to its onset, say, while its size is zero.
+
+    Attributes:
+        id: its column number, beyond the plant's slots.
+        at: the other point: (slot, value) of each parameter that differs.
+        slot: the parameter whose sensitivity is taken there; -1 for the change of the residual from here to there.
+    """
 
     id: int
     at: tuple[tuple[int, float], ...]
@@ -29,7 +34,7 @@ class DisplacedColumn:
 
 @dataclass(frozen=True, slots=True)
 class Columns:
-    """What a linearisation is asked for: plant ``slots`` that move by themselves, and ``displaced`` from starting points of their own."""
+    """The columns of a linearisation: the plant ``slots``, and ``displaced`` columns that are taken at other points."""
 
     slots: tuple[int, ...] = ()
     displaced: tuple[DisplacedColumn, ...] = ()
@@ -37,8 +42,16 @@ class Columns:
 
 @dataclass(frozen=True, slots=True)
 class Perturbation:
-    """One simulation of every window: parameters, offset of the start states, and which derivative it serves: (its output less that
-    of lane ``against``) / ``step`` for a state or a column; a step of 0 serves none."""
+    """One simulation of every window, and the derivative that is taken from it: (its output less that of perturbation ``against``) / ``step``.
+
+    Attributes:
+        beta: parameters (k,).
+        nu, eta: what is added to the initial velocities and pose (6,).
+        state: nuisance parameter that the derivative is of, -1 for none.
+        column: column that it is of, -1 for none.
+        step: finite difference, in the unit of the variable; 0 where no derivative is taken.
+        against: number of the perturbation that is subtracted.
+    """
 
     beta: Array
     nu: Array
@@ -52,7 +65,8 @@ class Perturbation:
 def perturbations(
     windows: Windows, beta: Array, states: list[tuple[int, float]], columns: tuple[int, ...], directions: Sequence[DisplacedColumn]
 ) -> list[Perturbation]:
-    """Nominal first, then start states, then parameters (central differences inside the bounds), then directions."""
+    """The simulations of a linearisation about ``beta`` (k,): the point itself, the initial ``states`` (index, step), the parameters of ``columns`` (central
+    differences where bounds allow), the displaced columns ``directions``."""
     still = np.zeros(6)
     lanes = [Perturbation(beta, still, still)]
     for i, (index, step) in enumerate(states):
@@ -60,10 +74,10 @@ def perturbations(
         unit[index if index < 6 else POSE_INDEX[index]] = step
         lanes.append(Perturbation(beta, unit if index < 6 else still, still if index < 6 else unit, state=i, step=step))
     for column in columns:
-        up, down = _both_ways(windows, beta, column)
+        up, down = _steps(windows, beta, column)
         lanes.append(Perturbation(_moved(beta, [(column, beta[column] + down)]), still, still) if down else lanes[0])
         lanes.append(Perturbation(_moved(beta, [(column, beta[column] + up)]), still, still, column=column, step=up - down, against=len(lanes) - 1))
-    bases = dict.fromkeys(_idle(windows, beta, directions), 0)
+    bases = dict.fromkeys(_unchanged(windows, beta, directions), 0)
     for d in directions:
         there = _moved(beta, list(d.at))
         if d.slot < 0:
@@ -72,13 +86,13 @@ def perturbations(
         if d.at not in bases:
             bases[d.at] = len(lanes)
             lanes.append(Perturbation(there, still, still))
-        up, _ = _both_ways(windows, there, d.slot)
+        up, _ = _steps(windows, there, d.slot)
         lanes.append(Perturbation(_moved(there, [(d.slot, there[d.slot] + up)]), still, still, column=d.id, step=up, against=bases[d.at]))
     return lanes
 
 
-def _idle(windows: Windows, beta: Array, directions: Sequence[DisplacedColumn]) -> set[tuple[tuple[int, float], ...]]:
-    """Points at which nothing is there yet: what stands elsewhere only places an effect of no size, and the simulation is the nominal one."""
+def _unchanged(windows: Windows, beta: Array, directions: Sequence[DisplacedColumn]) -> set[tuple[tuple[int, float], ...]]:
+    """Points at which the simulation is that at ``beta``: they differ in parameters that only place an effect whose size is zero."""
     sized: dict[tuple[tuple[int, float], ...], list[int]] = {}
     for d in directions:
         sized.setdefault(d.at, []).append(d.slot)
@@ -87,16 +101,16 @@ def _idle(windows: Windows, beta: Array, directions: Sequence[DisplacedColumn]) 
 
 
 def forward_differences(windows: Windows, beta: Array, columns: tuple[int, ...]) -> list[Perturbation]:
-    """One lane a parameter, the way that its bounds leave open."""
+    """One-sided differences of the parameters of ``columns`` about ``beta`` (k,), away from a bound that ``beta`` lies on."""
     still, lanes = np.zeros(6), []
     for column in columns:
-        up, down = _both_ways(windows, beta, column)
+        up, down = _steps(windows, beta, column)
         lanes.append(Perturbation(_moved(beta, [(column, beta[column] + (up or down))]), still, still, column=column, step=up or down))
     return lanes
 
 
-def _both_ways(windows: Windows, beta: Array, column: int) -> tuple[float, float]:
-    """Steps up and down of a parameter that stay within its bounds; 0 for the way that is barred."""
+def _steps(windows: Windows, beta: Array, column: int) -> tuple[float, float]:
+    """Steps up and down of a parameter that stay within its bounds; 0 where a bound is in the way."""
     parameter = windows.plant.slots[column].parameter
     step = STEP * parameter.typical
     up = step if beta[column] + step <= parameter.high else 0.0
@@ -105,9 +119,8 @@ def _both_ways(windows: Windows, beta: Array, column: int) -> tuple[float, float
 
 
 def _moved(beta: Array, to: Sequence[tuple[int, float]]) -> Array:
+    """``beta`` (k,) with other values of some slots."""
     there = beta.copy()
     for slot, value in to:
         there[slot] = value
     return there
-
-

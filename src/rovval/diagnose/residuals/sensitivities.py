@@ -1,7 +1,6 @@
-"""Residuals of the windows and their sensitivity to every parameter of the library and to the windows' initial states.
+"""Residuals of the windows, and their sensitivities to parameters and initial states by finite differences.
 
-One batched simulation of all `lanes` per block of windows. What later stages need is kept as inner products per window (`Products`), after the
-initial state is marginalised with its measurement error.
+The perturbed simulations of a block of windows are one batched call of the plant; each one is a lane of it.
 """
 
 from __future__ import annotations
@@ -16,23 +15,24 @@ from rovval.diagnose.residuals.nuisances import drifting_channels, initial_state
 from rovval.diagnose.residuals.perturbations import DisplacedColumn, Perturbation, forward_differences, perturbations
 from rovval.diagnose.windows.windows import Windows, channel_difference, predicted_channels
 
-AT_ONCE = 60  # windows that are simulated before their slopes are taken: ten minutes of log, some 0.3 GB
+AT_ONCE = 60  # windows that are simulated before their differences are taken: ten minutes of log, some 0.3 GB
 LANES = 2_000  # lanes a call: 20 MB, which stay with the process; larger arrays go back to the system each time (measured: a tenth slower)
 
 
-
-
 def simulate_windows(windows: Windows, beta: Array, nu0: Array, eta0: Array, which: np.ndarray) -> tuple[Array, np.ndarray]:
-    """Predicted channels (b, n, c) of lanes: parameters ``beta`` (b, k), start states (b, 6), windows ``which`` (b,)."""
+    """Simulate b lanes: parameters ``beta`` (b, k), initial velocities ``nu0`` and poses ``eta0`` (b, 6), windows ``which`` (b,).
+
+    Returns the predicted channels (b, n, c), and which lanes ran to their end (b,); one that stopped holds its last state.
+    """
     out = np.empty((len(which), windows.steps + 1, len(windows.channels)))
     fine = np.empty(len(which), dtype=bool)
     for begin in range(0, len(which), LANES):
-        part = slice(begin, begin + LANES)
+        block = slice(begin, begin + LANES)
         motion = windows.plant.simulate(
-            windows.actuation.inputs, windows.start[which[part]], windows.steps, nu0[part], eta0[part], beta[part]
+            windows.actuation.inputs, windows.start[which[block]], windows.steps, nu0[block], eta0[block], beta[block]
         )
-        predicted_channels(windows, motion.nu, motion.eta, out[part])
-        fine[part] = motion.stopped < 0
+        predicted_channels(windows, motion.nu, motion.eta, out[block])
+        fine[block] = motion.stopped < 0
     return out, fine
 
 
@@ -40,8 +40,16 @@ def linearise(
     windows: Windows, beta: Array, columns: tuple[int, ...], directions: Sequence[DisplacedColumn] = (), coarse: tuple[int, ...] = (),
     starts: bool = True,
 ) -> Linearisation:  # fmt: skip
-    """Residual and sensitivities about ``beta`` (k,) for every window; columns ``coarse``, behind the others, by one-sided differences; without
-    ``starts`` nothing about the windows' initial states."""
+    """Residuals of every window and their sensitivities about ``beta`` (k,).
+
+    Args:
+        windows: windows of one run.
+        beta: parameters of the plant.
+        columns: slots, by central differences.
+        directions: displaced columns, behind these.
+        coarse: slots, last, by one-sided differences.
+        starts: whether sensitivities to the windows' initial states are taken.
+    """
     states, drifting, m = initial_states(windows) if starts else [], drifting_channels(windows), windows.count
     lanes = perturbations(windows, beta, states, columns, directions) + forward_differences(windows, beta, coarse)
     ids = (*columns, *(d.id for d in directions), *coarse)
@@ -57,12 +65,12 @@ def linearise(
         valid[which] = ran[0]
         for i, lane in enumerate(lanes):
             if lane.step and (lane.state >= 0 or lane.column >= 0):
-                slope = channel_difference(windows, out[i], out[lane.against]) / lane.step
-                slope[~(ran[0] & ran[i] & ran[lane.against])] = 0.0
+                derivative = channel_difference(windows, out[i], out[lane.against]) / lane.step
+                derivative[~(ran[0] & ran[i] & ran[lane.against])] = 0.0
                 if lane.state >= 0:
-                    J[which, ..., lane.state] = slope
+                    J[which, ..., lane.state] = derivative
                 else:
-                    S[which, ..., place[lane.column]] = slope
+                    S[which, ..., place[lane.column]] = derivative
         r[which] = np.where(windows.ok[which], channel_difference(windows, windows.y[which], out[0]), 0.0)
     if windows.disturbance_response is not None:
         J = np.concatenate([J, windows.disturbance_response], axis=-1)
@@ -71,7 +79,7 @@ def linearise(
 
 
 def _simulated(windows: Windows, lanes: Sequence[Perturbation], which: np.ndarray) -> tuple[Array, np.ndarray]:
-    """Every lane of the windows ``which``: predicted channels (lanes, windows, n, c), and which did not stop (lanes, windows)."""
+    """Every perturbation of the windows ``which``: predicted channels (lanes, windows, n, c), and which ran to their end (lanes, windows)."""
     b = np.repeat(np.stack([lane.beta for lane in lanes]), len(which), axis=0)
     nu = np.concatenate([windows.nu0[which] + lane.nu for lane in lanes])
     eta = np.concatenate([windows.eta0[which] + lane.eta for lane in lanes])
@@ -80,13 +88,7 @@ def _simulated(windows: Windows, lanes: Sequence[Perturbation], which: np.ndarra
 
 
 def residual(windows: Windows, beta: Array) -> tuple[Array, np.ndarray]:
-    """Measured - simulated (m, n, c) at ``beta`` (k,), and which windows did not stop."""
+    """Residuals (m, n, c) at ``beta`` (k,), measured minus simulated, and which windows (m,) ran to their end."""
     which = np.arange(windows.count)
     out, fine = simulate_windows(windows, np.tile(beta, (windows.count, 1)), windows.nu0, windows.eta0, which)
     return np.where(windows.ok, channel_difference(windows, windows.y, out), 0.0), fine
-
-
-
-
-
-

@@ -1,87 +1,122 @@
-"""Sensor faults as kinematics alone show them: each fitted to the parity rows by itself, with its interval."""
+"""Sensor faults as kinematics alone show them: each fitted to the parity residuals by itself, with its interval.
+
+Intervals come from the scatter of the windows' scores (sandwich covariance: White 1982), with Student's t.
+"""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from scipy import stats
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import FAULT_SPARE_WINDOWS
+from rovval.diagnose.criteria import FAULT_SHARE, FAULT_SPARE_WINDOWS
 from rovval.diagnose.residuals.parity import ParityResiduals
 from rovval.diagnose.windows.windows import Windows
 from rovval.effects import load
 from rovval.plant.slots import Slot
 
-STEPS, SETTLED = 6, 1e-9  # Gauss-Newton steps at most, and the share of the loss below which they end
+STEPS, CONVERGED = 6, 1e-9  # Gauss-Newton steps at most, and the share of the loss that one must gain for another to follow
 
 
-def sensor_faults(parity_rows: ParityResiduals, windows: Windows, origin: Array) -> list[dict[str, object]]:
-    """Each sensor effect, and the factor of each axis, fitted to the parity rows alone: value with 90 % interval, and whether it differs from
-    ``origin`` (k,), what the vehicle's file says of the sensors (``was``), significantly on its own. One that has hardly fewer parameters than
-    there are windows to check it fits whatever it likes, and is not told."""
-    found: list[dict[str, object]] = []
+@dataclass(frozen=True, slots=True)
+class FittedFault:
+    """A parameter of a sensor, fitted to the parity residuals by itself.
+
+    Attributes:
+        fault: the parameter, such as ``gyro_bias.r``.
+        value: estimate, in ``unit``.
+        low, high: 90 % interval.
+        was: what the vehicle's file says of it.
+        unit: of all four.
+        share: of the squared parity residuals that the fault accounts for.
+        significant: whether ``was`` lies outside the interval and ``share`` is above `FAULT_SHARE`.
+        check: the kinematic identity in words.
+        note: how it was fitted, in words.
+    """
+
+    fault: str
+    value: float
+    low: float
+    high: float
+    was: float
+    unit: str
+    share: float
+    significant: bool
+    check: str = "measured velocity against measured pose"
+    note: str = "fitted alone, by kinematics, without dynamics"
+
+
+def sensor_faults(parity: ParityResiduals, windows: Windows, origin: Array) -> list[FittedFault]:
+    """Each sensor effect, and the scale factor of each axis, fitted to one run's parity residuals by itself.
+
+    ``origin`` (k,) are the parameters of the vehicle's file. A fault is left out where windows are too few for their scatter to say how sure it is
+    (`FAULT_SPARE_WINDOWS`).
+    """
+    found = list[FittedFault]()
     by_effect: dict[tuple[str, str], list[int]] = {}
-    for i, column in enumerate(parity_rows.columns):
-        if np.abs(parity_rows.traces[..., i]).max(initial=0.0) > 0:
-            by_effect.setdefault(_together(windows.plant.slots[column]), []).append(i)
-    total, count = float((_about(parity_rows, origin)[0] ** 2).sum()), int((np.abs(parity_rows.traces).max(axis=(1, 2), initial=0.0) > 0).sum())
+    for i, column in enumerate(parity.columns):
+        if np.abs(parity.signatures[..., i]).max(initial=0.0) > 0:
+            by_effect.setdefault(_jointly(windows.plant.slots[column]), []).append(i)
+    total, count = float((_about(parity, origin)[0] ** 2).sum()), int((np.abs(parity.signatures).max(axis=(1, 2), initial=0.0) > 0).sum())
     for places in by_effect.values():
         if count < len(places) + FAULT_SPARE_WINDOWS:
             continue
-        value, score, H, loss = _fitted(parity_rows, origin, places)
+        value, score, H, loss = _fitted(parity, origin, places)
         bread = np.linalg.inv(H)
         error = np.sqrt(np.diag(bread @ (score.T @ score) @ bread))
         t = float(stats.t.ppf(0.95, count - len(places)))
         share = 1.0 - loss / total if total > 0 else 0.0
         for j, place in enumerate(places):
-            slot_id = parity_rows.columns[place]
+            slot_id = parity.columns[place]
             slot = windows.plant.slots[slot_id]
             low, high, was = float(value[j] - t * error[j]), float(value[j] + t * error[j]), float(origin[slot_id])
             found.append(
-                {
-                    "check": "measured velocity against measured pose",
-                    "fault": slot.key,
-                    "value": was + float(value[j]),
-                    "low": was + low,
-                    "high": was + high,
-                    "was": was,
-                    "unit": slot.parameter.unit,
-                    "share": share,
-                    "significant": bool(low > 0 or high < 0) and share > 0.05,
-                    "note": "fitted alone, by kinematics, without dynamics",
-                }
+                FittedFault(
+                    fault=slot.key,
+                    value=was + float(value[j]),
+                    low=was + low,
+                    high=was + high,
+                    was=was,
+                    unit=slot.parameter.unit,
+                    share=share,
+                    significant=bool(low > 0 or high < 0) and share > FAULT_SHARE,
+                )
             )
     return found
 
 
 def _fitted(check: ParityResiduals, origin: Array, places: list[int]) -> tuple[Array, Array, Array, float]:
-    """Departure from ``origin`` (p,) at which faults fit the rows best, the score of every window there (m, p), their curvature (p, p) and the loss. Rows
-    bend with a delay: Gauss-Newton steps, as long as they fit better."""
+    """Least squares fit of faults: (departure from ``origin`` (p,), score of each window there (m, p), curvature (p, p), squared residuals).
+
+    Residuals are not linear in a delay, hence Gauss-Newton steps as long as the fit gets better.
+    """
     beta, columns = origin.copy(), [check.columns[i] for i in places]
-    rows, traces = _about(check, beta)
+    rows, signatures = _about(check, beta)
     for _ in range(STEPS):
-        score, H = _normal(rows, traces[..., places])
+        score, H = _normal(rows, signatures[..., places])
         trial = beta.copy()
         trial[columns] += np.linalg.solve(H, score.sum(axis=0))
         there, slopes = _about(check, trial)
-        if (there**2).sum() >= (1.0 - SETTLED) * (rows**2).sum():
+        if (there**2).sum() >= (1.0 - CONVERGED) * (rows**2).sum():
             break
-        beta, rows, traces = trial, there, slopes
-    return (beta - origin)[columns], *_normal(rows, traces[..., places]), float((rows**2).sum())
+        beta, rows, signatures = trial, there, slopes
+    return (beta - origin)[columns], *_normal(rows, signatures[..., places]), float((rows**2).sum())
 
 
 def _normal(rows: Array, G: Array) -> tuple[Array, Array]:
-    """Scores of the windows (m, p) and curvature (p, p) of traces (m, q, p)."""
+    """Scores of the windows (m, p) and curvature (p, p) of signatures ``G`` (m, q, p)."""
     return np.einsum("wqi,wq->wi", G, rows), np.einsum("wqi,wqj->ij", G, G) + 1e-12 * np.eye(G.shape[-1])
 
 
 def _about(check: ParityResiduals, beta: Array) -> tuple[Array, Array]:
-    """Rows and traces about ``beta`` (k,); of its columns only sensors leave a trace, delays one that bends."""
-    rows, traces = check.undone(beta)
-    straight = np.array([0.0 if c in check.delays else beta[c] for c in check.columns])
-    return rows - traces @ straight, traces
+    """Parity residuals (m, q) and fault signatures (m, q, p) at the sensor parameters of ``beta`` (k,)."""
+    rows, signatures = check.at_delays(beta)
+    linear = np.array([0.0 if c in check.delays else beta[c] for c in check.columns])
+    return rows - signatures @ linear, signatures
 
 
-def _together(slot: Slot) -> tuple[str, str]:
-    """What is fitted together: an effect's parameters, but for those that say the same of one axis only."""
+def _jointly(slot: Slot) -> tuple[str, str]:
+    """Key of the parameters that are fitted jointly: those of an effect, except that one of a single axis is fitted by itself."""
     return slot.hypothesis, slot.parameter.name if load(slot.effect).of_one_axis(slot.parameter.name) else ""

@@ -1,8 +1,9 @@
-"""The answer put together: every part of the typed diagnosis from what was posed, found and decided."""
+"""Assembly of the typed diagnosis from what was posed, found and decided."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -16,10 +17,9 @@ from rovval.diagnose.decision.finding import Finding
 from rovval.diagnose.decision.unexplained import Unexplained as Rest
 from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.hypotheses.change_points import change_points
-from rovval.diagnose.inference.gap import axis_table, weighted_errors
+from rovval.diagnose.inference.gap import gap_by_axis, weighted_errors
 from rovval.diagnose.inference.shrinkage import shrinkage, worsened_axes
 from rovval.diagnose.problem.problem import Problem
-from rovval.diagnose.residuals.sensor_faults import sensor_faults
 from rovval.diagnose.result.attribution import slices, worst
 from rovval.diagnose.result.causes import causes, settings
 from rovval.diagnose.result.diagnosis import (
@@ -32,6 +32,7 @@ from rovval.diagnose.result.diagnosis import (
     Disturbance,
     Gap,
     GapSlice,
+    Indications,
     LogRemark,
     NotTestable,
     Reduction,
@@ -61,7 +62,7 @@ def assemble(
         left_out: runs that could not be used, each with the reason.
         tolerance: relative standard deviation of a healthy simulator's coefficients.
         seed: of the bootstrap of intervals.
-        progress: told what is done, and which share of the whole is behind it.
+        progress: called with what is being done and the share of the work that is done (0 to 1).
     """
     problem, selection, before, decision = finding.problem, finding.selection, finding.residuals, finding.decision
     shrunk = shrinkage(problem, decision.fit, before, seed)
@@ -73,7 +74,7 @@ def assemble(
         verdict=decision.verdict,
         gap=_gap(problem, before, seed),
         causes=causes(problem, decision, before, finding.since, seed),
-        shrinkage=Shrinkage.model_validate(shrunk),
+        shrinkage=Shrinkage(**asdict(shrunk)),
         within_tolerance=_within_tolerance(problem, selection, decision, seed),
         ranking=tuple(Score(effect=name, score=score) for name, score in selection.ranking),
         not_testable=tuple(
@@ -86,8 +87,9 @@ def assemble(
         disturbance=_disturbance(problem),
         left=_unexplained(decision.unexplained),
         calibration=recalibration(problem, selection, decision, before, tolerance, seed, progress),
-        harm=tuple(AxisHarm(**row) for row in worsened_axes(shrunk)),
-        parity=_parity(problem),
+        harm=tuple(AxisHarm(axis=axis, change=change) for axis, change in worsened_axes(shrunk).items()),
+        parity=tuple(SensorFault.model_validate(fault, from_attributes=True) for fault in finding.faults),
+        indications=Indications.model_validate(decision.indications, from_attributes=True) if decision.indications else None,
         heatmap=heat_map(problem.runs[0], before[0], seed),
         traces=traces(problem, decision.fit, before),
         coherence=coherence_matrix(problem, selection, decision),
@@ -121,7 +123,7 @@ def _settings(problem: Problem, tolerance: float) -> dict[str, Any]:
 
 def _gap(problem: Problem, before: list[Array], seed: int) -> Gap:
     """How large the gap is, in which regimes it lies and when it changes; ``before`` are the nominal simulator's residuals."""
-    axes = {axis: AxisGap.model_validate(row) for axis, row in axis_table(problem, before).items()}
+    axes = {axis: AxisGap(**asdict(row)) for axis, row in gap_by_axis(problem, before).items()}
     changes = list[float]()
     for part, error in zip(problem.runs, before, strict=True):
         mean = np.where(part.ok, error, 0.0).sum(axis=1) / np.maximum(part.ok.sum(axis=1), 1)
@@ -173,16 +175,10 @@ def _disturbance(problem: Problem) -> dict[str, Disturbance]:
 def _unexplained(rest: Rest | None) -> Unexplained | None:
     if rest is None:
         return None
-    departed = Departure(coefficient=rest.strained[0], departure=rest.strained[1]) if rest.strained else None
+    departed = Departure(coefficient=rest.departed[0], departure=rest.departed[1]) if rest.departed else None
     return Unexplained(
         axes=rest.axes, depends_on=rest.depends_on, share=rest.share, departed=departed, inconstant=rest.inconstant, accounted=rest.accounted
     )
-
-
-def _parity(problem: Problem) -> tuple[SensorFault, ...]:
-    """Every fault of a sensor that kinematics can show, of each run."""
-    found = [row for check, part in zip(problem.parity, problem.runs, strict=True) for row in sensor_faults(check, part, problem.origin)]
-    return tuple(SensorFault.model_validate(row) for row in found)
 
 
 def _remarks(problem: Problem, before: list[Array]) -> tuple[LogRemark, ...]:

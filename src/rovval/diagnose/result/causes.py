@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import numpy as np
 
 from rovval import effects
@@ -60,7 +62,7 @@ def _cause(problem: Problem, decision: Decision, one: SelectedCause, before: lis
         parameters=_parameters(problem, joint, h),
         p_value=one.p_value,
         evidence=one.evidence,
-        shrinkage=Shrinkage.model_validate(shrinkage(problem, single, before, seed)),
+        shrinkage=Shrinkage(**asdict(shrinkage(problem, single, before, seed))),
     )
 
 

@@ -17,7 +17,10 @@ from pydantic import AliasChoices, BaseModel, ConfigDict, Field, ValidationError
 from pydantic.json_schema import GenerateJsonSchema, SkipJsonSchema
 
 from rovval.core.errors import BadInput, all_at_once
+from rovval.diagnose.decision.indications import Lack, indications
+from rovval.diagnose.decision.unexplained import Accounted
 from rovval.diagnose.decision.verdict import Verdict
+from rovval.diagnose.residuals.sensor_faults import FittedFault
 
 SCHEMA: Final = "rovval.diagnosis/1"
 
@@ -255,6 +258,29 @@ class SensorFault(Interval):
     note: str = Field(default="", description="how it was fitted")
 
 
+class NearestEffect(Candidate):
+    """The candidate that came nearest to a cause, though it is not named."""
+
+    lacks: tuple[Lack, ...] = Field(
+        description="evidence: less than is asked of a cause; reduction: no more than coefficients within their tolerances bring; "
+        "empty: it fails another check"
+    )
+
+
+class Indications(Record):
+    """What points to a cause where none is named."""
+
+    nearest: NearestEffect | None = Field(description="the effect that came nearest; null: none came near")
+    within_tolerance: float = Field(
+        description="share of the gap that coefficients within their tolerances take away; 0 where the fit takes one far beyond"
+    )
+    fault: SensorFault | None = Field(description="the significant fault of a sensor that accounts for most of the parity residuals")
+    fault_departure: float = Field(description="its standardised departure, in tolerances of a healthy sensor; 0 where none is stated")
+    beyond_tolerance: bool = Field(
+        description="whether one of the two is beyond what tolerances allow: no cause is named, but neither is there nothing"
+    )
+
+
 class LogRemark(Record):
     """A channel of a log that is no plain measurement."""
 
@@ -352,6 +378,7 @@ class Diagnosis(Record):
     calibration: Recalibration | None = Field(default=None, description="a file that is off in many coefficients; null: it is not")
     harm: tuple[AxisHarm, ...] = Field(default=(), description="axes that get worse with the causes")
     parity: tuple[SensorFault, ...] = Field(default=(), description="faults of sensors by kinematics alone")
+    indications: Indications | None = Field(default=None, description="what points to a cause where none is named; null: causes are")
     heatmap: HeatMap | None = Field(default=None, description="the gap by axis and regime, of the first run")
     traces: tuple[Trace, ...] = Field(default=(), description="the windows with the largest gap, before and after")
     coherence: Coherence | None = Field(default=None, description="how alike the effects are in these logs")
@@ -385,13 +412,23 @@ class Diagnosis(Record):
     @classmethod
     def read(cls, document: Mapping[str, Any]) -> Self:
         """The diagnosis of a document, of this version or of another: keys unknown here are passed over, keys that came later may be missing.
+        Where no cause is named, indications that an older document does not state follow from what it holds.
 
         Raises:
             BadInput: names every key of the contract that is missing or is not what it should be.
         """
         try:
-            return cls.model_validate(document)
+            found = cls.model_validate(document)
         except ValidationError as error:
             problems = [f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors()]
             hint = f"a document of schema {SCHEMA}, as `rovval diagnose --json` writes it, is needed"
             raise BadInput(all_at_once(problems, f"diagnosis of {document.get('run', 'an unnamed run')}"), hint) from None
+        return found if found.causes or found.indications else found.model_copy(update={"indications": found._indicated()})
+
+    def _indicated(self) -> Indications:
+        """What points to a cause, from the candidates, the sensors' faults and the shares that the diagnosis holds."""
+        shares = self.detection
+        known = Accounted(shares.noise, shares.tolerance_share, shares.largest_departure) if shares else Accounted(0.0, 0.0, 0.0)
+        first = [(c.effect, c.evidence, c.gain) for c in (self.finalists[0] if self.finalists else ())]
+        found = indications(first, known, [FittedFault(**row.model_dump()) for row in self.parity])
+        return Indications.model_validate(found, from_attributes=True)

@@ -7,7 +7,7 @@ effect that the library lacks, which many coefficients imitate, looks the same.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 
@@ -67,17 +67,17 @@ def recalibration(
         return None
     progress("fitting them anew without the windows that they are scored on", 0.95)
     shrunk = refitted_shrinkage(problem, fitted, before, tolerance, seed)
-    by_causes = max(shrinkage(problem, decision.fit, before, seed)["total"], 0.0)
-    if shrunk["low"] <= by_causes + FURTHER_GAIN * (1.0 - by_causes):
+    by_causes = max(shrinkage(problem, decision.fit, before, seed).total, 0.0)
+    if shrunk.low <= by_causes + FURTHER_GAIN * (1.0 - by_causes):
         return None
     searched = {problem.plant.slots[s].hypothesis for s in fitted.slots if _effect(problem, s).searched}
     slots = [problem.plant.slots[s] for s in fitted.slots]
     return Recalibration(
         parameters=rows,
         beyond=beyond,
-        shrinkage=Shrinkage.model_validate(shrunk),
+        shrinkage=Shrinkage(**asdict(shrunk)),
         held_out="runs" if len(problem.runs) > 1 and len(problem.folds) == len(problem.runs) else "windows",
-        harm=tuple(AxisHarm(**row) for row in worsened_axes(shrunk)),
+        harm=tuple(AxisHarm(axis=axis, change=change) for axis, change in worsened_axes(shrunk).items()),
         fitted=tuple(s.key for s in slots if s.hypothesis not in searched),
         diagnosed=tuple(sorted(searched)),
     )
@@ -112,7 +112,7 @@ def _fitted(problem: Problem, selection: Selection, decision: Decision) -> Hypot
             break
         free = able
         point = fit_quickly(problem, near.beta, (*causes, *free), near.whitened).posterior
-    rough, *_ = fit_identifiable(problem, (*causes, *free), near, causes)
+    rough = fit_identifiable(problem, (*causes, *free), near, causes).fit
     return fit_hypothesis(problem, rough.posterior.beta, rough.slots) if rough else None
 
 

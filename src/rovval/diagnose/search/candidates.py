@@ -98,7 +98,7 @@ def _like_the_best(data: NormalEquations, ordered: list[Hypothesis], fits: Fits)
 def _has_local_minima(h: Hypothesis) -> bool:
     """Whether fits of it end in one of many local minima: it begins well away from no effect and is not fitted through the beginnings of windows, or it
     oscillates."""
-    return (h.whole and not h.evident) or h.effect.has("period")
+    return (h.from_full_size and not h.evident) or h.effect.has("period")
 
 
 def _refitted(problem: Problem, promised: Mapping[str, float], fits: Fits, alone: Start | None, ground: float) -> Fits:

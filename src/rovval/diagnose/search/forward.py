@@ -29,7 +29,7 @@ from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of, prior_
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, fit_hypothesis, fit_quickly
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.inference.map_fit import refit_healthy
-from rovval.diagnose.problem.cross_validation import FoldSums, contest, cross_validate
+from rovval.diagnose.problem.cross_validation import FoldSums, compare_held_out, cross_validate
 from rovval.diagnose.problem.problem import Problem, equations_at
 from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.residuals.ridge import Prior
@@ -92,7 +92,7 @@ def search(
         initialised: the same with the initial points that the log suggests.
         healthy: fit of coefficients within tolerance, without causes.
         seed: of the null logs and bootstraps.
-        progress: told what is done and the share of the whole.
+        progress: called with what is being done and the share of the work that is done (0 to 1).
     """
     causes, refused, steps = list[SelectedCause](), set[str](), list[Step]()
     for number in range(MOST_STEPS):
@@ -214,7 +214,8 @@ def _pruned(problem: Problem, causes: list[SelectedCause]) -> list[SelectedCause
 def _ranking(problem: Problem, library: list[Hypothesis], causes: list[SelectedCause], steps: Sequence[Sequence[Row]]) -> tuple[tuple[str, float], ...]:
     """Every hypothesis with the reduction of the gap that it makes by itself, held out, coefficients as filed: the causes first, then the others by
     that, fitted by re-simulation for the first step's candidates, linearised for the rest."""
-    _, fits = contest(FoldSums.of(problem.gap.total, problem.folds), Prior({}), {h.label: prior_of(problem, h) for h in library}, problem.design_effect)
+    priors = {h.label: prior_of(problem, h) for h in library}
+    _, fits = compare_held_out(FoldSums.of(problem.gap.total, problem.folds), Prior({}), priors, problem.design_effect)
     gap, share = float(problem.gap.total.c.sum()), dict[str, float]()
     for h in library:
         share[h.name] = max(1.0 - fits[h.label].loss / gap, share.get(h.name, -np.inf))

@@ -1,6 +1,6 @@
-"""What of a log is measurement: a sample at a sensor's stop is none, and a value repeated until the next ping is one sample, not many.
+"""Conditioning of a run: samples at the end of a sensor's range are masked, and values repeated until the next ping count as one sample.
 
-Both would be read as an effect: a rate that clips as a bias of the gyro, velocities held between pings as a filter's lag.
+Else both would be read as effects: a rate that clips as a bias of the gyro, velocities held between pings as a filter's lag.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ PINGED = ("u", "v", "w")  # one instrument measures them, so that they are new t
 
 
 def condition(run: Run) -> tuple[Run, tuple[Finding, ...]]:
-    """The run with samples at a stop masked and with held velocities drawn between pings, as a log at the pings' rate would be; and what
-    was found."""
+    """The run with saturated samples masked and held velocities interpolated between pings, as those of a log at the pings' rate are; and the findings,
+    of codes `NO_MEASUREMENT`."""
     values, reasons, resampled = dict(run.values), dict(run.reasons), dict(run.resampled)
     found = list[Finding]()
     for name in (c for c in RATES if run.measured(c)):
@@ -46,11 +46,11 @@ def condition(run: Run) -> tuple[Run, tuple[Finding, ...]]:
             detail = f"stands at the end of its sensor's range ({levels} in SI units) for {stop.sum() * run.dt:.0f} s, which were left out"
             found.append(Finding("saturated", name, detail))
     pinged = tuple(c for c in PINGED if run.measured(c))
-    beat, first = ping_period(run.stack(pinged)) if pinged else (1, 0)
-    if beat > 1:
-        period = beat * run.dt
+    stride, first = ping_period(run.stack(pinged)) if pinged else (1, 0)
+    if stride > 1:
+        period = stride * run.dt
         for name in pinged:
-            values[name], resampled[name] = _between(run.get(name), beat, first), _slower(resampled, name, period, len(run) // beat)
+            values[name], resampled[name] = _interpolated(run.get(name), stride, first), _at_ping_rate(resampled, name, period, len(run) // stride)
         detail = f"hold their values between pings, a new one every {period:.2g} s, and were drawn between these"
         found.append(Finding("held", ", ".join(pinged), detail))
     if not found:
@@ -59,7 +59,7 @@ def condition(run: Run) -> tuple[Run, tuple[Finding, ...]]:
 
 
 def saturated(values: Array) -> Flags:
-    """Samples (n,) that stand at the end of a sensor's range: the same extreme again and again, reached steeply."""
+    """Samples (n,) of a channel at the end of its sensor's range: the same extreme value many times, reached in a step that noise does not make."""
     known = values[np.isfinite(values)]
     stop = np.zeros(len(values), dtype=bool)
     noise = white_noise(known, np.ones(len(known), dtype=bool))
@@ -76,34 +76,35 @@ def saturated(values: Array) -> Flags:
 
 
 def _never_changes(values: Array) -> bool:
-    """Whether a channel says the same thing other than 0 all along; a vehicle that keeps to one axis may well have zeros on another."""
+    """Whether a channel holds one and the same value other than 0; zeros are plausible of a vehicle that keeps to another axis."""
     known = values[np.isfinite(values)]
     return bool(len(known) > 1 and np.ptp(known) == 0.0 and known[0] != 0.0)
 
 
 def ping_period(values: Array) -> tuple[int, int]:
-    """Beat (samples) at which channels (n, c) are new and the first such sample, where all repeat themselves to the last digit between; else (1, 0).
+    """Period (samples) at which channels (n, c) change and the first sample at which they do; (1, 0) where they do not hold their values between.
 
-    A vehicle at rest in a coarsely written log repeats itself, too, but at no beat.
+    A vehicle at rest in a coarsely written log repeats values, too, but at no regular period.
     """
     change = np.diff(values, axis=0)
     new = np.flatnonzero(((change != 0.0) & np.isfinite(change)).any(axis=1)) + 1
     if len(new) < SATURATED_SAMPLES or len(new) > (1.0 - HELD_SHARE) * len(values):
         return 1, 0
-    beats = range(SLOWEST_PING, 1, -1)
-    on = {k: np.bincount(new % k, minlength=k) for k in beats}
+    strides = range(SLOWEST_PING, 1, -1)
+    on = {k: np.bincount(new % k, minlength=k) for k in strides}
     return next(((k, int(count.argmax())) for k, count in on.items() if count.max() >= PING_REGULARITY * len(new)), (1, 0))
 
 
-def _between(values: Array, beat: int, first: int) -> Array:
-    """Values (n,) drawn between pings; unknown ones, and what stands before the first and after the last, as they are."""
+def _interpolated(values: Array, stride: int, first: int) -> Array:
+    """Values (n,) interpolated linearly between pings; unknown ones, and those before the first ping and after the last, as they are."""
     grid = np.arange(len(values))
-    at = grid[first::beat][np.isfinite(values[first::beat])]
+    at = grid[first::stride][np.isfinite(values[first::stride])]
     inside = np.isfinite(values) & (grid >= at[0]) & (grid <= at[-1])
     return np.where(inside, np.interp(grid, at, values[at]), values)
 
 
-def _slower(resampled: Mapping[str, Resampled], name: str, period_s: float, samples: int) -> Resampled:
+def _at_ping_rate(resampled: Mapping[str, Resampled], name: str, period_s: float, samples: int) -> Resampled:
+    """How a channel came onto the grid, ``samples`` of them every ``period_s`` (s)."""
     before = resampled.get(name)
     if before is None:
         return Resampled("linear", samples, period_s, period_s, period_s, 1.0)

@@ -1,4 +1,4 @@
-"""Where the vehicle is held or aground: the simulator knows neither surface, hand nor floor."""
+"""Contact: samples at which the vehicle touches what no simulator of it models: the surface, a hand or crane, the bottom."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from rovval.simulation.actuation import Actuation
 
 
 def in_contact(run: Run, driven: Actuation) -> Flags:
-    """Where the vehicle is at the surface, held or aground (n,): thrusters idle at the shallow end of the depth that the log covers, or
-    idle and still at the deep end.
+    """Samples (n,) of a run at which the vehicle is in contact: thrusters idle at the shallow end of the log's depth range, or idle and the
+    vehicle at rest at its deep end.
 
-    The simulator knows neither surface, hand nor floor. Nothing is found in a log without depth or that hardly changes depth.
+    ``driven`` holds the thruster speeds. No sample of a log without depth, or whose depth varies by less than `CONTACT_DEPTH_RANGE`, is in contact.
     """
     still = np.zeros(len(run), dtype=bool)
     depth = run.get("z")

@@ -1,4 +1,4 @@
-"""The windows that a diagnosis works on: short windows restarted from the measured state (multiple shooting).
+"""Multiple shooting (Bock 1981): a run cut into short windows, each simulated from its own measured state.
 
 A window of 10 s is three to five time constants of surge of an observation-class ROV: long enough for a missing force to show as a
 velocity error, short enough that the initial state does not decide the outcome.
@@ -24,26 +24,27 @@ from rovval.vehicle.model import Vehicle
 
 
 def cut(runs: Sequence[Run], vehicle: Vehicle, model: str, window_s: float) -> tuple[tuple[Windows, ...], tuple[str, ...]]:
-    """Every run cut into windows of one length: the longest of ``window_s``, its half and its quarter that suits them all; and which runs
-    were too short and left out, with the reason.
+    """Cut runs of ``vehicle`` into windows of one length: the longest of ``window_s`` (s), its half and its quarter that suits all of them.
+
+    ``model`` is the platform whose plant simulates them. Returns the windows of each run, and for each run that is too short the reason why it was left out.
 
     Raises:
         BadInput: no run can be cut, or the runs differ in the channels that they hold.
     """
-    parts, left_out = list[Windows](), list[str]()
+    windows, left_out = list[Windows](), list[str]()
     for run in (condition(one)[0] for one in runs):
         try:
-            parts.append(cut_run(run, vehicle, model, window_s))
+            windows.append(cut_run(run, vehicle, model, window_s))
         except BadInput as error:
             if len(runs) == 1:
                 raise
             left_out.append(error.message)
-    if not parts:
+    if not windows:
         raise BadInput(all_at_once(left_out, "no log can be diagnosed"), "use longer logs")
-    shortest = min(part.steps + 1 for part in parts)
-    same = tuple(p if p.steps + 1 == shortest else _cut(p.run, vehicle, model, shortest * p.run.dt) for p in parts)
-    if len({part.channels for part in same}) > 1:
-        held = "; ".join(f"{part.run.id}: {', '.join(part.channels)}" for part in same)
+    shortest = min(own.steps + 1 for own in windows)
+    same = tuple(own if own.steps + 1 == shortest else _cut(own.run, vehicle, model, shortest * own.run.dt) for own in windows)
+    if len({own.channels for own in same}) > 1:
+        held = "; ".join(f"{own.run.id}: {', '.join(own.channels)}" for own in same)
         raise BadInput(f"the logs hold different channels and cannot be diagnosed together ({held})", "diagnose them one by one")
     return same, tuple(left_out)
 
@@ -65,12 +66,13 @@ def cut_run(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Windows:
 
 
 def _cut(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Windows:
+    """The windows of ``window_s`` (s) in which inputs are known, the vehicle is out of contact and enough is measured; raises as `cut_run`."""
     plant, driven = Plant(vehicle, model), recorded_actuation(run, vehicle)
     channels = residual_channels(run)
     steps = round(window_s / run.dt) - 1
-    touching = in_contact(run, driven)
-    values, good, noise, wild = clean_channels(run, channels)
-    start = _starts(driven.known & ~touching, startable(run) & ~wild, steps)
+    contact = in_contact(run, driven)
+    values, good, noise, outlier = clean_channels(run, channels)
+    start = _starts(driven.known & ~contact, startable(run) & ~outlier, steps)
     inside = start[:, None] + np.arange(steps + 1)[None, :]
     possible = np.mean([1.0 / stride for stride in sample_strides(run, channels)])
     enough = good[inside].mean(axis=(1, 2)) >= MEASURED_SHARE * possible if len(start) else np.zeros(0, dtype=bool)
@@ -83,14 +85,8 @@ def _cut(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Windows:
     inside = start[:, None] + np.arange(steps + 1)[None, :]
     nu0, eta0, _ = start_states(run, start)
     return Windows(
-        run, plant, driven, channels, start, steps, nu0, eta0, values[inside], good[inside], noise, int(wild.sum()), float(touching.sum() * run.dt)
+        run, plant, driven, channels, start, steps, nu0, eta0, values[inside], good[inside], noise, int(outlier.sum()), float(contact.sum() * run.dt)
     )
-
-
-
-
-
-
 
 
 def _starts(known: Flags, ready: Flags, steps: int) -> NDArray[np.int64]:
@@ -104,5 +100,3 @@ def _starts(known: Flags, ready: Flags, steps: int) -> NDArray[np.int64]:
         else:
             at += 1
     return np.array(starts, dtype=np.int64)
-
-

@@ -1,4 +1,4 @@
-"""A log's channels as a diagnosis takes them: what counts as a sample, its white noise, and outliers set aside."""
+"""White noise of a log's channels, the samples that are measurements of their own, and outliers."""
 
 from __future__ import annotations
 
@@ -21,41 +21,44 @@ ANGLES = ("phi", "theta", "psi")
 
 
 def clean_channels(run: Run, channels: Sequence[str]) -> tuple[Array, Flags, Array, Flags]:
-    """Channel values (n, c), where they count, white noise of each (c,), and where isolated outliers were set aside (n,): no window begins
-    at one, since its start state would be the outlier."""
+    """Channels of a run without outliers: (values, good, noise, outlier).
+
+    Values (n, c) are zero where they are not ``good`` (n, c): not measured, drawn between two samples, or an outlier. ``noise`` (c,) is the standard
+    deviation of white noise, at least that of rounding. ``outlier`` (n,) are samples at which no window may begin.
+    """
     values = run.stack(tuple(channels))
     good = np.isfinite(values)
-    noise, spoiled = np.zeros(len(channels)), np.zeros(len(run), dtype=bool)
+    noise, outliers = np.zeros(len(channels)), np.zeros(len(run), dtype=bool)
     for i, (name, stride) in enumerate(zip(channels, sample_strides(run, channels), strict=True)):
         real = np.arange(0, len(run), stride)
         keep = np.zeros(len(run), dtype=bool)
         keep[real] = good[real, i]
         series = values[real, i]
-        wild = _wild(series, name)
-        spoiled[real] |= wild & keep[real]
-        keep[real] &= ~wild
+        outlier = _outliers(series, name)
+        outliers[real] |= outlier & keep[real]
+        keep[real] &= ~outlier
         noise[i] = max(white_noise(series, keep[real]), quantisation_step(run.get(name)) / np.sqrt(12.0))
         good[:, i] = keep
-    return np.where(good, values, 0.0), good, noise, spoiled
+    return np.where(good, values, 0.0), good, noise, outliers
 
 
 def sample_strides(run: Run, channels: Sequence[str]) -> tuple[int, ...]:
-    """Grid points per real sample of each channel: 1 at the grid's rate, 3 for a depth logged at 3 Hz. What alignment drew between two
-    samples is not evidence of its own."""
+    """Grid points per measured sample of each channel: 1 at the grid's rate, 3 for a depth logged at 3 Hz. What alignment interpolated between
+    two samples is no measurement of its own."""
     periods = [run.resampled[c].period_s if c in run.resampled else run.dt for c in channels]
     return tuple(max(1, round(period / run.dt)) for period in periods)
 
 
-def _wild(series: Array, name: str) -> Flags:
-    """Isolated samples far from the mean of their neighbours (n,)."""
-    wild = np.zeros(len(series), dtype=bool)
+def _outliers(series: Array, name: str) -> Flags:
+    """Isolated samples (n,) far from the mean of their neighbours."""
+    outlier = np.zeros(len(series), dtype=bool)
     before, after = series[:-2] - series[1:-1], series[2:] - series[1:-1]
     bend = 0.5 * (wrap(before) + wrap(after)) if name in ANGLES else 0.5 * (before + after)
     finite = bend[np.isfinite(bend)]
     spread = 1.4826 * float(np.median(np.abs(finite))) if len(finite) else 0.0
     with np.errstate(invalid="ignore"):
-        wild[1:-1] = np.abs(bend) > OUTLIER_SIGMA * max(spread, 2 * LEAST_NOISE[name])
-    return wild
+        outlier[1:-1] = np.abs(bend) > OUTLIER_SIGMA * max(spread, 2 * LEAST_NOISE[name])
+    return outlier
 
 
 def white_noise(series: Array, good: Flags) -> float:

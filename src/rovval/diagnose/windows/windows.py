@@ -22,10 +22,24 @@ POSE_OF = dict(zip(VELOCITY_CHANNELS, ("x", "y", "z", "phi", "theta", "psi"), st
 
 @dataclass(frozen=True, slots=True)
 class Windows:
-    """Windows of one run: ``start`` (m,) grid index, ``steps`` per window, measured start states (m, 6), and the measured channels
-    ``y`` (m, steps + 1, c) with ``ok`` where they hold a value. ``noise`` (c,) is the white part of each channel's error; ``contact_s``
-    seconds left out because the vehicle was held or aground. ``pushed`` (m, steps + 1, c, d) is what disturbances of one standard deviation
-    do to the windows (`disturbance`), once their size is known; ``stopped`` windows in which the simulation of the vehicle as it is stops."""
+    """The m windows of one run, of n = steps + 1 samples of c residual channels each; SI units and radians.
+
+    Attributes:
+        run: the run, conditioned.
+        plant: what simulates it.
+        actuation: thruster speeds and whatever else drives the simulation.
+        channels: names of the residual channels.
+        start: first sample of each window on the run's grid (m,).
+        steps: sampling intervals of a window.
+        nu0, eta0: measured initial velocities and poses (m, 6).
+        y: measured channels (m, n, c).
+        ok: where they hold a measurement (m, n, c).
+        noise: standard deviation of the white noise of each channel (c,).
+        outliers: samples that were set aside as such.
+        contact_s: seconds that were left out because the vehicle was in contact.
+        disturbance_response: what disturbances of one standard deviation do to the channels (m, n, c, d); None until they are estimated.
+        stopped: windows in which the simulation of the nominal vehicle stops.
+    """
 
     run: Run
     plant: Plant
@@ -59,14 +73,15 @@ class Windows:
 
 
 def residual_channels(run: Run) -> tuple[str, ...]:
-    """Velocities, or the pose of an axis whose velocity was not logged, and roll and pitch, whose static value shows trim."""
+    """The channels of a run that a simulation is compared in: velocities, or the pose of an axis whose velocity was not logged, and roll and pitch, whose
+    static value shows trim."""
     chosen = [c if run.measured(c) else POSE_OF[c] for c in VELOCITY_CHANNELS]
     chosen += [c for c in ATTITUDE_CHANNELS if c not in chosen]
     return tuple(c for c in chosen if run.measured(c))
 
 
 def predicted_channels(windows: Windows, nu: Array, eta: Array, out: Array | None = None) -> Array:
-    """The residual channels of simulated motions: (b, steps + 1, 6) twice -> (b, steps + 1, c), into ``out`` where it is given."""
+    """Residual channels (b, n, c) of simulated velocities ``nu`` and poses ``eta`` (b, n, 6); written to ``out`` where it is given."""
     names = (*VELOCITY_CHANNELS, "x", "y", "z", "phi", "theta", "psi")
     at = [names.index(channel) for channel in windows.channels]
     begins = [i for i in range(len(at)) if i == 0 or at[i] != at[i - 1] + 1 or at[i] == 6]  # neighbours are copied at once
@@ -75,7 +90,7 @@ def predicted_channels(windows: Windows, nu: Array, eta: Array, out: Array | Non
 
 
 def channel_difference(windows: Windows, a: Array, b: Array) -> Array:
-    """a - b per channel, angles wrapped."""
+    """a - b (..., c) by channel, angles wrapped to (-pi, pi]."""
     out = a - b
     for i, name in enumerate(windows.channels):
         if name in ANGLES and (np.abs(out[..., i]) > np.pi).any():
@@ -84,7 +99,7 @@ def channel_difference(windows: Windows, a: Array, b: Array) -> Array:
 
 
 def axis_channels(windows: Windows) -> dict[str, int]:
-    """Channel that carries the gap of each measured axis: its velocity, or its pose where that is all there is."""
+    """Index of the channel in which the gap on each measured axis is stated: its velocity, or its pose where no velocity was logged."""
     carrier = {}
     for axis, velocity in zip(AXES, VELOCITY_CHANNELS, strict=True):
         name = velocity if velocity in windows.channels else POSE_OF[velocity]

@@ -48,31 +48,47 @@ def run(
                 again = 0
                 if not hold and step + sub > 0:  # a step begins where the last one ended
                     again, begin = 1, 2 - begin
-                for s in range(again, 3):
-                    f = f0 + (f1 - f0) * 0.5 * s
-                    slot = 1 + (s - 1) * (1 - begin)
-                    tv = th[slot * (THRUST_ROWS * W) : (slot + 1) * (THRUST_ROWS * W)]
-                    if FULL:
-                        lv = lg[slot * LOG_ROWS * W : (slot + 1) * LOG_ROWS * W]
-                    thrust_of_stage(
-                        m, tv, lv, la, geo, g, pairs, weights, s, f, f0, inv_dt, use_log, use_rest, use_wake, use_side, use_extra
-                    )
+                thrust_over_substep(
+                    m, th, lg, la, geo, g, pairs, weights, again, begin, f0, f1, inv_dt, use_log, use_rest, use_wake, use_side, use_extra
+                )
                 if FULL and pending:
                     take_payload(m, late, onset, b, begin * LOG_ROWS * W + 4 * W, lg)
                 if FULL:
                     remember_lag(m)
-                for stage in range(4):
-                    slot = 1 + ((stage + 1) // 2 - 1) * (1 - begin)
-                    tv = th[slot * (THRUST_ROWS * W) : (slot + 1) * (THRUST_ROWS * W)]
-                    if FULL:
-                        lv = lg[slot * LOG_ROWS * W : (slot + 1) * LOG_ROWS * W]
-                    xs, xn = (STATE + 13 * stage) * W, (STATE + 13 * stage + 13) * W
-                    reach = -0.5 * h if stage == 3 else (h if stage == 2 else 0.5 * h)
-                    half = 0.5 * reach
-                    effects_on_state(m, tv, lv, g, acts, b, xs, use_state, use_water, use_cross, use_flow)
-                    equations_of_motion(m, tv, xs, xn, reach, half)
+                motion_over_substep(m, th, lg, g, acts, b, begin, h, use_state, use_water, use_cross, use_flow)
                 take_step(m, stopped[b], reason[b], step)
             record(m, out, step + 1, b * W)
+
+
+def thrust_over_substep(
+    m: Array, th: Array, lg: Array, la: Array, geo: Array, g: Array, pairs: Array, weights: Array, again: int, begin: int, f0: float, f1: float,
+    inv_dt: float, use_log: bool, use_rest: bool, use_wake: bool, use_side: bool, use_extra: bool,
+) -> None:  # fmt: skip
+    """Thrust, and what effects need of the log, at the start, the middle and the end of a substep; from the middle on where it goes on from the last."""
+    for s in range(again, 3):
+        f = f0 + (f1 - f0) * 0.5 * s
+        slot = 1 + (s - 1) * (1 - begin)
+        tv = th[slot * (THRUST_ROWS * W) : (slot + 1) * (THRUST_ROWS * W)]
+        if FULL:
+            lv = lg[slot * LOG_ROWS * W : (slot + 1) * LOG_ROWS * W]
+        thrust_of_stage(m, tv, lv, la, geo, g, pairs, weights, s, f, f0, inv_dt, use_log, use_rest, use_wake, use_side, use_extra)
+
+
+def motion_over_substep(
+    m: Array, th: Array, lg: Array, g: Array, acts: Array, b: int, begin: int, h: float, use_state: bool, use_water: bool, use_cross: bool,
+    use_flow: bool,
+) -> None:  # fmt: skip
+    """The four stages of a Runge-Kutta step of length ``h`` (s), each with the effects that act on its state."""
+    for stage in range(4):
+        slot = 1 + ((stage + 1) // 2 - 1) * (1 - begin)
+        tv = th[slot * (THRUST_ROWS * W) : (slot + 1) * (THRUST_ROWS * W)]
+        if FULL:
+            lv = lg[slot * LOG_ROWS * W : (slot + 1) * LOG_ROWS * W]
+        xs, xn = (STATE + 13 * stage) * W, (STATE + 13 * stage + 13) * W
+        reach = -0.5 * h if stage == 3 else (h if stage == 2 else 0.5 * h)
+        half = 0.5 * reach
+        effects_on_state(m, tv, lv, g, acts, b, xs, use_state, use_water, use_cross, use_flow)
+        equations_of_motion(m, tv, xs, xn, reach, half)
 
 
 def load_block(m: Array, numbers: Array, states: Array, b: int) -> None:

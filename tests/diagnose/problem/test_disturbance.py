@@ -18,10 +18,10 @@ from rovval.blind.plant.scales import scales
 from rovval.blind.plant.spec import stream
 from rovval.core.channels import AXES
 from rovval.diagnose import diagnose
+from rovval.diagnose.criteria import DISTURBANCE_SEGMENTS
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.problem.disturbance import (
-    SEGMENTS,
     estimate_disturbance,
     initial_disturbance,
     principal_parts,
@@ -44,11 +44,11 @@ def quiet():
 @pytest.mark.parametrize("memory_s", [0.5, 5.0])
 def test_size_and_memory_of_what_was_put_in_are_found(quiet, memory_s):
     parts, origin, to, variance = quiet
-    rng, piece_s, share = np.random.default_rng(1), 10.0 / SEGMENTS, np.array([0.1, 0.05, 0.1, 0.02, 0.05, 0.1])
+    rng, piece_s, share = np.random.default_rng(1), 10.0 / DISTURBANCE_SEGMENTS, np.array([0.1, 0.05, 0.1, 0.02, 0.05, 0.1])
     keep = np.exp(-piece_s / memory_s)
-    f = np.zeros((parts[0].count, len(AXES), SEGMENTS))
+    f = np.zeros((parts[0].count, len(AXES), DISTURBANCE_SEGMENTS))
     f[..., 0] = rng.normal(size=f.shape[:2])
-    for i in range(1, SEGMENTS):
+    for i in range(1, DISTURBANCE_SEGMENTS):
         f[..., i] = keep * f[..., i - 1] + np.sqrt(1 - keep**2) * rng.normal(size=f.shape[:2])
     moved = np.einsum("wtci,wi->wtc", to.segments[0], (f * share[:, None]).reshape(len(f), -1))
     one = linearise(parts[0], origin, ())
