@@ -1,4 +1,4 @@
-"""`rovval fit`: tune chosen parameters of a vehicle to logs, as the thesis does by hand in 6.5."""
+"""`rovval fit`: calibrate a vehicle's file to logs, or tune chosen parameters of it, as the thesis does by hand in 6.5."""
 
 from __future__ import annotations
 
@@ -12,11 +12,14 @@ from rovval.cli import logs, options, output
 
 def command(
     sources: options.Sources,
+    out: Annotated[Path, typer.Option("--out", metavar="VEHICLE.toml", help="Where the fitted vehicle is written.")],
     parameters: Annotated[
-        list[str],
-        typer.Option("--parameters", metavar="NAME[,NAME]", help="What to tune, such as quadratic_drag[surge]; repeatable."),
-    ],
-    out: Annotated[Path, typer.Option("--out", metavar="VEHICLE.toml", help="Where the tuned vehicle is written.")],
+        list[str] | None,
+        typer.Option(
+            "--parameters", metavar="NAME[,NAME]",
+            help="Tune these alone, such as quadratic_drag[surge]; repeatable. Default: all that a file may have wrong.",
+        ),
+    ] = None,
     vehicle: options.VehicleOption = None,
     model: options.ModelOption = options.Model.fossen,
     window: options.WindowOption = 10.0,
@@ -27,22 +30,32 @@ def command(
     json_: options.JsonFlag = False,
     quiet: options.QuietOption = False,
 ) -> None:
-    """Tune chosen parameters to one or more runs and write the tuned vehicle.
+    """Calibrate a vehicle's file to one or more runs, or tune chosen parameters of it, and write the vehicle.
+
+    Without --parameters all that a file may have wrong is estimated at once: thrust, height of thrusters, drag, added mass, inertia, trim, lag, and
+    how sensors are mounted. What the logs do not show stays near the file. Several runs also predict one another.
 
     \b
     Example:
+      rovval fit dive1.csv dive2.csv --out calibrated.toml
       rovval fit dive.csv --parameters quadratic_drag[surge],quadratic_drag[sway] --out tuned.toml
     """
-    from rovval.fit import fit
+    from rovval.fit import FitResult, fit
+    from rovval.fit.calibration import calibrate
     from rovval.pipeline.steps import vehicle_of
     from rovval.report.fit import text
     from rovval.storage.atomic import refuse_unwritable, write_text
+    from rovval.vehicle.write import to_toml
 
     refuse_unwritable(out)
     options.refuse_overwriting(vehicle, out)
     runs = logs.opened_as_one(sources, vehicle, profile, archive, quiet, start_s, end_s)
-    wanted = [name for some in parameters for name in some.split(",") if name]
-    tuned = fit(runs, vehicle_of(runs[0], vehicle), wanted, model=model.value, window_s=window)
+    wanted, nominal = [name for some in parameters or () for name in some.split(",") if name], vehicle_of(runs[0], vehicle)
+    if parameters is None:
+        found = calibrate(runs, nominal, model=model.value, window_s=window, progress=output.progress(quiet))
+        tuned = FitResult(to_toml(found.vehicle), found.document())
+    else:
+        tuned = fit(runs, nominal, wanted, model=model.value, window_s=window)
     write_text(out, tuned.vehicle)
     if json_:
         output.result_json(tuned.document)

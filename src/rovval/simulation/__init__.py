@@ -12,6 +12,7 @@ from rovval.core.errors import SimulationStopped, UsageProblem
 from rovval.plant import Plant, parse_settings
 from rovval.simulation.actuation import Actuation, recorded_actuation, start_states, startable
 from rovval.simulation.sanity_limits import first_beyond
+from rovval.simulation.step import steps_a_sample
 from rovval.vehicle.model import Vehicle
 
 WINDOW_S = 10.0  # about three to five time constants of surge of an observation-class ROV
@@ -33,8 +34,9 @@ def simulate(
     length = round(window_s / run.dt)
     if length < 2:
         raise UsageProblem(f"window of {window_s} s at {run.dt} s a sample", "use at least two samples a window")
-    plant = Plant(vehicle, model)
     driven = recorded_actuation(run, vehicle)
+    plant = Plant(vehicle, model)
+    plant = Plant(vehicle, model, steps_a_sample(vehicle, plant.thrust(driven.inputs.speed), run.dt))
     settings = (*carried_effects(vehicle), *effects)
     beta = parse_settings(plant, settings)
     ready = startable(run)

@@ -146,7 +146,7 @@ def mix(sticks: Array, mixer: Mixer) -> Array:
 
 
 def _equivalent_speed(pwm: Array, vehicle: Vehicle, table: PulseTable) -> Array:
-    """Speed (rev/s) at which the thruster's quadratic law gives the table's thrust: the table stays exact, the law simple.
+    """Speed (rev/s) at which the quadratic law of the table's thruster gives the table's thrust: the table stays exact, the law simple.
 
     Raises BadInput for a pulse width outside the table: nothing is extrapolated.
     """
@@ -154,7 +154,8 @@ def _equivalent_speed(pwm: Array, vehicle: Vehicle, table: PulseTable) -> Array:
     if (outside := (pwm < low) | (pwm > high)).any():
         raise BadInput(f"{int(outside.sum())} pulse widths outside the thruster table ({low:g} to {high:g} us), worst {pwm[outside].max():g}")
     thrust = np.interp(pwm, table.pwm_us, table.thrust)
-    gain = np.where(thrust >= 0, [t.k_pos for t in vehicle.thruster], [t.k_neg for t in vehicle.thruster])
+    ahead, astern = table.k_pos or [t.k_pos for t in vehicle.thruster], table.k_neg or [t.k_neg for t in vehicle.thruster]
+    gain = np.where(thrust >= 0, ahead, astern)
     return np.asarray(np.sign(thrust) * np.sqrt(np.abs(thrust) / gain) / 60.0)
 
 

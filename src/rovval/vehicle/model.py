@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,16 +90,25 @@ class Mixer(Strict):
 
 class PulseTable(Strict):
     """Pulse width (us) to thrust (N) and, where it was measured, shaft speed (rpm, signed) at one supply voltage. The simulator needs
-    the thrust alone: speeds of a log that holds pulse widths are those at which the thruster's law gives it."""
+    the thrust alone: speeds of a log that holds pulse widths are those at which the thruster's law gives it.
+
+    ``k_pos`` and ``k_neg`` are the gains (N/rpm2, one for each thruster) of thrusters that give this thrust, where the vehicle's own differ from
+    them: those then give as much more or less at the same pulse width. Without them the table is of the vehicle's own thrusters.
+    """
 
     voltage: Positive
     pwm_us: tuple[float, ...]
     rpm: tuple[float, ...] | None = None
     thrust: tuple[float, ...]
+    k_pos: tuple[Positive, ...] = ()
+    k_neg: tuple[Positive, ...] = ()
 
 
 class Vehicle(Strict):
-    """One vehicle. ``sources`` names where each number comes from; ``convention`` guards against drag stored as negative."""
+    """One vehicle. ``sources`` names where each number comes from; ``convention`` guards against drag stored as negative.
+
+    ``calibration`` is how far `rovval fit` has moved each of its unknowns from the numbers that it began with: the next fit counts from there.
+    """
 
     name: str
     title: str = ""
@@ -112,6 +121,7 @@ class Vehicle(Strict):
     mixer: Mixer | None = None
     pulse_table: PulseTable | None = None
     effects: dict[str, dict[str, float]] = {}
+    calibration: dict[str, float] = {}
 
     @property
     def thrusters(self) -> tuple[str, ...]:
@@ -131,9 +141,12 @@ class Vehicle(Strict):
     @property
     def hash(self) -> str:
         """Short content hash: two vehicles with one hash move alike."""
-        numbers = self.model_dump(
-            mode="json", exclude={"sources": True, "notes": True, "title": True, "thruster": {"__all__": {"rpm_max"}}, "mixer": {"frame": True}}
-        )
+        left_out: Any = {
+            "sources": True, "notes": True, "title": True, "calibration": True, "thruster": {"__all__": {"rpm_max"}}, "mixer": {"frame": True},
+        }  # fmt: skip
+        numbers = self.model_dump(mode="json", exclude=left_out)
+        if (table := numbers["pulse_table"]) and not table["k_pos"]:
+            numbers["pulse_table"] = {key: value for key, value in table.items() if key not in ("k_pos", "k_neg")}
         text = json.dumps(numbers, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:12]
 

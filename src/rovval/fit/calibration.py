@@ -1,0 +1,268 @@
+"""Calibration: all that a vehicle's file may have wrong, estimated from logs at once; read `calibrate` first.
+
+Every unknown has a prior about the file and none is frozen: what the logs do not show stays where its prior holds it, and is said to. What
+only some vehicles need (thrusters that differ from one another, a tether) is added where it predicts runs better that it was not fitted to.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from math import exp, log
+from typing import Any
+
+import numpy as np
+
+from rovval.core.channels import AXES, VELOCITIES
+from rovval.core.data import Array, Run
+from rovval.core.errors import BadInput, SimulationStopped
+from rovval.core.version import __version__
+from rovval.diagnose.windows.noise import clean_channels
+from rovval.fit.estimate import Estimate, Problem, maximum
+from rovval.fit.record import Record, record, residual
+from rovval.fit.unknowns import Unknown, applied, unknowns
+from rovval.plant import Plant, parse_settings
+from rovval.simulation import carried_effects, simulate
+from rovval.simulation.step import steps_a_sample
+from rovval.vehicle.model import Vehicle
+
+FLOORS = {"m/s": 0.005, "rad/s": 0.005, "1": 0.005, "m": 0.01}  # least noise that a channel is taken to have: a window's start has as much (chosen)
+HELD_BY_PRIOR = 0.8  # of the prior's standard deviation: a posterior as wide says that the logs show next to nothing of it (chosen)
+CORRELATED = 0.7  # correlation from which two unknowns are told as a pair: half of the variance of each is the other's
+QUANTILE = 1.645  # of a 90 % interval of a normal
+
+Progress = Callable[[str, float], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One unknown: ``value`` beside the file as it was given (a factor, or an offset in ``unit``) with its 90 % interval, ``moved`` from its prior's mean in
+    standard deviations of the prior, and whether the logs ``show`` it or the prior holds it."""
+
+    unknown: Unknown
+    value: float
+    low: float
+    high: float
+    moved: float
+    shown: bool
+
+
+@dataclass(frozen=True, slots=True)
+class AxisError:
+    """Mean absolute error of a free run in the axis's velocity (m/s or rad/s): by the file as given, by the calibrated vehicle, and by one that was
+    calibrated without this run (None: there is no other)."""
+
+    run: str
+    axis: str
+    unit: str
+    given: float
+    calibrated: float
+    left_out: float | None
+    rows: int
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """The calibrated ``vehicle``; its unknowns; pairs of them that go together, with their correlation; errors of free runs; the ``options`` that were
+    accepted, each tried option's change of twice the log likelihood of runs left out; whether the search ``converged``; logs ``left_out``."""
+
+    vehicle: Vehicle
+    rows: tuple[Row, ...]
+    correlations: tuple[tuple[str, str, float], ...]
+    errors: tuple[AxisError, ...]
+    options: Mapping[str, float]
+    accepted: tuple[str, ...]
+    converged: bool
+    left_out: tuple[str, ...]
+
+    def document(self) -> dict[str, Any]:
+        """The same as JSON (schema rovval.calibration/1), factors of the file's numbers and offsets in SI."""
+        return {
+            "schema": "rovval.calibration/1",
+            "rovval": __version__,
+            "run": ", ".join(dict.fromkeys(one.run for one in self.errors)),
+            "vehicle": self.vehicle.name,
+            "vehicle_hash": self.vehicle.hash,
+            "unknowns": {
+                one.unknown.key: {
+                    "kind": one.unknown.kind, "value": one.value, "low": one.low, "high": one.high, "unit": one.unknown.unit,
+                    "meaning": one.unknown.meaning, "moved": one.moved, "shown": one.shown,
+                }
+                for one in self.rows
+            },
+            "correlations": [{"of": [a, b], "value": value} for a, b, value in self.correlations],
+            "free_run": [
+                {"run": e.run, "axis": e.axis, "unit": e.unit, "given": e.given, "calibrated": e.calibrated, "left_out": e.left_out, "n": e.rows}
+                for e in self.errors
+            ],
+            "options": [{"name": name, "gain": gain, "accepted": name in self.accepted} for name, gain in self.options.items()],
+            "converged": self.converged,
+            "left_out": list(self.left_out),
+        }  # fmt: skip
+
+
+def calibrate(runs: Sequence[Run], vehicle: Vehicle, *, model: str = "fossen", window_s: float = 10.0, progress: Progress | None = None) -> Calibration:
+    """The vehicle whose simulation is nearest to its logs, by a maximum a posteriori estimate of what its file may have wrong.
+
+    Args:
+        runs: logs of this vehicle; with two or more, each is predicted once by a calibration without it.
+        window_s: length of the windows, each restarted from the measured state.
+
+    Raises:
+        BadInput: no run has enough windows, or the simulation of the file as given stops in all of them.
+        SimulationStopped: the calibrated vehicle leaves sane limits on one of its own logs.
+    """
+    say = progress or (lambda text, share: None)
+    records, left_out = _records(runs, vehicle, window_s)
+    asked = unknowns(vehicle, _channels(records))
+    chosen = tuple(one for one in asked if not one.optional)
+    say(f"calibrating {len(chosen)} unknowns on {sum(len(one.start) for one in records)} windows", 0.05)
+    estimate = _estimate(records, vehicle, chosen, model, _starts(vehicle, chosen))
+    gains = dict[str, float]()
+    if len(records) > 1:
+        predicted = _prediction(records, vehicle, chosen, model, estimate.values)
+        for name, more in _options(asked).items():
+            say(f"asking whether {name} predicts runs left out better", 0.4)
+            wider = tuple(one for one in asked if one in chosen or one in more)
+            start = _widened(estimate, chosen, wider)
+            better = _prediction(records, vehicle, wider, model, start)
+            gains[name] = better - predicted
+            if better > predicted:
+                estimate, chosen, predicted = _estimate(records, vehicle, wider, model, (start,)), wider, better
+    say("simulating the logs with the calibrated vehicle", 0.8)
+    calibrated = applied(vehicle, chosen, estimate.values)
+    errors = _errors(records, vehicle, calibrated, chosen, model, estimate.values)
+    accepted = tuple(name for name, gain in gains.items() if gain > 0)
+    rows = tuple(_row(vehicle, one, estimate, i) for i, one in enumerate(chosen))
+    return Calibration(calibrated, rows, _pairs(chosen, estimate), errors, gains, accepted, estimate.converged, left_out)
+
+
+def _records(runs: Sequence[Run], vehicle: Vehicle, window_s: float) -> tuple[tuple[Record, ...], tuple[str, ...]]:
+    """Every run that can be used, and why others cannot."""
+    found, problems = list[Record](), list[BadInput]()
+    for run in runs:
+        try:
+            found.append(record(run, vehicle, window_s))
+        except BadInput as problem:
+            problems.append(problem)
+    if not found:
+        raise problems[0]
+    return tuple(found), tuple(str(problem) for problem in problems)
+
+
+def _channels(records: Sequence[Record]) -> tuple[str, ...]:
+    """Channels that some run holds."""
+    return tuple(c for c in (*VELOCITIES, "phi", "theta", "z") if any(one.run.measured(c) for one in records))
+
+
+def _problem(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unknown], model: str) -> Problem:
+    def residuals(values: Array) -> Sequence[Array]:
+        changed = applied(vehicle, chosen, values)
+        plant = Plant(changed, model, max(steps_a_sample(changed, one.thrust(changed), one.run.dt) for one in records))
+        beta = parse_settings(plant, carried_effects(plant.vehicle))
+        return [residual(one, plant, beta) for one in records]
+
+    mean = np.array([-vehicle.calibration.get(one.key, 0.0) for one in chosen])
+    return Problem(residuals, [one.ok for one in records], records[0].run.dt, _floor(records), mean, np.array([one.sd for one in chosen]))
+
+
+def _floor(records: Sequence[Record]) -> Array:
+    """Noise (10,) of the channels: white noise of the sensors as the logs show it, the median over runs."""
+    named = (*VELOCITIES, "phi", "theta", "z")
+    noise = np.median([clean_channels(one.run, named)[2] for one in records], axis=0)
+    tilt = float(np.hypot(noise[6], noise[7]))
+    found = np.array([*noise[:6], tilt, tilt, tilt, noise[8]])
+    least = np.array([FLOORS[unit] for unit in (*("m/s",) * 3, *("rad/s",) * 3, *("1",) * 3, "m")])
+    return np.asarray(np.maximum(np.nan_to_num(found), least))
+
+
+def _estimate(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unknown], model: str, starts: Sequence[Array]) -> Estimate:
+    try:
+        return maximum(_problem(records, vehicle, chosen, model), starts)
+    except ValueError as error:
+        raise BadInput(
+            f"the simulation of {vehicle.name} leaves sane limits within the windows, wherever the search begins",
+            "look at `rovval simulate`; mend gross errors of the file, or give a shorter --window",
+        ) from error
+
+
+def _starts(vehicle: Vehicle, chosen: Sequence[Unknown]) -> tuple[Array, ...]:
+    """The file as it is, and with half and twice the thrust and drag: of forces only their ratio to the mass shows well, so that a search may
+    end at a thrust that is far off."""
+    scaled = np.array([float(one.key == "thrust.gain" or "_drag[" in one.key) for one in chosen])
+    return np.zeros(len(chosen)), -log(2.0) * scaled, log(2.0) * scaled
+
+
+def _options(asked: Sequence[Unknown]) -> dict[str, tuple[Unknown, ...]]:
+    """What is only added where it predicts better, by what it is called."""
+    found = dict[str, tuple[Unknown, ...]]()
+    for one in asked:
+        if one.optional:
+            name = one.key.partition("[")[0]
+            found[name] = (*found.get(name, ()), one)
+    return found
+
+
+def _widened(estimate: Estimate, chosen: Sequence[Unknown], wider: Sequence[Unknown]) -> Array:
+    """The values of an estimate with further unknowns at 0."""
+    known = dict(zip((one.key for one in chosen), estimate.values, strict=True))
+    return np.array([known.get(one.key, 0.0) for one in wider])
+
+
+def _without(records: Sequence[Record], left: int) -> tuple[Record, ...]:
+    return tuple(one for i, one in enumerate(records) if i != left)
+
+
+def _prediction(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unknown], model: str, start: Array) -> float:
+    """Twice the log likelihood of every run under a calibration without it, at that calibration's scales (up to a constant)."""
+    total = 0.0
+    for i, one in enumerate(records):
+        estimate = _estimate(_without(records, i), vehicle, chosen, model, (start,))
+        alone = _problem((one,), vehicle, chosen, model)
+        total += alone.log_likelihood(estimate.values, estimate.scale)
+    return 2.0 * total
+
+
+def _errors(
+    records: Sequence[Record], vehicle: Vehicle, calibrated: Vehicle, chosen: Sequence[Unknown], model: str, start: Array
+) -> tuple[AxisError, ...]:
+    """Mean absolute errors of free runs.
+
+    Raises:
+        SimulationStopped: the calibrated vehicle leaves sane limits on a run on which the vehicle as given does not.
+    """
+    found = list[AxisError]()
+    for i, one in enumerate(records):
+        others = _without(records, i)
+        apart = applied(vehicle, chosen, _estimate(others, vehicle, chosen, model, (start,)).values) if others else None
+        given, after = (simulate(one.run, v, model) for v in (vehicle, calibrated))
+        if after.stops and not given.stops:
+            raise SimulationStopped(
+                f"run {one.run.id}: the calibrated vehicle leaves sane limits: {after.stops[0]}; no vehicle is written",
+                "give logs with more motion on that axis, or a shorter --window",
+            )
+        left = simulate(one.run, apart, model) if apart else None
+        for axis, (name, channel) in enumerate(zip(AXES, VELOCITIES, strict=True)):
+            sims = [s for s in (given, after, left) if s is not None]
+            both = np.all([one.run.ok(channel), *(s.free.ok for s in sims)], axis=0)
+            if both.any():
+                mae = [float(np.abs(s.free.nu[both, axis] - one.run.get(channel)[both]).mean()) for s in sims]
+                unit = "m/s" if axis < 3 else "rad/s"
+                found.append(AxisError(one.run.id, name, unit, mae[0], mae[1], mae[2] if left else None, int(both.sum())))
+    return tuple(found)
+
+
+def _row(vehicle: Vehicle, one: Unknown, estimate: Estimate, i: int) -> Row:
+    value, error = float(estimate.values[i]), float(estimate.error[i])
+    middle, low, high = (exp(x) if one.kind == "factor" else x for x in (value, value - QUANTILE * error, value + QUANTILE * error))
+    moved = (value + vehicle.calibration.get(one.key, 0.0)) / one.sd
+    return Row(one, middle, low, high, moved, error < HELD_BY_PRIOR * one.sd)
+
+
+def _pairs(chosen: Sequence[Unknown], estimate: Estimate) -> tuple[tuple[str, str, float], ...]:
+    """Unknowns that these logs hardly tell apart, the closest first."""
+    correlation = estimate.correlation
+    pairs = [(chosen[i].key, chosen[j].key, float(correlation[i, j])) for i in range(len(chosen)) for j in range(i)]
+    return tuple(sorted((p for p in pairs if abs(p[2]) >= CORRELATED), key=lambda p: -abs(p[2])))
+
+

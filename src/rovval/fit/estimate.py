@@ -1,0 +1,151 @@
+"""Maximum a posteriori over the unknowns: robust, each channel over its own scale, by damped Gauss-Newton from several starting points.
+
+Residuals of each channel are Student-t about 0 with a scale of their own that is estimated along with the unknowns (Lange, Little and
+Taylor 1989): an axis that the model fits badly counts for little, one that it fits well for much, an outlier hardly at all. Residuals are
+correlated in time; they count as one independent sample a second.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rovval.core.data import Array, Flags
+
+FREEDOM = 8.0  # degrees of freedom of the Student-t (chosen; Lange, Little and Taylor 1989 use 4 for gross outliers, a normal has infinitely many)
+INDEPENDENT_S = 1.0  # seconds a residual is remembered: time constant of surge and of an ROV's attitude (chosen)
+STEPS = 40  # of a fit: far more than any takes; one that needs them has not converged, and is said to
+CONVERGED = 0.01  # change of twice the log posterior below which nothing is gained
+FINE = 1e-3  # of a prior's standard deviation: step of the forward differences
+LARGEST = 2.0  # standard deviations of the prior: a longer step is cut to this, the tangent says nothing there
+DAMPED, HARDER, EASIER, TRIES = 1e-2, 6.0, 0.2, 8  # damping at first, after a step that fails, after one that succeeds (Marquardt 1963), and tries
+
+Residuals = Callable[[Array], Sequence[Array]]
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """``residuals`` of values (k,): one array (..., channels) a run, NaN where the simulation stopped; ``ok`` of the same shapes; ``dt`` s a sample;
+    ``floor`` (channels,) noise of the sensors; ``mean`` and ``sd`` (k,) of the prior."""
+
+    residuals: Residuals
+    ok: Sequence[Flags]
+    dt: float
+    floor: Array
+    mean: Array
+    sd: Array
+
+    def log_likelihood(self, values: Array, scale: Array) -> float:
+        """Log likelihood at ``values`` (k,) and a ``scale`` (channels,), up to a constant; minus infinity where the simulation stops."""
+        residuals = self.residuals(values)
+        return -_misfit(self, residuals, scale) if _finite(residuals) else -np.inf
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """``values`` (k,) at the posterior's maximum, their ``covariance`` (k, k) by Laplace's method, ``cost`` (minus the log posterior, up to a
+    constant), ``scale`` (channels,) of the residuals, and whether it ``converged``."""
+
+    values: Array
+    covariance: Array
+    cost: float
+    scale: Array
+    converged: bool
+
+    @property
+    def error(self) -> Array:
+        """Standard errors (k,)."""
+        return np.asarray(np.sqrt(np.diag(self.covariance)))
+
+    @property
+    def correlation(self) -> Array:
+        """Of the posterior (k, k)."""
+        return np.asarray(self.covariance / np.outer(self.error, self.error))
+
+
+def maximum(problem: Problem, starts: Sequence[Array]) -> Estimate:
+    """The best of the maxima that are reached from ``starts``, each (k,).
+
+    Raises:
+        ValueError: the simulation stops at every starting point.
+    """
+    found = [one for start in starts if (one := _climb(problem, start)) is not None]
+    if not found:
+        raise ValueError("the simulation stops at every starting point")
+    return min(found, key=lambda one: one.cost)
+
+
+def _climb(problem: Problem, start: Array) -> Estimate | None:
+    values, residuals = start.copy(), problem.residuals(start)
+    if not _finite(residuals):
+        return None
+    damping, converged = DAMPED, False
+    scale = _scale(problem, residuals)
+    for _ in range(STEPS):
+        curvature, slope = _normal_equations(problem, values, residuals, scale)
+        cost = _cost(problem, values, residuals, scale)
+        for _ in range(TRIES):
+            step = np.linalg.solve(curvature + damping * np.diag(np.diag(curvature)), -slope)
+            ahead = values + np.clip(step, -LARGEST * problem.sd, LARGEST * problem.sd)
+            there = problem.residuals(ahead)
+            if _finite(there) and (new := _cost(problem, ahead, there, scale)) < cost:
+                break
+            damping *= HARDER
+        else:
+            converged = True  # no step along the slope lowers the cost: this is the bottom, to rounding
+            break
+        values, residuals, damping = ahead, there, damping * EASIER
+        scale = _scale(problem, residuals)
+        if cost - new < CONVERGED / 2:
+            converged = True
+            break
+    curvature, _ = _normal_equations(problem, values, residuals, scale)
+    return Estimate(values, np.asarray(np.linalg.inv(curvature), dtype=np.float64), _cost(problem, values, residuals, scale), scale, converged)
+
+
+def _finite(residuals: Sequence[Array]) -> bool:
+    return all(bool(np.isfinite(r).all()) for r in residuals)
+
+
+def _scale(problem: Problem, residuals: Sequence[Array]) -> Array:
+    """Scale (channels,) of the Student-t of each channel by expectation maximisation (Lange, Little and Taylor 1989), noise of the sensors at least."""
+    scale = np.ones(len(problem.floor))
+    for i in range(len(scale)):
+        r = np.concatenate([r[..., i][ok[..., i]] for r, ok in zip(residuals, problem.ok, strict=True)])
+        if len(r):
+            variance = float(np.mean(r**2)) + problem.floor[i] ** 2
+            for _ in range(20):  # settled to four digits after ten
+                variance = float(np.mean((FREEDOM + 1) / (FREEDOM + r**2 / variance) * r**2)) + 1e-300
+            scale[i] = np.hypot(np.sqrt(variance), problem.floor[i])
+    return scale
+
+
+def _cost(problem: Problem, values: Array, residuals: Sequence[Array], scale: Array) -> float:
+    """Minus the log posterior at a scale of each channel, up to a constant."""
+    return 0.5 * float((((values - problem.mean) / problem.sd) ** 2).sum()) + _misfit(problem, residuals, scale)
+
+
+def _misfit(problem: Problem, residuals: Sequence[Array], scale: Array) -> float:
+    """Minus the log likelihood of Student-t residuals, correlated in time, up to a constant."""
+    total = 0.0
+    for r, ok in zip(residuals, problem.ok, strict=True):
+        z = np.where(ok, r / scale, 0.0)
+        total += float((FREEDOM + 1) / 2 * np.log1p(z**2 / FREEDOM).sum() + (ok * np.log(scale)).sum())
+    return total * min(problem.dt / INDEPENDENT_S, 1.0)
+
+
+def _normal_equations(problem: Problem, values: Array, residuals: Sequence[Array], scale: Array) -> tuple[Array, Array]:
+    """Curvature (k, k) and slope (k,) of the cost, sensitivities by forward differences."""
+    step = FINE * problem.sd
+    beside = [problem.residuals(values + step[j] * np.eye(len(values))[j]) for j in range(len(values))]
+    share = min(problem.dt / INDEPENDENT_S, 1.0)
+    curvature, slope = np.diag(1.0 / problem.sd**2), (values - problem.mean) / problem.sd**2
+    for i, (r, ok) in enumerate(zip(residuals, problem.ok, strict=True)):
+        J = np.stack([(np.nan_to_num(one[i]) - r) / step[j] for j, one in enumerate(beside)], axis=-1)
+        weight = share * (FREEDOM + 1) / (FREEDOM + (r / scale) ** 2) / scale**2 * ok
+        flat, w = J.reshape(-1, J.shape[-1]), weight.reshape(-1)
+        curvature = curvature + flat.T @ (w[:, None] * flat)
+        slope = slope + flat.T @ (w * r.reshape(-1))
+    return curvature, slope

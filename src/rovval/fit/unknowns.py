@@ -1,0 +1,156 @@
+"""The unknowns of a calibration: numbers of a vehicle's file that files get wrong, each with a prior about what the file says.
+
+What cannot be negative is a factor, whose logarithm has a normal prior about 0; what can is an offset. Shared factors come before single
+ones: one gain of all thrusters, the ratio of the vertical to the horizontal ones, that of thrust astern to ahead, and then, where they are
+asked for, each thruster by itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import exp, log
+from typing import Literal
+
+import numpy as np
+
+from rovval.core.channels import AXES
+from rovval.core.data import Array
+from rovval.vehicle.model import Body, Thruster, Vehicle, as_matrix, inertia
+
+Diagonal = tuple[float, ...]
+
+WIDE = log(3.0)  # gain, lag and drag: two published sets of one vehicle differ by as much (Wu 2018; von Benzon et al. 2022)
+ADDED = log(1.5)  # added mass: spread of strip theory, panel codes and tests of one hull
+INERTIA = log(1.3)  # rigid-body inertia: from weighed parts it is known to a third (chosen)
+SINGLE = 0.1  # one thruster's gain about the others': spread of a batch (chosen)
+ASTERN = 0.1  # ratio of thrust astern to ahead about the thruster's table (chosen)
+VERTICAL = log(1.5)  # ratio of vertical to horizontal thrusters: shrouding by frame and buoyancy (chosen)
+ARM = 0.2  # of the longest thruster arm: height of thrusters (chosen; von Benzon prints 85 mm where 4 mm act)
+CENTRE = 0.05  # of the longest thruster arm: where buoyancy acts (chosen)
+TRIM = 0.02  # of the weight: what an operator trims to with ballast of some hundred grams (chosen)
+TILT = 0.05  # rad: a frame that is measured by eye, 3 degrees (chosen)
+LEVER = 0.05  # m: a sensor, or the centre of a motion-capture body, whose place was measured with a tape (chosen)
+LAG_S = 0.1  # s: where neither file nor data sheet states one; T200: 0.05 to 0.08 s (von Benzon et al. 2022)
+SPLIT = 0.1  # m/s, rad/s: speed at which a linear drag that a file leaves out is taken to equal the quadratic one, and 1 / SPLIT the other way round
+SPHERE = 0.5  # added mass of a sphere over the mass that it displaces (Lamb 1932, art. 92), where a file has none
+
+
+SENSORS = {  # unknown: effect and parameter that say it in a vehicle's file
+    **{f"attitude.{c}": ("attitude_bias", c) for c in ("phi", "theta")},
+    **{f"velocity.{c}": ("dvl_misalignment", c) for c in ("roll", "pitch", "yaw")},
+    **{f"velocity.lever.{c}": ("dvl_lever_arm", c) for c in "xyz"},
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Unknown:
+    """``key`` says what and where; ``sd`` of its normal prior about 0, of the logarithm for a ``factor``, in ``unit`` for an ``offset``. ``optional``
+    ones are free only where they are asked for."""
+
+    key: str
+    kind: Literal["factor", "offset"]
+    sd: float
+    unit: str
+    meaning: str
+    optional: bool = False
+
+
+def unknowns(vehicle: Vehicle, channels: Sequence[str]) -> tuple[Unknown, ...]:
+    """What a log with these measured ``channels`` can be asked about a vehicle."""
+    arm = max(float(np.linalg.norm(t.position)) for t in vehicle.thruster)
+    found = [Unknown("thrust.gain", "factor", WIDE, "1", "thrust of all thrusters")]
+    if 0 < sum(map(_vertical, vehicle.thruster)) < len(vehicle.thruster):
+        found.append(Unknown("thrust.vertical", "factor", VERTICAL, "1", "thrust of the vertical thrusters beside the horizontal ones"))
+    found.append(Unknown("thrust.astern", "factor", ASTERN, "1", "thrust astern beside ahead"))
+    found += [Unknown(f"thrust.single[{t}]", "factor", SINGLE, "1", f"thrust of {t} beside the others", True) for t in vehicle.thrusters]
+    found.append(Unknown("thrust.lag", "factor", WIDE, "1", "time constant of the thrusters' speed"))
+    found.append(Unknown("thrust.height", "offset", ARM * arm, "m", "height of the horizontal thrusters, down"))
+    for axis in AXES:
+        found.append(Unknown(f"linear_drag[{axis}]", "factor", WIDE, "1", f"linear drag in {axis}"))
+        found.append(Unknown(f"quadratic_drag[{axis}]", "factor", WIDE, "1", f"quadratic drag in {axis}"))
+        found.append(Unknown(f"added_mass[{axis}]", "factor", ADDED, "1", f"added mass in {axis}"))
+    found += [Unknown(f"inertia[{axis}]", "factor", INERTIA, "1", f"moment of inertia in {axis}") for axis in AXES[3:]]
+    found.append(Unknown("trim.buoyancy", "offset", TRIM * vehicle.weight, "N", "buoyancy beyond the file's"))
+    found += [Unknown(f"trim.centre.{c}", "offset", CENTRE * arm, "m", f"centre of buoyancy, {c}") for c in "xyz"]
+    if {"phi", "theta"} & set(channels):
+        found += [Unknown(f"attitude.{c}", "offset", TILT, "rad", f"{c} of the attitude sensor beside the vehicle's") for c in ("phi", "theta")]
+    if {"u", "v", "w"} <= set(channels):
+        found += [Unknown(f"velocity.{c}", "offset", TILT, "rad", f"{c} of the velocity sensor's frame") for c in ("roll", "pitch", "yaw")]
+        found += [Unknown(f"velocity.lever.{c}", "offset", LEVER, "m", f"place of the velocity sensor, {c}") for c in "xyz"]
+    found.append(Unknown("tether.drag", "factor", WIDE, "1", "quadratic drag of the tether where it is made fast", True))
+    return tuple(found)
+
+
+def applied(vehicle: Vehicle, asked: Sequence[Unknown], values: Array) -> Vehicle:
+    """The vehicle with ``values`` (k,) of the unknowns ``asked``: logarithms of factors, offsets as they are. Zeros leave it as it is, but for
+    drag and added mass that the file has not, which are there with a first guess."""
+    at = {one.key: exp(value) if one.kind == "factor" else float(value) for one, value in zip(asked, values, strict=True)}
+    thruster = tuple(_thruster(t, at) for t in vehicle.thruster)
+    table = vehicle.pulse_table
+    if table is not None and not table.k_pos:  # the table is of the thruster as the file has it: a gain is beside it
+        table = table.model_copy(update={"k_pos": tuple(t.k_pos for t in vehicle.thruster), "k_neg": tuple(t.k_neg for t in vehicle.thruster)})
+    moved = {one.key: vehicle.calibration.get(one.key, 0.0) + float(value) for one, value in zip(asked, values, strict=True)}
+    return vehicle.model_copy(
+        update={
+            "body": _body(vehicle, at), "thruster": thruster, "pulse_table": table, "effects": _effects(vehicle, at),
+            "calibration": {**vehicle.calibration, **moved},
+        }
+    )  # fmt: skip
+
+
+def _thruster(one: Thruster, at: Mapping[str, float]) -> Thruster:
+    gain = at.get("thrust.gain", 1.0) * at.get(f"thrust.single[{one.name}]", 1.0) * (at.get("thrust.vertical", 1.0) if _vertical(one) else 1.0)
+    x, y, z = one.position
+    height = 0.0 if _vertical(one) else at.get("thrust.height", 0.0)
+    astern = at.get("thrust.astern", 1.0)
+    return one.model_copy(update={"k_pos": one.k_pos * gain, "k_neg": one.k_neg * gain * astern, "position": (x, y, z + height)})
+
+
+def _vertical(one: Thruster) -> bool:
+    return abs(one.direction[2]) > 0.5 * float(np.linalg.norm(one.direction))
+
+
+def _body(vehicle: Vehicle, at: Mapping[str, float]) -> Body:
+    body = vehicle.body
+    linear, quadratic, added = (np.diag(as_matrix(m)).copy() for m in (body.linear_drag, body.quadratic_drag, body.added_mass))
+    rigid = np.concatenate([np.full(3, body.mass), np.diag(inertia(body))])
+    guess = {
+        "linear_drag": np.where(linear > 0, linear, SPLIT * quadratic),
+        "quadratic_drag": np.where(quadratic > 0, quadratic, SPLIT * linear),
+        "added_mass": np.where(added > 0, added, SPHERE * rigid),
+    }
+    changed: dict[str, object] = {
+        name: _scaled(getattr(body, name), diagonal, np.array([at.get(f"{name}[{axis}]", 1.0) for axis in AXES]))
+        for name, diagonal in guess.items()
+    }
+    changed |= {f"I{c}{c}": getattr(body, f"I{c}{c}") * at.get(f"inertia[{axis}]", 1.0) for c, axis in zip("xyz", AXES[3:], strict=True)}
+    centre = tuple(was + at.get(f"trim.centre.{c}", 0.0) for was, c in zip(body.centre_of_buoyancy, "xyz", strict=True))
+    volume = body.volume + at.get("trim.buoyancy", 0.0) / (vehicle.water.density * vehicle.water.gravity)
+    return body.model_copy(update={**changed, "centre_of_buoyancy": centre, "volume": volume})
+
+
+def _scaled(was: tuple[float, ...] | tuple[tuple[float, ...], ...], diagonal: Array, factor: Array) -> Diagonal | tuple[Diagonal, ...]:
+    """A diagonal or a matrix with each axis scaled; S^1/2 A S^1/2 keeps a matrix symmetric and definite."""
+    matrix = as_matrix(was)
+    if not (matrix != np.diag(np.diag(matrix))).any():
+        return tuple(float(x) for x in diagonal * factor)
+    root = np.sqrt(factor)
+    whole = (matrix - np.diag(np.diag(matrix)) + np.diag(diagonal)) * root[:, None] * root
+    return tuple(tuple(float(x) for x in row) for row in whole)
+
+
+def _effects(vehicle: Vehicle, at: Mapping[str, float]) -> dict[str, dict[str, float]]:
+    """The [effects] of the calibrated file: lag, sensors and tether. What the file carries of them is where their unknowns are counted from."""
+    found = {name: dict(values) for name, values in vehicle.effects.items()}
+    if "thrust.lag" in at:
+        found["thrust_lag"] = found.get("thrust_lag", {})
+        found["thrust_lag"]["tau"] = (found["thrust_lag"].get("tau") or LAG_S) * at["thrust.lag"]
+    if "tether.drag" in at:
+        drag = float(np.diag(as_matrix(vehicle.body.quadratic_drag))[0])
+        found["tether_drag"] = found.get("tether_drag", {})
+        found["tether_drag"]["coefficient"] = (found["tether_drag"].get("coefficient") or SPLIT * drag) * at["tether.drag"]
+    for key, (effect, parameter) in SENSORS.items():
+        if key in at:
+            found[effect] = {**found.get(effect, {}), parameter: found.get(effect, {}).get(parameter, 0.0) + at[key]}
+    return found

@@ -1,0 +1,83 @@
+"""`calibrate`: what a file has wrong comes back with intervals that hold; what logs do not show stays near the file; nothing moves twice."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+import pytest
+from diagnose_case import merlin, own
+
+from rovval.core.data import Run
+from rovval.core.errors import BadInput
+from rovval.fit.calibration import Calibration, calibrate
+from rovval.fit.record import record
+from rovval.fit.unknowns import applied, unknowns
+from rovval.report.fit import text
+from rovval.simulation import simulate
+from rovval.vehicle import parse
+from rovval.vehicle.model import Vehicle
+from rovval.vehicle.write import to_toml
+
+WRONG = {"thrust.gain": -0.5, "quadratic_drag[surge]": 0.6, "linear_drag[yaw]": 0.7, "thrust.height": 0.1, "trim.buoyancy": 30.0}
+CHANNELS = ("u", "v", "w", "p", "q", "r", "phi", "theta", "z")
+
+
+def true_vehicle() -> Vehicle:
+    """Merlin as it is in the water, where its file is wrong in five numbers."""
+    asked = tuple(one for one in unknowns(merlin(), CHANNELS) if one.key in WRONG)
+    return applied(merlin(), asked, np.array([WRONG[one.key] for one in asked]))
+
+
+@functools.cache
+def dive(seed: int, seconds: float = 180.0) -> Run:
+    return own.__wrapped__((), seed, seconds, v=true_vehicle())  # uncached: a vehicle is no key
+
+
+@functools.cache
+def done() -> Calibration:
+    return calibrate([dive(1)], merlin())
+
+
+def test_what_the_file_has_wrong_comes_back():
+    found = {row.unknown.key: row for row in done().rows}
+    drag, gain = found["quadratic_drag[surge]"], found["thrust.gain"]
+    assert drag.value / gain.value == pytest.approx(np.exp(0.6 + 0.5), rel=0.1)  # of forces the ratio shows best
+    assert found["thrust.height"].value == pytest.approx(0.1, abs=0.03)
+    assert found["trim.buoyancy"].value == pytest.approx(30.0, abs=5.0)
+
+
+def test_the_calibrated_vehicle_predicts_a_dive_that_it_has_not_seen():
+    other = dive(3)
+    before, after = (simulate(other, vehicle).free.nu for vehicle in (merlin(), done().vehicle))
+    error = [np.nanmean(np.abs(nu - other.stack(("u", "v", "w", "p", "q", "r"))), axis=0) for nu in (before, after)]
+    assert (error[1][[0, 1, 2, 5]] < 0.5 * error[0][[0, 1, 2, 5]]).all()
+
+
+def test_a_second_calibration_changes_nothing():
+    again = calibrate([dive(1)], parse(to_toml(done().vehicle), "calibrated"))
+    moved = {row.unknown.key: abs(np.log(row.value) if row.unknown.kind == "factor" else row.value) / row.unknown.sd for row in again.rows}
+    assert max(moved.values()) < 0.05, moved
+
+
+def test_what_the_logs_do_not_show_is_said_to_be_held_by_its_prior():
+    held = {row.unknown.key for row in done().rows if not row.shown}
+    assert held
+    assert all(key in text(done().document()) for key in held)
+
+
+def test_every_log_that_cannot_be_used_is_told_and_none_at_all_is_refused():
+    short = dive(4, 15.0)
+    found = calibrate([dive(1), short], merlin())
+    assert len(found.left_out) == 1
+    assert short.id in found.left_out[0]
+    with pytest.raises(BadInput, match="windows of 10 s"):
+        record(short, merlin(), 10.0)
+
+
+def test_drag_that_a_file_leaves_out_is_there_with_a_first_guess():
+    body = merlin().body.model_copy(update={"linear_drag": (0.0,) * 6})
+    bare = merlin().model_copy(update={"body": body})
+    filled = applied(bare, (), np.zeros(0)).body
+    assert (np.array(filled.linear_drag) > 0).all()
+    assert filled.quadratic_drag == tuple(bare.body.quadratic_drag)
