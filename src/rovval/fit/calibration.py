@@ -156,9 +156,10 @@ def _channels(records: Sequence[Record]) -> tuple[str, ...]:
 
 
 def _problem(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unknown], model: str) -> Problem:
+    steps = 2 * max(steps_a_sample(vehicle, one.thrust(vehicle), one.run.dt) for one in records)  # the file may be stiffer than it says
+
     def residuals(values: Array) -> Sequence[Array]:
-        changed = applied(vehicle, chosen, values)
-        plant = Plant(changed, model, max(steps_a_sample(changed, one.thrust(changed), one.run.dt) for one in records))
+        plant = Plant(applied(vehicle, chosen, values), model, steps)
         beta = parse_settings(plant, carried_effects(plant.vehicle))
         return [residual(one, plant, beta) for one in records]
 
