@@ -133,3 +133,15 @@ def test_steps_of_the_search_say_what_they_asked_and_whether_they_named() -> Non
     for text in formats(d):
         assert "eside inflow_loss: none was named" in text and "30 %" in text
     assert "cannot be told from inflow_loss" in html.text(d) and "screen of the library" not in terminal.text(d)
+
+
+def test_the_largest_axis_stands_with_a_regime_of_its_own() -> None:
+    """Once, surge was said to err most at a yaw rate: the regime was that of another axis."""
+    d = make_diagnosis()
+    slices = d["gap"]["where"]
+    other = {**slices[0], "axis": "yaw", "regime": "|r| > 3.6 deg/s"}
+    largest = max(d["gap"]["axes"], key=lambda axis: d["gap"]["axes"][axis]["share"])
+    own = {**slices[0], "axis": largest, "regime": "u > 0.5 m/s"}
+    page = html.text(Diagnosis.read(d | {"gap": d["gap"] | {"where": [other, own]}}))
+    assert "most at u &gt; 0.5 m/s" in page and "most at |r|" not in page
+    assert "most at" not in html.text(Diagnosis.read(d | {"gap": d["gap"] | {"where": [other]}}))

@@ -81,7 +81,7 @@ def text(d: Diagnosis, recording: bool = False) -> str:
 
 def _where(d: Diagnosis) -> Tile:
     worst = max(d.gap.axes, key=lambda axis: d.gap.axes[axis].share, default="")
-    at = f", most at {d.gap.where[0].regime}" if d.gap.where else ""
+    at = next((f", most at {one.regime}" for one in d.gap.where if one.axis == worst), "")
     return Tile("Where", worst, f"{per_cent(d.gap.axes[worst].share)} of the gap{at}" if worst else "")
 
 
