@@ -1,7 +1,7 @@
 """Calibration: all that a vehicle's file may have wrong, estimated from logs at once; read `calibrate` first.
 
 Every unknown has a prior about the file and none is frozen: what the logs do not show stays where its prior holds it, and is said to. What
-only some vehicles need (thrusters that differ from one another, a tether) is added where it predicts runs better that it was not fitted to.
+only some vehicles need (thrusters that differ from one another, a tether) is added where it predicts every run left out better.
 """
 
 from __future__ import annotations
@@ -63,14 +63,14 @@ class AxisError:
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """The calibrated ``vehicle``; its unknowns; pairs of them that go together, with their correlation; errors of free runs; the ``options`` that were
-    accepted, each tried option's change of twice the log likelihood of runs left out; whether the search ``converged``; logs ``left_out``."""
+    """The calibrated ``vehicle``; its unknowns; pairs of them that go together, with their correlation; errors of free runs; of each of the ``options``
+    the change of twice the log likelihood of every run left out, and which were ``accepted``; whether the search ``converged``; logs ``left_out``."""
 
     vehicle: Vehicle
     rows: tuple[Row, ...]
     correlations: tuple[tuple[str, str, float], ...]
     errors: tuple[AxisError, ...]
-    options: Mapping[str, float]
+    options: Mapping[str, tuple[float, ...]]
     accepted: tuple[str, ...]
     converged: bool
     left_out: tuple[str, ...]
@@ -95,7 +95,7 @@ class Calibration:
                 {"run": e.run, "axis": e.axis, "unit": e.unit, "given": e.given, "calibrated": e.calibrated, "left_out": e.left_out, "n": e.rows}
                 for e in self.errors
             ],
-            "options": [{"name": name, "gain": gain, "accepted": name in self.accepted} for name, gain in self.options.items()],
+            "options": [{"name": name, "gain": list(by_run), "accepted": name in self.accepted} for name, by_run in self.options.items()],
             "converged": self.converged,
             "left_out": list(self.left_out),
         }  # fmt: skip
@@ -118,7 +118,7 @@ def calibrate(runs: Sequence[Run], vehicle: Vehicle, *, model: str = "fossen", w
     chosen = tuple(one for one in asked if not one.optional)
     say(f"calibrating {len(chosen)} unknowns on {sum(len(one.start) for one in records)} windows", 0.05)
     estimate = _estimate(records, vehicle, chosen, model, _starts(vehicle, chosen))
-    gains = dict[str, float]()
+    gains = dict[str, tuple[float, ...]]()
     if len(records) > 1:
         predicted = _prediction(records, vehicle, chosen, model, estimate.values)
         for name, more in _options(asked).items():
@@ -126,13 +126,13 @@ def calibrate(runs: Sequence[Run], vehicle: Vehicle, *, model: str = "fossen", w
             wider = tuple(one for one in asked if one in chosen or one in more)
             start = _widened(estimate, chosen, wider)
             better = _prediction(records, vehicle, wider, model, start)
-            gains[name] = better - predicted
-            if better > predicted:
+            gains[name] = tuple(float(gain) for gain in better - predicted)
+            if min(gains[name]) > 0:
                 estimate, chosen, predicted = _estimate(records, vehicle, wider, model, (start,)), wider, better
     say("simulating the logs with the calibrated vehicle", 0.8)
     calibrated = applied(vehicle, chosen, estimate.values)
     errors = _errors(records, vehicle, calibrated, chosen, model, estimate.values)
-    accepted = tuple(name for name, gain in gains.items() if gain > 0)
+    accepted = tuple(name for name, by_run in gains.items() if min(by_run) > 0)
     rows = tuple(_row(vehicle, one, estimate, i) for i, one in enumerate(chosen))
     return Calibration(calibrated, rows, _pairs(chosen, estimate), errors, gains, accepted, estimate.converged, left_out)
 
@@ -214,14 +214,13 @@ def _without(records: Sequence[Record], left: int) -> tuple[Record, ...]:
     return tuple(one for i, one in enumerate(records) if i != left)
 
 
-def _prediction(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unknown], model: str, start: Array) -> float:
-    """Twice the log likelihood of every run under a calibration without it, at that calibration's scales (up to a constant)."""
-    total = 0.0
+def _prediction(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unknown], model: str, start: Array) -> Array:
+    """Twice the log likelihood of every run (m,) under a calibration without it, at that calibration's scales, up to a constant."""
+    found = []
     for i, one in enumerate(records):
         estimate = _estimate(_without(records, i), vehicle, chosen, model, (start,))
-        alone = _problem((one,), vehicle, chosen, model)
-        total += alone.log_likelihood(estimate.values, estimate.scale)
-    return 2.0 * total
+        found.append(2.0 * _problem((one,), vehicle, chosen, model).log_likelihood(estimate.values, estimate.scale))
+    return np.array(found)
 
 
 def _errors(

@@ -31,8 +31,9 @@ def calibration(document: Mapping[str, Any]) -> str:
         lines += ["Of forces, a log shows their ratio to the mass: what separates them is a manoeuvre with less of one of the two."]
     lines += ["", *_errors(document["free_run"])]
     for option in document["options"]:
-        verdict = "predicts runs left out better and is in the vehicle" if option["accepted"] else "does not predict runs left out better and is not"
-        lines.append(f"{option['name']}: {verdict} (twice the log likelihood {option['gain']:+.1f}).")
+        verdict = "predicts every run left out better and is in the vehicle" if option["accepted"] else "does not predict every run left out better and is not"
+        gain = ", ".join(f"{one:+.1f}" for one in option["gain"])
+        lines.append(f"{option['name']}: {verdict} (twice the log likelihood of each: {gain}).")
     if not document["converged"]:
         lines.append("The search had not settled when it ended: give longer logs, or a vehicle's file that is nearer.")
     lines += [f"Left out: {why}" for why in document["left_out"]]
