@@ -40,8 +40,6 @@ def command(
       rovval fit dive1.csv dive2.csv --out calibrated.toml
       rovval fit dive.csv --parameters quadratic_drag[surge],quadratic_drag[sway] --out tuned.toml
     """
-    from rovval.fit import FitResult, fit
-    from rovval.fit.calibration import calibrate
     from rovval.pipeline.steps import vehicle_of
     from rovval.report.fit import text
     from rovval.storage.atomic import refuse_unwritable, write_text
@@ -52,9 +50,14 @@ def command(
     runs = logs.opened_as_one(sources, vehicle, profile, archive, quiet, start_s, end_s)
     wanted, nominal = [name for some in parameters or () for name in some.split(",") if name], vehicle_of(runs[0], vehicle)
     if parameters is None:
+        from rovval.fit import FitResult
+        from rovval.fit.calibration import calibrate
+
         found = calibrate(runs, nominal, model=model.value, window_s=window, progress=output.progress(quiet))
         tuned = FitResult(to_toml(found.vehicle), found.document())
     else:
+        from rovval.fit import fit
+
         tuned = fit(runs, nominal, wanted, model=model.value, window_s=window)
     write_text(out, tuned.vehicle)
     if json_:

@@ -14,7 +14,7 @@ FAR = 2.0  # standard deviations of the prior from which a departure is told
 
 def text(document: Mapping[str, Any]) -> str:
     """A fit of chosen parameters (rovval.fit/1) or a calibration (rovval.calibration/1)."""
-    return calibration(document) if document["schema"] == "rovval.calibration/1" else tuned(document)
+    return calibration(document) if document.get("schema") == "rovval.calibration/1" else tuned(document)
 
 
 def calibration(document: Mapping[str, Any]) -> str:
