@@ -156,7 +156,9 @@ def _channels(records: Sequence[Record]) -> tuple[str, ...]:
 
 
 def _problem(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unknown], model: str) -> Problem:
-    steps = 2 * max(steps_a_sample(vehicle, one.thrust(vehicle), one.run.dt) for one in records)  # the file may be stiffer than it says
+    given = Plant(vehicle, model)
+    needed = max(steps_a_sample(vehicle, given.thrust(one.actuation.inputs.speed), one.run.dt) for one in records)
+    steps = 2 * needed  # the vehicle may be stiffer than its file says
 
     def residuals(values: Array) -> Sequence[Array]:
         plant = Plant(applied(vehicle, chosen, values), model, steps)

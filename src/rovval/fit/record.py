@@ -33,12 +33,6 @@ class Record:
     measured: Array
     ok: Flags
 
-    def thrust(self, vehicle: Vehicle) -> Array:
-        """Thrust at rest (n, k) N of a vehicle's thrusters at the recorded speeds."""
-        speed = 60.0 * self.actuation.inputs.speed
-        gain = np.where(speed > 0, [t.k_pos for t in vehicle.thruster], [t.k_neg for t in vehicle.thruster])
-        return np.asarray(gain * speed * np.abs(speed))
-
 
 def record(run: Run, vehicle: Vehicle, window_s: float) -> Record:
     """Cut a run into windows of ``window_s`` s, one behind another, at points where everything logged holds a value.
