@@ -37,7 +37,7 @@ def test_every_built_in_profile_loads(name):
 def test_every_reader_keeps_its_contract(name):
     module = ingest.reader(name)
     assert module.SUFFIXES and all(s == "" or s.startswith(".") for s in module.SUFFIXES)
-    assert all(callable(getattr(module, f)) for f in ("sniff", "missing", "read"))
+    assert all(callable(getattr(module, f)) for f in ("sniff", "missing", "read", "contents"))
     assert module.__doc__
 
 

@@ -1,13 +1,15 @@
 """File -> `RawLog`. A reader is one file of this folder without leading underscore; it is imported when a log needs it.
 
 A reader has ``SUFFIXES`` (lower case, with dot), ``sniff(path) -> bool``, ``missing(path, profile) -> tuple[str, ...]`` (what the
-profile requires and the log has not) and ``read(path, profile) -> RawLog``. A source is one TOML file of ``profiles``.
+profile requires and the log has not), ``read(path, profile) -> RawLog`` and ``contents(path) -> Iterator[Block]`` (all that the log holds,
+without a profile: for `rovval inspect` and `rovval profile propose`). A source is one TOML file of ``profiles``.
 """
 
 from __future__ import annotations
 
 import importlib
 import pkgutil
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Protocol, cast
 
@@ -15,6 +17,7 @@ from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, RovvalError, UsageProblem
 from rovval.ingest import formats
 from rovval.ingest.files import refuse_unusable
+from rovval.ingest.inspection.block import Block
 from rovval.ingest.profile import Profile, load_profile, profiles
 
 __all__ = ["Profile", "Reader", "load_profile", "profiles", "read", "reader", "readers"]
@@ -35,6 +38,12 @@ class Reader(Protocol):
 
     def read(self, path: Path, profile: Profile) -> RawLog:
         """The log; raises `BadInput`."""
+        ...
+
+    def contents(self, path: Path) -> Iterator[Block]:
+        """All that the file holds, without a profile, as logged: blocks in the order of the file, a topic's as often as it needs (so that
+        memory stays bounded). `Block` says what stands in one, `rovval.ingest.inspection.flatten.flat` and `Collector` make them of decoded
+        messages. Damage is a finding of a block where something can be read, else `BadInput`."""
         ...
 
 

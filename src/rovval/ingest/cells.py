@@ -62,6 +62,21 @@ def numbers(text: pl.DataFrame, table: Table, path: str) -> tuple[dict[str, Arra
     return values, tuple(findings)
 
 
+def numbers_and_texts(text: pl.DataFrame) -> tuple[dict[str, Array], dict[str, list[str]]]:
+    """Columns of which at least half of the written cells are numbers as float, NaN elsewhere; the others as text, "" where blank."""
+    values: dict[str, Array] = {}
+    texts: dict[str, list[str]] = {}
+    for column in text.iter_columns():
+        blank = (column.is_null() | column.str.to_lowercase().is_in(BLANK)).to_numpy()
+        value = _cast(column)
+        if np.isfinite(value).sum() >= 0.5 * (~blank).sum():
+            value[blank | ~np.isfinite(value)] = np.nan
+            values[column.name] = value
+        else:
+            texts[column.name] = ["" if empty else str(cell) for cell, empty in zip(column, blank, strict=True)]
+    return values, texts
+
+
 def _shown(cell: str) -> str:
     """A cell as a message quotes it: its beginning, and how long it is, where a damaged row made it endless."""
     return repr(cell) if len(cell) <= LONGEST_EXAMPLE else f"{cell[:LONGEST_EXAMPLE]!r}... of {len(cell)} characters"

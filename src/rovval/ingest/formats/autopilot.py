@@ -22,6 +22,8 @@ from rovval.core.errors import BadInput, Finding, RovvalError, UsageProblem, all
 from rovval.ingest.ardusub import other_frame, turned
 from rovval.ingest.clock import increasing_stamps
 from rovval.ingest.files import sha256
+from rovval.ingest.inspection.block import Block, Collector
+from rovval.ingest.inspection.flatten import flat
 from rovval.ingest.profile import ATTITUDE, Profile, Source
 
 SUFFIXES = (".bin", ".tlog")
@@ -58,7 +60,7 @@ def read(path: Path, profile: Profile) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming every missing message and field, `UsageProblem` without pymavlink."""
     from rovval.ingest.assembly import Signal, build
 
-    wanted: dict[tuple[str, int], _Messages] = {}
+    wanted: dict[tuple[str, str], _Messages] = {}
     for name, source in profile.channels.items():
         wanted.setdefault(_type(source), _Messages()).channels[name] = source
     parameters: dict[str, float] = {}
@@ -66,7 +68,7 @@ def read(path: Path, profile: Profile) -> RawLog:
     if frame := other_frame(profile, parameters):
         hint = "give the profile of that frame (`rovval list profile`): its motors are other thrusters"
         raise BadInput(f"{path}: profile {profile.name!r} reads {frame}", hint)
-    gone = [f"{kind}[{i}]" if i else kind for (kind, i), m in wanted.items() if not m.record and not all(s.optional for s in m.channels.values())]
+    gone = [_address(kind, i) for (kind, i), m in wanted.items() if not m.record and not all(s.optional for s in m.channels.values())]
     if gone:
         raise BadInput(all_at_once(gone, f"{path}: missing messages of profile {profile.name!r}"), "see `rovval show profile`, or give another")
     findings = [Finding("bad_packet", str(path), f"{bad} packets are damaged; left out")] if bad else []
@@ -93,6 +95,26 @@ def read(path: Path, profile: Profile) -> RawLog:
     return build(profile, signals, path, sha256(path), t0_ns, [*findings, *told], {"messages": ", ".join(k for k, _ in logged)})
 
 
+def contents(path: Path) -> Iterator[Block]:
+    """Every message type (and instance) of the log with its fields; ``header`` is the autopilot's clock since its start.
+
+    Raises `BadInput` for a damaged log, `UsageProblem` without pymavlink."""
+    collector, bad = Collector(), 0
+    with _opened(path) as log:
+        while (message := log.recv_match()) is not None:
+            kind = message.get_type()
+            if kind == "BAD_DATA":
+                bad += 1
+                continue
+            fields, left_out = flat({n: getattr(message, n) for n in message.get_fieldnames()})
+            clocks = {"record": float(message._timestamp), "header": _boot(message)}
+            if block := collector.add(_address(kind, _instance(message)), kind, clocks, fields, left_out):
+                yield block
+    yield from collector.rest()
+    if bad:
+        yield Block("", findings=(Finding("bad_packet", str(path), f"{bad} packets are damaged; left out"),))
+
+
 @dataclass(slots=True)
 class _Messages:
     """What is collected of one message type and instance: both clocks (s), and a column per channel."""
@@ -103,7 +125,7 @@ class _Messages:
     columns: dict[str, list[Any]] = field(default_factory=dict)
 
 
-def _collect(path: Path, wanted: dict[tuple[str, int], _Messages], profile: Profile, parameters: dict[str, float]) -> int:
+def _collect(path: Path, wanted: dict[tuple[str, str], _Messages], profile: Profile, parameters: dict[str, float]) -> int:
     """Fill ``wanted`` and ``parameters`` from the log; returns the number of damaged packets. Raises `BadInput` with every unknown field."""
     count: Counter[str] = Counter()
     wrong: dict[str, None] = {}
@@ -152,15 +174,19 @@ def _number(message: Any, address: str) -> float:
     return float(value[int(index.rstrip("]"))] if index else value)
 
 
-def _type(source: Source) -> tuple[str, int]:
-    """``XKF1[1]`` -> message type and instance."""
-    found = re.fullmatch(r"(.*?)(?:\[(\d+)\])?", str(source.topic))
-    return (found.group(1), int(found.group(2) or 0)) if found else (str(source.topic), 0)
+def _type(source: Source) -> tuple[str, str]:
+    """``XKF1[1]`` -> message type and instance; ``NAMED_VALUE_FLOAT[Lights1]`` for an instance that has a name."""
+    found = re.fullmatch(r"(.*?)(?:\[(\w+)\])?", str(source.topic))
+    return (found.group(1), found.group(2) or "0") if found else (str(source.topic), "0")
 
 
-def _instance(message: Any) -> int:
+def _instance(message: Any) -> str:
     name = getattr(getattr(message, "fmt", None), "instance_field", None) or getattr(message, "_instance_field", None)
-    return int(getattr(message, name, 0)) if name else 0
+    return str(getattr(message, name, 0)) if name else "0"
+
+
+def _address(kind: str, instance: str) -> str:
+    return kind if instance == "0" else f"{kind}[{instance}]"
 
 
 def _boot(message: Any) -> float:

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Sequence
+import re
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rovval.core.data import RawLog
-from rovval.core.errors import BadInput, all_at_once
+from rovval.core.errors import BadInput, Finding, all_at_once
 from rovval.core.units import SI
 from rovval.ingest import text_table
 from rovval.ingest.clock import DAY_S, increasing_stamps
 from rovval.ingest.files import sha256
+from rovval.ingest.header import header_of
+from rovval.ingest.inspection.block import Block
 from rovval.ingest.profile import Profile, Source
 
 if TYPE_CHECKING:
@@ -64,6 +67,28 @@ def read(path: Path, profile: Profile) -> RawLog:
     properties = {**start, "rows": str(len(rows)), "columns_unused": ", ".join(_unused(profile, table, where))}
     t0 = None if t0_ns is None else t0_ns + round(float(t[0]) * 1e9)
     return build(profile, signals, path, sha256(path), t0, (*table.findings, *found, *clock_found), properties)
+
+
+def contents(path: Path) -> Iterator[Block]:
+    """The table's columns, numbers or text as their cells are. Raises `BadInput` where the file holds no table with a header."""
+    from rovval.ingest.cells import frame, numbers_and_texts
+
+    text = text_table.decode(path)
+    header = header_of(re.split(r"\r\n|\n|\r", text[:HEAD]))
+    table = text_table.split(text, header) if header else None
+    if table is None or not table.rows:
+        raise BadInput(
+            f"{path}: no line of names with rows of as many cells below it in its first {text_table.HEADER_WITHIN} lines",
+            "give the columns names in a first line, one a column",
+        )
+    named: dict[str, int] = {}
+    for at, name in enumerate(table.header):
+        named.setdefault(name or f"(column {at + 1} without a name)", at)
+    twice = sorted({n for n in table.header if n and table.header.count(n) > 1})
+    again = [Finding("column_twice", ", ".join(twice), "the first of each is shown; a profile cannot name either")] if twice else []
+    numbers, texts = numbers_and_texts(frame(table, named))
+    facts = {"separator": repr(table.separator)}
+    yield Block("", numbers=numbers, texts=texts, facts=facts, findings=(*table.findings, *again))
 
 
 def _wanted(profile: Profile, required: bool = False) -> list[str]:

@@ -6,7 +6,7 @@ import re
 import shutil
 import sqlite3
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
@@ -19,6 +19,8 @@ from rovval.core.data import Array, RawLog
 from rovval.core.errors import BadInput, Finding, RovvalError, all_at_once
 from rovval.ingest.clock import increasing_stamps
 from rovval.ingest.files import sha256
+from rovval.ingest.inspection.block import Block, Collector
+from rovval.ingest.inspection.flatten import flat
 from rovval.ingest.profile import ATTITUDE, Profile, Source
 
 SUFFIXES = (".bag", ".db3", ".mcap", "")  # "": a folder
@@ -37,7 +39,7 @@ def sniff(path: Path) -> bool:
 
 def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     """Required topics of ``profile`` that the bag has not, and `absent` ones that it has."""
-    with _opened(path, profile) as (reader, _):
+    with _opened(path, profile.messages) as (reader, _):
         return _missing([c.topic for c in reader.connections], profile)
 
 
@@ -53,7 +55,7 @@ def read(path: Path, profile: Profile) -> RawLog:
 
     if profile.time.kind not in ("header", "record"):
         raise BadInput(f"{path}: profile {profile.name!r} takes stamps from {profile.time.kind}, a bag has header or record", "give --profile")
-    with _opened(path, profile) as (reader, findings):
+    with _opened(path, profile.messages) as (reader, findings):
         if gone := [m for m in _missing([c.topic for c in reader.connections], profile) if not m.startswith("not ")]:
             hint = "see `rovval show profile`, or give another"
             raise BadInput(all_at_once(gone, f"{path}: missing topics of profile {profile.name!r}"), hint)
@@ -71,6 +73,33 @@ def read(path: Path, profile: Profile) -> RawLog:
     if lags:
         facts["record_minus_header_s"] = f"{-np.median(lags) * 1e-9:.4f}"
     return build(profile, signals, path, sha256(path), t0 if t0 > SIM_TIME_NS else None, findings, facts)
+
+
+def contents(path: Path) -> Iterator[Block]:
+    """Every topic of the bag with its fields, header and record stamps. Raises `BadInput` where the bag cannot be read."""
+    collector, done = Collector(), 0
+    with _opened(path, {}) as (reader, findings):
+        if findings:
+            yield Block("", findings=tuple(findings))
+        with _stage(path, "reading messages", lambda: f"{done} messages were read"):
+            for connection, ns, raw in reader.messages():
+                message = reader.deserialize(raw, connection.msgtype)
+                fields, left_out = flat(message)
+                stamp = _header_ns(message)
+                clocks = {"record": ns * 1e-9, **({} if stamp is None else {"header": stamp * 1e-9 if stamp else np.nan})}
+                values = {n: v for n, v in fields.items() if not n.startswith("header.")}
+                if block := collector.add(connection.topic, connection.msgtype, clocks, values, left_out):
+                    yield block
+                done += 1
+        silent = [c for c in reader.connections if not c.msgcount]
+    yield from collector.rest()
+    yield from (Block(c.topic, c.msgtype) for c in silent)
+
+
+def _header_ns(message: Any) -> int | None:
+    """The header's stamp in ns, 0 where a driver leaves it empty; None for a message without header."""
+    stamp = getattr(getattr(message, "header", None), "stamp", None)
+    return None if stamp is None else int(stamp.sec) * 10**9 + int(stamp.nanosec)
 
 
 def _with_topics_of(profile: Profile, topics: list[str]) -> Profile:
@@ -126,8 +155,7 @@ def _take(topic: _Topic, message: Any, ns: int, kind: str) -> list[str]:
         return wrong
     for name, value in values.items():
         topic.columns.setdefault(name, []).append(value)
-    stamp = getattr(getattr(message, "header", None), "stamp", None)
-    topic.header.append(0 if stamp is None else int(stamp.sec) * 10**9 + int(stamp.nanosec))
+    topic.header.append(_header_ns(message) or 0)
     topic.record.append(int(ns))
     if topic.stamp == "header" and topic.header[-1] == 0:
         topic.stamp = "record"  # no header, or a driver that leaves it empty
@@ -176,7 +204,7 @@ def _getter(address: str, quaternion: bool) -> Get:
 
 
 @contextmanager
-def _opened(path: Path, profile: Profile) -> Iterator[tuple[Any, list[Finding]]]:
+def _opened(path: Path, definitions: Mapping[str, str]) -> Iterator[tuple[Any, list[Finding]]]:
     """The bag's reader, and what was found while opening it."""
     from rosbags.highlevel import AnyReader
     from rosbags.typesys import Stores, get_types_from_msg, get_typestore
@@ -185,7 +213,7 @@ def _opened(path: Path, profile: Profile) -> Iterator[tuple[Any, list[Finding]]]
     with tempfile.TemporaryDirectory(prefix="rovval-") as scratch:
         found: list[Finding] = []
         with _stage(path, "opening"):
-            for name, text in profile.messages.items():
+            for name, text in definitions.items():
                 store.register(get_types_from_msg(text, name))
             reader = AnyReader([_whole(_bag(path), Path(scratch), found)], default_typestore=store)
             reader.open()
