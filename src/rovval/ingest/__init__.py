@@ -15,7 +15,8 @@ from typing import Protocol, cast
 
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, RovvalError, UsageProblem
-from rovval.ingest import formats
+from rovval.ingest import compression, formats
+from rovval.ingest.compression import is_compressed
 from rovval.ingest.files import refuse_unusable
 from rovval.ingest.inspection.block import Block
 from rovval.ingest.profile import Profile, load_profile, profiles
@@ -106,7 +107,9 @@ def _of_no_format(path: Path) -> BadInput:
     if path.is_dir():
         hint = f"give one of the logs in it, or put all of them into the archive: `rovval ingest {path}`"
         return BadInput(f"{path}: of no known format: a folder that holds no bag", hint)
-    if path.suffix.lower() in known:
+    if (packed := is_compressed(path)) and compression.suffix(path) not in reader("csv_log").SUFFIXES:
+        return BadInput(f"{path}: of no known format: compressed, and only tables of text are read so", "unpack it first")
+    if packed or path.suffix.lower() in known:
         said = f"its name ends in {path.suffix}, and it does not begin as such a file does"
         return BadInput(f"{path}: of no known format: {said}", "is the file whole, and is it what its name says?")
     return BadInput(f"{path}: of no known format (known: {', '.join(known)})", "give --profile if the file has an unusual name")
@@ -114,7 +117,7 @@ def _of_no_format(path: Path) -> BadInput:
 
 def _able(name: str, path: Path) -> bool:
     candidate = reader(name)
-    if path.suffix.lower() not in candidate.SUFFIXES and not (path.is_dir() and "" in candidate.SUFFIXES):
+    if compression.suffix(path) not in candidate.SUFFIXES and not (path.is_dir() and "" in candidate.SUFFIXES):
         return False
     try:
         return candidate.sniff(path)

@@ -9,9 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rovval.core.errors import BadInput, Finding
+from rovval.ingest.compression import lost_of, opened
 
 SEPARATORS = (",", ";", "\t", "|")
 HEADER_WITHIN = 200  # lines of banner above the header that are looked through
+HEAD = 65536  # bytes by which text is told from binary content
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,23 +27,47 @@ class Table:
     findings: tuple[Finding, ...]
 
 
-def decode(path: Path, most: int = -1) -> str:
-    """The file (or the whole lines of its first ``most`` bytes) as text: UTF-8 or UTF-16 with mark, UTF-8, else latin-1.
+def decode(path: Path, most: int = -1) -> tuple[str, tuple[Finding, ...]]:
+    """The file (or the whole lines of its first ``most`` bytes), unpacked, as text, and what is lost of it: UTF-8 or UTF-16 with or
+    without a mark, else latin-1.
 
     Raises `BadInput` for binary content.
     """
-    with path.open("rb") as file:
+    with opened(path) as file:
         content = file.read(most)
+        lost = lost_of(file, path)
+    if lost and not content:
+        raise BadInput(f"{path}: {lost[0].detail}", "is the file whole? fetch or export it again")
     if 0 <= most == len(content):
         content = content[: content.rfind(b"\n") + 1] or content
-    if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        return content.decode("utf-16", errors="replace")
-    if b"\0" in content[:65536]:
+    if (order := byte_order(content[:HEAD])) is not None:
+        return content.decode(order, errors="replace").removeprefix("\ufeff"), lost
+    if b"\0" in content[:HEAD]:
         raise BadInput(f"{path}: is binary, not a table of text", "give --profile for its format")
     try:
-        return content.decode("utf-8-sig")
+        return content.decode("utf-8-sig"), lost
     except UnicodeDecodeError:
-        return content.decode("latin-1")
+        return content.decode("latin-1"), lost
+
+
+def byte_order(head: bytes) -> str | None:
+    """``utf-16-le`` or ``utf-16-be`` of text that is UTF-16, by its mark, else by the order in which it has lines; None of other content."""
+    for mark, order in ((b"\xff\xfe", "utf-16-le"), (b"\xfe\xff", "utf-16-be")):
+        if head.startswith(mark):
+            return order
+    if b"\0" not in head:
+        return None
+    lines = [order for order in ("utf-16-le", "utf-16-be") if _has_lines(head[: len(head) // 2 * 2], order)]
+    return lines[0] if len(lines) == 1 else None
+
+
+def _has_lines(head: bytes, order: str) -> bool:
+    """Whether bytes are text with lines in one order: no character of it is NUL, as in binary content, nor a half of a pair."""
+    try:
+        text = head.decode(order)
+    except UnicodeDecodeError as error:
+        text = head[: error.start].decode(order) if len(head) - error.start <= 2 else ""  # a pair that the end of the head cuts
+    return "\0" not in text and ("\n" in text or "\r" in text)
 
 
 def plain_name(name: str) -> str:

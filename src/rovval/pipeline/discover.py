@@ -10,10 +10,10 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from rovval.core.errors import BadInput, all_at_once
+from rovval.ingest.compression import suffix
 
 SUFFIXES = (".csv", ".tsv", ".txt", ".bag", ".db3", ".mcap", ".bin", ".tlog", ".xlsx", ".parquet")
 FOREIGN = (".h5", ".hdf5", ".mat", ".ulg", ".ulog", ".xls")  # logs by their names that no reader is there for: named and refused, not passed over
-COMPRESSED = (".gz",)
 WILD = "*?["
 
 
@@ -91,10 +91,7 @@ def _inside(folder: Path) -> list[Path]:
 
 
 def _looks_like_log(path: Path) -> bool:
-    suffixes = [s.lower() for s in path.suffixes]
-    if suffixes and suffixes[-1] in COMPRESSED:
-        suffixes.pop()
-    return bool(suffixes) and suffixes[-1] in (*SUFFIXES, *FOREIGN)
+    return suffix(path) in (*SUFFIXES, *FOREIGN)
 
 
 def _parts(pattern: str) -> tuple[str, ...]:

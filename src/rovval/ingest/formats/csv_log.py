@@ -15,6 +15,7 @@ from rovval.core.errors import BadInput, Finding, all_at_once
 from rovval.core.units import SI
 from rovval.ingest import text_table
 from rovval.ingest.clock import DAY_S, increasing_stamps
+from rovval.ingest.compression import opened
 from rovval.ingest.files import sha256
 from rovval.ingest.header import header_of
 from rovval.ingest.inspection.block import Block
@@ -34,14 +35,14 @@ SPELLINGS = {
 
 def sniff(path: Path) -> bool:
     """Whether the file can be a table of text."""
-    with path.open("rb") as file:
+    with opened(path) as file:
         head = file.read(4096)
-    return head[:2] in (b"\xff\xfe", b"\xfe\xff") or (b"\0" not in head and b"\n" in head.replace(b"\r", b"\n"))
+    return text_table.byte_order(head) is not None or (b"\0" not in head and b"\n" in head.replace(b"\r", b"\n"))
 
 
 def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     """Required columns of ``profile`` that the file has not, and `absent` ones that it has."""
-    table = text_table.split(text_table.decode(path, HEAD), _wanted(profile))
+    table = text_table.split(text_table.decode(path, HEAD)[0], _wanted(profile))
     header = table.header if table else ()
     gone = [c for c in _wanted(profile, required=True) if not any(text_table.fits(c, h) for h in header)]
     return (*gone, *(f"not {c}" for c in profile.absent if any(text_table.fits(c, h) for h in header)))
@@ -53,7 +54,7 @@ def read(path: Path, profile: Profile) -> RawLog:
     from rovval.ingest.cells import frame, numbers
     from rovval.ingest.stamps import stamps
 
-    table = _table(path, profile)
+    table, lost = _table(path, profile)
     where = _columns(path, profile, table)
     text = frame(table, {c: at for _, columns in where.values() for c, at in columns.items()} | _clock_columns(profile, table))
     values, found = numbers(_only_numbers(text, profile), table, str(path))
@@ -66,14 +67,14 @@ def read(path: Path, profile: Profile) -> RawLog:
         signals[name] = Signal(t - t[0], block if len(columns) > 1 else block[:, 0], "row", source)
     properties = {**start, "rows": str(len(rows)), "columns_unused": ", ".join(_unused(profile, table, where))}
     t0 = None if t0_ns is None else t0_ns + round(float(t[0]) * 1e9)
-    return build(profile, signals, path, sha256(path), t0, (*table.findings, *found, *clock_found), properties)
+    return build(profile, signals, path, sha256(path), t0, (*lost, *table.findings, *found, *clock_found), properties)
 
 
 def contents(path: Path) -> Iterator[Block]:
     """The table's columns, numbers or text as their cells are. Raises `BadInput` where the file holds no table with a header."""
     from rovval.ingest.cells import frame, numbers_and_texts
 
-    text = text_table.decode(path)
+    text, lost = text_table.decode(path)
     header = header_of(re.split(r"\r\n|\n|\r", text[:HEAD]))
     table = text_table.split(text, header) if header else None
     if table is None or not table.rows:
@@ -88,7 +89,7 @@ def contents(path: Path) -> Iterator[Block]:
     again = [Finding("column_twice", ", ".join(twice), "the first of each is shown; a profile cannot name either")] if twice else []
     numbers, texts = numbers_and_texts(frame(table, named))
     facts = {"separator": repr(table.separator)}
-    yield Block("", numbers=numbers, texts=texts, facts=facts, findings=(*table.findings, *again))
+    yield Block("", numbers=numbers, texts=texts, facts=facts, findings=(*lost, *table.findings, *again))
 
 
 def _wanted(profile: Profile, required: bool = False) -> list[str]:
@@ -96,13 +97,14 @@ def _wanted(profile: Profile, required: bool = False) -> list[str]:
     return [*profile.time.columns, *(c for s in sources for c in ((s.column,) if s.column else s.columns))]
 
 
-def _table(path: Path, profile: Profile) -> text_table.Table:
-    table = text_table.split(text_table.decode(path), _wanted(profile))
+def _table(path: Path, profile: Profile) -> tuple[text_table.Table, tuple[Finding, ...]]:
+    text, lost = text_table.decode(path)
+    table = text_table.split(text, _wanted(profile))
     if table is None:
         wanted = ", ".join(_wanted(profile, required=True))
         hint = "give --profile for another source, or write a profile (a TOML file) for this one"
         raise BadInput(f"{path}: no header of profile {profile.name!r} in its first {text_table.HEADER_WITHIN} lines; wanted: {wanted}", hint)
-    return table
+    return table, lost
 
 
 def _find(path: Path, pattern: str, header: Sequence[str]) -> list[int]:
