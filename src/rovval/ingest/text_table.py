@@ -13,6 +13,7 @@ from rovval.ingest.compression import lost_of, opened
 
 SEPARATORS = (",", ";", "\t", "|")
 HEADER_WITHIN = 200  # lines of banner above the header that are looked through
+ELEMENT = re.compile(r"\[\d+\]$")
 HEAD = 65536  # bytes by which text is told from binary content
 
 
@@ -89,7 +90,9 @@ def member(pattern: str, name: str) -> str | None:
 
 
 def fits(pattern: str, name: str) -> bool:
-    """Whether a header cell is the column that a profile means."""
+    """Whether a header cell is the column that a profile means; an element of an array (``q[3]``) is meant to the letter."""
+    if ELEMENT.search(pattern) and "*" not in pattern:
+        return pattern == name
     return member(pattern, name) is not None if "*" in pattern else plain_name(pattern) == plain_name(name)
 
 
