@@ -51,32 +51,44 @@ class Integrator:
         """True motion (B, steps + 1, 12): u v w p q r, x y z phi theta psi; first invalid sample (B,) (-1: none) and its reason (B,)."""
         full = lowered.full | (starts.which >= 0)
         if full.all() or not full.any():
-            return self._one_kernel(inputs, prepared, lowered, starts, steps, bool(full.any()))
+            return self._some_lanes(inputs, prepared, lowered, starts, steps, bool(full.any()))
         out = np.empty((len(full), steps + 1, 12))
         stopped, codes = np.empty(len(full), dtype=np.int64), np.empty(len(full), dtype=np.int64)
         for kind in (False, True):
             part = np.flatnonzero(full == kind)
-            out[part], stopped[part], codes[part] = self._one_kernel(inputs, prepared, lowered.take(part), starts.take(part), steps, kind)
+            out[part], stopped[part], codes[part] = self._some_lanes(inputs, prepared, lowered.take(part), starts.take(part), steps, kind)
         return out, stopped, codes
 
-    def _one_kernel(
+    def _some_lanes(
         self, inputs: Inputs, prepared: Prepared, lowered: Lowered, starts: Starts, steps: int, full: bool
     ) -> tuple[Array, Indices, Indices]:
-        spec = Spec(self.thrusters, self._dense, self._advance, full)
+        return self.one_kernel(self.packed(lowered, inputs.dt, full), lowered, prepared, starts, inputs.dt, inputs.hold, steps, full)
+
+    def _spec(self, full: bool) -> Spec:
+        return Spec(self.thrusters, self._dense, self._advance, full)
+
+    def packed(self, lowered: Lowered, dt: float, full: bool) -> Array:
+        """Numbers of the lanes as `one_kernel` takes them, with every effect in the kernel (``full``) or none."""
+        return blocked(pack(lowered, self._spec(full), dt, self.substeps))
+
+    def one_kernel(
+        self, numbers: Array, lowered: Lowered, prepared: Prepared, starts: Starts, dt: float, hold: bool, steps: int, full: bool
+    ) -> tuple[Array, Indices, Indices]:
+        """As `motion`, all lanes by one kernel, from numbers that are `packed` already."""
+        spec = self._spec(full)
         size, blocks = len(starts.sample), -(-len(starts.sample) // W)
-        numbers = blocked(pack(lowered, spec, inputs.dt, self.substeps))
         late, onset = _payload(lowered.lanes, blocks)
         states = blocked(np.concatenate([starts.eta[:, :3], quaternion_from_euler(starts.eta[:, 3:]), starts.nu], axis=1))
         out = np.empty((blocks * W, steps + 1, 12))
         stopped, reason = np.full((blocks, W), -1), np.zeros((blocks, W), dtype=np.int64)
-        gap = prepared.steps_before_gap(starts.sample, inputs.hold)
-        nothing = steps_before_nothing(lowered.lanes, prepared.t[starts.sample], inputs.dt)
+        gap = prepared.steps_before_gap(starts.sample, hold)
+        nothing = steps_before_nothing(lowered.lanes, prepared.t[starts.sample], dt)
         limit = np.minimum(gap, nothing)
         cache.run(
             spec, blocks,
             (
                 numbers, _some(lowered.acts), late, onset, states, _flat(starts.sample), _flat(limit), _flat(starts.which, -1), _flat(starts.gain),
-                prepared.speed, prepared.log, prepared.t, prepared.extra, *self._geometry, inputs.dt, inputs.hold, steps, self.substeps,
+                prepared.speed, prepared.log, prepared.t, prepared.extra, *self._geometry, dt, hold, steps, self.substeps,
                 out, stopped, reason,
             ),
         )  # fmt: skip
