@@ -14,7 +14,7 @@ _CODE = {"effect": "effects/library", "metric": "comparison/metrics"}
 def known(kind: str, archive: Path = Path("archive")) -> list[str]:
     """Names of one kind, as `rovval list` has them."""
     if kind == "run":
-        return sorted(p.name for p in archive.glob("*") if p.is_dir() and not p.name.startswith("."))
+        return sorted(p.name for p in archive.glob("*") if p.is_dir() and not p.name.startswith(".") and p.name != "catalogue")
     if kind in _CODE:
         return sorted(p.stem for p in (PACKAGE / _CODE[kind]).glob("*.py") if defines_one(p))
     folder, suffix = _PLACES[kind]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from datetime import datetime
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rovval.cli import complete, options, output
+from rovval.core.errors import UsageProblem
 
 if TYPE_CHECKING:
     from rovval.effects import Effect
@@ -34,15 +36,25 @@ def _names_of_kind(ctx: typer.Context, incomplete: str) -> list[str]:
 def list_command(
     kind: Annotated[Kind, typer.Argument(help="What to list.")],
     archive: options.ArchiveOption = Path("archive"),
+    where: Annotated[
+        str, typer.Option("--where", metavar="SQL", help="Of the archive's catalogue, the runs for which this holds: SQL over its columns.")
+    ] = "",
+    since: Annotated[datetime | None, typer.Option("--since", help="Of the archive's catalogue, the runs that began since then (UTC).")] = None,
     json_: options.JsonFlag = False,
 ) -> None:
-    """List vehicles, effects, profiles, metrics, or the archive's runs.
+    """List vehicles, effects, profiles, metrics, or the archive's runs; with --where or --since, what batches found of them.
 
     \b
     Example:
       rovval list effect
       rovval list run --archive /data/archive --json
+      rovval list run --where "vehicle = 'merlin' and surge > 0.1" --since 2026-01-01
     """
+    if where or since:
+        if kind is not Kind.run:
+            raise UsageProblem(f"--where and --since ask for runs, not for a {kind.value}", "write `rovval list run --where ...`")
+        _say_runs(archive, where, since, json_)
+        return
     names = _names(kind, archive)
     if json_:
         output.result_json(names)
@@ -50,6 +62,20 @@ def list_command(
         output.result("\n".join(names))
     else:
         output.say(f"no {kind.value} in {archive}" if kind is Kind.run else f"no {kind.value}")
+
+
+def _say_runs(archive: Path, where: str, since: datetime | None, as_json: bool) -> None:
+    """Rows of the catalogue: every column as JSON, the most asked for as a table."""
+    from rovval.report.runs import documents, table
+    from rovval.storage import catalogue
+
+    rows = catalogue.find(archive, where, since)
+    if as_json:
+        output.result_json(documents(rows))
+    elif rows:
+        output.result(table(rows))
+    else:
+        output.say(f"no such run in the catalogue of {archive}, which `rovval run` keeps")
 
 
 def show_command(

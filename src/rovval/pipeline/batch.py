@@ -6,11 +6,12 @@ import os
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from rovval.core.errors import Unwritable, UsageProblem
-from rovval.pipeline import cluster, config, lock, summary
+from rovval.pipeline import catalogue, cluster, config, lock, summary
 from rovval.pipeline.config import Pipeline
 from rovval.pipeline.plan import Plan, Task, plan
 from rovval.pipeline.processes import execute
@@ -60,7 +61,7 @@ def run(
         document = summary.summarise(
             pipeline.name, finished, todo.done, aside, todo.waiting, pipeline.tolerances, seconds, why, todo.missing, stop
         )
-        _publish(pipeline.reports, document, [*finished, *todo.done, *todo.kept])
+        _publish(pipeline, document, [*finished, *todo.done, *todo.kept])
     if stop:
         raise stop
     return document
@@ -73,13 +74,15 @@ def _spread(pipeline: Pipeline, tasks: Sequence[Task], workers: int | None, sche
     return execute(tasks, work, died, workers or pipeline.workers or os.cpu_count() or 1, pipeline.timeout_s)
 
 
-def _publish(reports: Path, summary: dict[str, Any], records: list[Mapping[str, Any]]) -> None:
-    """The summary for programs and for people: both of this batch, or both of the one before. Where the disk is too full for them, what
-    stopped the batch takes the place of the page of the night before, which would look like this night's."""
+def _publish(pipeline: Pipeline, summary: dict[str, Any], records: list[Mapping[str, Any]]) -> None:
+    """Rows of the catalogue, and the summary for programs and for people: both of this batch, or both of the one before. Where the disk is too
+    full for them, what stopped the batch takes the place of the page of the night before, which would look like this night's."""
     from rovval.report.batch import html as batch_html
     from rovval.report.common.files import write_all
 
+    reports = pipeline.reports
     try:
+        summary["damaged"] = catalogue.enter(pipeline, records, datetime.now(UTC))
         write_all(reports, {SUMMARY: json_text(summary), INDEX: batch_html.text(summary, records)})
     except Unwritable as error:
         stopped = {**summary, "exit_code": STOPPED, "stopped_by": {"reason": error.message, "next": error.hint}}

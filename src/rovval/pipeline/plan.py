@@ -28,7 +28,8 @@ RETRIED = ("crash", "internal", "unreadable", "changed")  # a worker that died m
 @dataclass(frozen=True, slots=True)
 class Task:
     """One log, all that a worker needs to know, picklable. ``keys`` in the order of the steps; ``folder`` takes its reports;
-    ``code`` is what the planner runs, `rovval.pipeline.hashes.code_on_disk`."""
+    ``code`` is what the planner runs, `rovval.pipeline.hashes.code_on_disk`; ``method`` is the digest of all that the results depend on
+    beside the log: runs of one method can be held against each other."""
 
     log: Path
     sha256: str
@@ -43,6 +44,7 @@ class Task:
     reports: Path
     folder: Path
     code: str
+    method: str
 
     @property
     def key(self) -> str:
@@ -193,6 +195,7 @@ def _task(pipeline: Pipeline, source: Source, log: Path, sha: str, content: tupl
         reports=pipeline.reports,
         folder=pipeline.reports / f"{shortened(log.stem)}-{_hash(sha, source.profile, source.vehicle)[:8]}",
         code=made_by,
+        method=_hash(made_by, profile, [(step, *options[step]) for step in pipeline.steps])[:12],
     )
 
 

@@ -6,12 +6,15 @@ import os
 import time
 import traceback
 from collections.abc import Callable
+from contextlib import suppress
+from datetime import UTC, datetime
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rovval.core.errors import BadInput, RovvalError, Unwritable
-from rovval.ingest.files import sha256
+from rovval.core.version import __version__
+from rovval.ingest.files import files_of, sha256
 from rovval.pipeline.hashes import code_of_this_process
 from rovval.pipeline.plan import Task
 from rovval.pipeline.records import outputs_whole, read_record, write_record
@@ -91,12 +94,23 @@ def _steps(task: Task) -> dict[str, Any]:
         if stale:
             facts, outputs = bench.do(step)
             run = bench.run
-            record |= {"run": run.id, "vehicle": run.vehicle, "duration_s": run.duration_s, "findings": len(run.findings)}
+            record |= {"run": run.id, "vehicle": run.vehicle, "duration_s": run.duration_s, "findings": len(run.findings), **_date(run)}
+            record |= {"model": task.model, "method": task.method, "rovval": __version__}
             written = contents(outputs, task.reports)
             names = [os.path.relpath(p, task.reports) for p in outputs]
             record["steps"][step] = {"key": key, "code": task.code, "outputs": names, "files": written, **facts}
             write_record(task.folder, record)
     return record
+
+
+def _date(run: Run) -> dict[str, Any]:
+    """When the run began (UTC), and by what that is known: its stamps; or its file's time of change, which may be later, where they are of no
+    year that a calendar has."""
+    if run.t0_ns is not None:
+        with suppress(ValueError, OverflowError, OSError):
+            return {"began": datetime.fromtimestamp(run.t0_ns * 1e-9, UTC).isoformat(), "dated_by": "stamps"}
+    changed = max(part.stat().st_mtime for part in files_of(Path(run.source)))
+    return {"began": datetime.fromtimestamp(changed, UTC).isoformat(), "dated_by": "file"}
 
 
 class _Changed(BadInput):

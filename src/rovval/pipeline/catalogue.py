@@ -1,0 +1,68 @@
+"""What the records of a batch put into the catalogue: one row a run."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from rovval.core.channels import AXES
+from rovval.pipeline import lock
+from rovval.pipeline.config import Pipeline
+
+Record = Mapping[str, Any]
+NO_VEHICLE = "unknown"  # of a run that was only ingested, by a profile that names none
+
+
+def enter(pipeline: Pipeline, records: Sequence[Record], now: datetime) -> list[str]:
+    """Put every record of a batch, new or unchanged, into the catalogue of its archive, so that a row that was lost comes back.
+
+    Returns what of the catalogue was damaged and set aside. Raises `UsageProblem` where it cannot be written.
+    """
+    from rovval.storage import catalogue
+
+    with lock.held(pipeline.archive / catalogue.FOLDER, wait=True):
+        return catalogue.update(pipeline.archive, [_row(pipeline, record) for record in records], now)
+
+
+def _row(pipeline: Pipeline, record: Record) -> dict[str, Any]:
+    """The columns of `rovval.storage.catalogue` that a record (rovval.batch/1) fills; the links lead from the archive."""
+    steps = record["steps"]
+    compared, diagnosed = steps.get("compare", {}), steps.get("diagnose", {})
+    comparison = compared.get("comparison", {})
+    gap = comparison.get("window", {}).get("axes") or diagnosed.get("gap") or {}
+    causes = [_cause(cause) for cause in diagnosed.get("causes") or ()]
+    return {
+        "pipeline": pipeline.name,
+        **{name: record.get(name) for name in ("run", "log", "sha256", "dated_by", "duration_s", "model", "rovval", "method")},
+        "vehicle": comparison.get("vehicle") or diagnosed.get("vehicle") or record.get("vehicle") or NO_VEHICLE,
+        "date": datetime.fromisoformat(record["began"]),
+        **{axis: gap.get(axis, {}).get("rms") for axis in AXES},
+        "verdict": diagnosed.get("verdict"),
+        "cause": causes[0]["effect"] if causes else None,
+        "causes": causes,
+        "findings": [": ".join((f["code"], f["where"], f["detail"])) for f in comparison.get("findings", ())] or steps.get("ingest", {}).get("findings") or [],
+        "stops": list(comparison.get("stops") or steps.get("simulate", {}).get("stops") or ()),
+        "code": [step["code"] for step in steps.values()][-1],
+        "report": _page(pipeline, compared),
+        "diagnosis": _page(pipeline, diagnosed),
+    }
+
+
+def _cause(cause: Mapping[str, Any]) -> dict[str, Any]:
+    sizes = [{"name": name, **{k: p.get(k) for k in ("value", "low", "high", "unit")}} for name, p in cause.get("parameters", {}).items()]
+    return {
+        "effect": cause["effect"],
+        "kind": cause.get("kind", "effect"),
+        "group": list(cause.get("group", ())),
+        "probability": cause.get("probability"),
+        "shrinkage": (cause.get("shrinkage") or {}).get("total"),
+        "parameters": sizes,
+    }
+
+
+def _page(pipeline: Pipeline, step: Mapping[str, Any]) -> str | None:
+    page = next((place for place in step.get("outputs", ()) if place.endswith(".html")), None)
+    return page and Path(os.path.relpath(pipeline.reports / page, pipeline.archive)).as_posix()
