@@ -1,14 +1,12 @@
-"""ROS 1 .bag and ROS 2 bags (folder, bare .db3 or .mcap). One reader per file, since definitions differ between files."""
+"""ROS 1 .bag and ROS 2 bags (folder, bare .db3 or .mcap): the topics that a profile names, as columns. Of a damaged file, what is left."""
 
 from __future__ import annotations
 
 import re
-import shutil
-import sqlite3
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
@@ -17,30 +15,35 @@ import numpy as np
 
 from rovval.core.data import Array, RawLog
 from rovval.core.errors import BadInput, Finding, RovvalError, all_at_once
+from rovval.ingest.bags import recording
+from rovval.ingest.bags.block import Block as Messages
+from rovval.ingest.bags.block import Connection, Index
+from rovval.ingest.bags.columns import Columns, Layouts, header_ns, types_of
+from rovval.ingest.bags.layout import Layout
+from rovval.ingest.bags.recording import Recording
 from rovval.ingest.clock import increasing_stamps
 from rovval.ingest.files import sha256
-from rovval.ingest.inspection.block import Block, Collector
-from rovval.ingest.inspection.flatten import flat
+from rovval.ingest.inspection.block import MOST_MEMBERS, Block
+from rovval.ingest.inspection.flatten import LONGEST_TEXT
 from rovval.ingest.profile import ATTITUDE, Profile, Source
 
-SUFFIXES = (".bag", ".db3", ".mcap", "")  # "": a folder
-MAGIC = (b"#ROSBAG V2.0", b"SQLite format 3\0", b"\x89MCAP0\r\n")
+SUFFIXES = (*recording.SUFFIXES, "")  # "": a folder
 SIM_TIME_NS = 10**18  # stamps before 2001 count from the start of a simulation, not from 1970
-Get = Callable[[Any], Any]
+QUATERNION = ("w", "x", "y", "z")
 
 
 def sniff(path: Path) -> bool:
     """Whether the file starts as a bag does, or the folder holds one."""
     if path.is_dir():
-        return bool(_inside(path)) or (path / "metadata.yaml").is_file()
+        return bool(recording.inside(path)) or (path / "metadata.yaml").is_file()
     with path.open("rb") as file:
-        return file.read(16).startswith(MAGIC)
+        return file.read(16).startswith(recording.MAGIC)
 
 
 def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     """Required topics of ``profile`` that the bag has not, and `absent` ones that it has."""
-    with _opened(path, profile.messages) as (reader, _):
-        return _missing([c.topic for c in reader.connections], profile)
+    with _opened(path) as (bag, _):
+        return _missing([c.topic for c in bag.connections()], profile)
 
 
 def _missing(topics: list[str], profile: Profile) -> tuple[str, ...]:
@@ -55,51 +58,60 @@ def read(path: Path, profile: Profile) -> RawLog:
 
     if profile.time.kind not in ("header", "record"):
         raise BadInput(f"{path}: profile {profile.name!r} takes stamps from {profile.time.kind}, a bag has header or record", "give --profile")
-    with _opened(path, profile.messages) as (reader, findings):
-        if gone := [m for m in _missing([c.topic for c in reader.connections], profile) if not m.startswith("not ")]:
+    with _opened(path) as (bag, findings):
+        connections = bag.connections()
+        if not connections and (foreign := bag.foreign()):
+            told = ", ".join(f"{topic} is {how}" for topic, how in list(foreign.items())[:3])
+            raise BadInput(f"{path}: no topic is serialised as ROS does: {told}", "this mcap is not of ROS; give a profile of its own format")
+        if gone := [m for m in _missing([c.topic for c in connections], profile) if not m.startswith("not ")]:
             hint = "see `rovval show profile`, or give another"
             raise BadInput(all_at_once(gone, f"{path}: missing topics of profile {profile.name!r}"), hint)
-        topics = _collect(path, reader, _with_topics_of(profile, [c.topic for c in reader.connections]))
-    findings = list(findings)
-    stamps = [ns for t in topics.values() for ns in (t.header if t.stamp == "header" else t.record)]
-    if not stamps:
+        topics = _collect(path, bag, connections, _with_topics_of(profile, [c.topic for c in connections]), findings)
+        findings += bag.findings()
+    topics = {name: topic for name, topic in topics.items() if len(topic.record)}
+    if not topics:
         raise BadInput(f"{path}: no message on any topic of profile {profile.name!r}", "is this the right recording?")
-    t0 = min(stamps)
+    t0 = int(min((t.header if t.stamp == "header" else t.record).min() for t in topics.values()))
     signals: dict[str, Any] = {}
     for topic in topics.values():
         signals |= _signals(path, topic, t0, findings)
     facts = {"topics": ", ".join(topics), "messages": str(sum(len(t.record) for t in topics.values()))}
-    lags = [h - r for t in topics.values() if t.stamp == "header" for h, r in zip(t.header, t.record, strict=True)]
-    if lags:
-        facts["record_minus_header_s"] = f"{-np.median(lags) * 1e-9:.4f}"
+    if lags := [t.header - t.record for t in topics.values() if t.stamp == "header"]:
+        facts["record_minus_header_s"] = f"{-np.median(np.concatenate(lags)) * 1e-9:.4f}"
     return build(profile, signals, path, sha256(path), t0 if t0 > SIM_TIME_NS else None, findings, facts)
 
 
 def contents(path: Path) -> Iterator[Block]:
     """Every topic of the bag with its fields, header and record stamps. Raises `BadInput` where the bag cannot be read."""
-    collector, done = Collector(), 0
-    with _opened(path, {}) as (reader, findings):
-        if findings:
-            yield Block("", findings=tuple(findings))
-        with _stage(path, "reading messages", lambda: f"{done} messages were read"):
-            for connection, ns, raw in reader.messages():
-                message = reader.deserialize(raw, connection.msgtype)
-                fields, left_out = flat(message)
-                stamp = _header_ns(message)
-                clocks = {"record": ns * 1e-9, **({} if stamp is None else {"header": stamp * 1e-9 if stamp else np.nan})}
-                values = {n: v for n, v in fields.items() if not n.startswith("header.")}
-                if block := collector.add(connection.topic, connection.msgtype, clocks, values, left_out):
-                    yield block
-                done += 1
-        silent = [c for c in reader.connections if not c.msgcount]
-    yield from collector.rest()
-    yield from (Block(c.topic, c.msgtype) for c in silent)
+    with _opened(path) as (bag, findings):
+        connections = bag.connections()
+        silent = {(c.topic, c.kind) for c in connections}
+        with _stage(path, "reading messages"):
+            types = types_of(connections, {})
+            layouts = {c: Layouts(c, types) for c in connections}
+            for block in bag.blocks(frozenset(c.topic for c in connections)):
+                for found, rows in layouts[block.connection].of(block) if block.connection in layouts else ():
+                    silent.discard((block.connection.topic, block.connection.kind))
+                    yield _as_logged(block, found, rows)
+        if found_ := (*findings, *bag.findings()):
+            yield Block("", findings=tuple(found_))
+    yield from (Block(topic, kind) for topic, kind in sorted(silent))
 
 
-def _header_ns(message: Any) -> int | None:
-    """The header's stamp in ns, 0 where a driver leaves it empty; None for a message without header."""
-    stamp = getattr(getattr(message, "header", None), "stamp", None)
-    return None if stamp is None else int(stamp.sec) * 10**9 + int(stamp.nanosec)
+def _as_logged(block: Messages, found: Layout, rows: Index) -> Block:
+    """All fields of the messages of one layout."""
+    starts, stamps = block.start[rows], header_ns(found, block, rows)
+    clocks: dict[str, Array] = {"record": np.asarray(block.record_ns[rows] * 1e-9)}
+    if stamps is not None:
+        clocks["header"] = np.where(stamps != 0, stamps * 1e-9, np.nan)
+    few = {a: n for a, (_, _, n) in found.numbers.items() if n <= MOST_MEMBERS and not a.startswith("header.")}
+    addresses = [name for a, n in few.items() for name in ([f"{a}[{i}]" for i in range(n)] or [a])]
+    numbers = {a: column for a in addresses if (column := found.column(block.data, starts, a)) is not None}
+    short = [a for a, (_, size) in found.texts.items() if size <= LONGEST_TEXT and not a.startswith("header.")]
+    left_out = {a: f"{n} elements" for a, (_, _, n) in found.numbers.items() if n > MOST_MEMBERS}
+    left_out |= {a: f"text of {size} characters" for a, (_, size) in found.texts.items() if size > LONGEST_TEXT}
+    texts = {a: found.text(block.data, starts, a) for a in short}
+    return Block(block.connection.topic, block.connection.kind, clocks, numbers, texts, left_out=left_out)
 
 
 def _with_topics_of(profile: Profile, topics: list[str]) -> Profile:
@@ -111,63 +123,62 @@ def _with_topics_of(profile: Profile, topics: list[str]) -> Profile:
     return profile.model_copy(update={"channels": one})
 
 
-@dataclass(slots=True)
+Channels = dict[str, tuple[Source, tuple[str, ...]]]  # channel -> where it comes from, and the addresses of its numbers in a message
+
+
+@dataclass(frozen=True, slots=True)
 class _Topic:
-    """What is collected of one topic: both clocks, and a column per channel."""
+    """One topic's messages: both clocks (ns), the one to use, and a column or four per channel."""
 
     name: str
     stamp: str
-    channels: dict[str, tuple[Source, Get]]
-    header: list[int] = field(default_factory=list)
-    record: list[int] = field(default_factory=list)
-    columns: dict[str, list[Any]] = field(default_factory=dict)
+    sources: dict[str, Source]
+    record: Index
+    header: Index
+    columns: dict[str, Array]
 
 
-def _collect(path: Path, reader: Any, profile: Profile) -> dict[str, _Topic]:
-    topics: dict[str, _Topic] = {}
-    connections = [c for c in reader.connections if _channels(c.topic, profile)]
-    for c in connections:
-        topics.setdefault(c.topic, _Topic(c.topic, profile.time.kind, _channels(c.topic, profile)))
-    types = {c.topic: c.msgtype for c in connections}
+def _collect(path: Path, bag: Recording, connections: list[Connection], profile: Profile, findings: list[Finding]) -> dict[str, _Topic]:
+    """Topic by topic what the profile reads. Raises `BadInput` with every field that no message has."""
+    wanted = {c: channels for c in connections if (channels := _channels(c.topic, profile))}
+    with _stage(path, "reading the types of its messages"):
+        types = types_of(wanted, profile.messages)
+        found = {c: Columns(c, types, [a for _, addresses in channels.values() for a in addresses]) for c, channels in wanted.items()}
+    with _stage(path, "reading messages"):
+        for block in bag.blocks(frozenset(c.topic for c in wanted)):
+            if block.connection in found:
+                found[block.connection].take(block)
     wrong: dict[str, None] = {}
-    done = 0
-    with _stage(path, "reading messages", lambda: f"{done} messages were read"):
-        for connection, ns, raw in reader.messages(connections=connections):
-            message = reader.deserialize(raw, connection.msgtype)
-            wrong |= dict.fromkeys(_take(topics[connection.topic], message, ns, types[connection.topic]))
-            done += 1
-            if wrong and done > 1000:
-                break
+    for c, columns in found.items():
+        if columns.damaged:
+            findings.append(Finding("damaged_message", c.topic, f"{columns.damaged:,} messages have lengths that are not those of {c.kind}; left out"))
+        gone = [source.field for source, addresses in wanted[c].values() if columns.absent & set(addresses)] if columns.taken else []
+        wrong |= dict.fromkeys(f"{c.topic} ({c.kind}) has no number {field!r}" for field in gone)
     if wrong:
         raise BadInput(all_at_once(list(wrong), f"{path}: fields that profile {profile.name!r} names"), "mend the profile's field")
-    return topics
+    names = dict.fromkeys(c.topic for c in wanted)
+    return {name: _topic(name, profile.time.kind, {c: k for c, k in found.items() if c.topic == name}, _channels(name, profile)) for name in names}
 
 
-def _take(topic: _Topic, message: Any, ns: int, kind: str) -> list[str]:
-    """Put one message into its topic's columns; returns the fields that it does not have."""
-    values, wrong = {}, []
-    for name, (source, get) in topic.channels.items():
-        try:
-            values[name] = get(message)
-        except (AttributeError, IndexError, TypeError, ValueError):
-            wrong.append(f"{topic.name} ({kind}) has no number {source.field!r}")
-    if wrong:
-        return wrong
-    for name, value in values.items():
-        topic.columns.setdefault(name, []).append(value)
-    topic.header.append(_header_ns(message) or 0)
-    topic.record.append(int(ns))
-    if topic.stamp == "header" and topic.header[-1] == 0:
-        topic.stamp = "record"  # no header, or a driver that leaves it empty
-    return []
+def _topic(name: str, clock: str, found: dict[Connection, Columns], channels: Channels) -> _Topic:
+    """What several publishers sent on one topic, in the order in which it was recorded."""
+    parts = [columns.arrays() for columns in found.values()]
+    record, header = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
+    order = np.argsort(record, kind="stable")
+    columns = {}
+    for channel, (_, addresses) in channels.items():
+        block = np.stack([np.concatenate([part[2][a] for part in parts])[order] for a in addresses], axis=1)
+        columns[channel] = block if len(addresses) > 1 else block[:, 0]
+    stamp = "header" if clock == "header" and len(header) and header.all() else "record"  # a driver may leave the header's empty
+    return _Topic(name, stamp, {n: source for n, (source, _) in channels.items()}, record[order], header[order], columns)
 
 
 def _signals(path: Path, topic: _Topic, t0: int, findings: list[Finding]) -> dict[str, Any]:
     from rovval.ingest.assembly import Signal
 
-    if topic.stamp == "record" and any(topic.header):
+    if topic.stamp == "record" and topic.header.any():
         findings.append(Finding("stamp", topic.name, "some header stamps are zero; the recorder's stamps are used"))
-    ns = np.array(topic.header if topic.stamp == "header" else topic.record, dtype=np.int64)
+    ns = topic.header if topic.stamp == "header" else topic.record
     where = f"{path}: {topic.name}"
     try:
         rows, t, found = increasing_stamps(np.asarray((ns - t0) * 1e-9, dtype=np.float64), np.arange(1, len(ns) + 1), where)
@@ -175,106 +186,41 @@ def _signals(path: Path, topic: _Topic, t0: int, findings: list[Finding]) -> dic
         findings.append(Finding("unusable_topic", topic.name, error.message.removeprefix(f"{where}: ")))
         return {}
     findings += [Finding(f.code, topic.name, f.detail.replace("line", "message").replace("row", "message")) for f in found]
-    columns: dict[str, Array] = {n: np.array(c, dtype=float)[rows] for n, c in topic.columns.items()}
-    return {n: Signal(t, c, topic.stamp, topic.channels[n][0]) for n, c in columns.items()}
+    return {n: Signal(t, column[rows], topic.stamp, topic.sources[n]) for n, column in topic.columns.items()}
 
 
-def _channels(topic: str, profile: Profile) -> dict[str, tuple[Source, Get]]:
-    """Channels that the profile takes from ``topic``, each with how to get it out of a message."""
-    out = {}
+def _channels(topic: str, profile: Profile) -> Channels:
+    """Channels that the profile takes from ``topic``."""
+    out: Channels = {}
     for name, source in profile.channels.items():
         if isinstance(source.topic, str) and fnmatchcase(topic, source.topic):
             found = re.fullmatch(re.escape(source.topic).replace(r"\*", "(.+)"), topic)
             member = found.group(1) if found and found.groups() else ""
-            out[name.replace("*", member)] = (source, _getter(str(source.field), name == ATTITUDE))
+            field = str(source.field)
+            out[name.replace("*", member)] = (source, tuple(f"{field}.{n}".lstrip(".") for n in QUATERNION) if name == ATTITUDE else (field,))
     return out
 
 
-def _getter(address: str, quaternion: bool) -> Get:
-    steps = re.findall(r"[A-Za-z_]\w*|\[\d+\]", address)
-
-    def get(message: Any) -> Any:
-        for step in steps:
-            message = message[int(step[1:-1])] if step.startswith("[") else getattr(message, step)
-        if quaternion:
-            return float(message.w), float(message.x), float(message.y), float(message.z)
-        return float(message)
-
-    return get
-
-
 @contextmanager
-def _opened(path: Path, definitions: Mapping[str, str]) -> Iterator[tuple[Any, list[Finding]]]:
-    """The bag's reader, and what was found while opening it."""
-    from rosbags.highlevel import AnyReader
-    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-
-    store = get_typestore(Stores.ROS2_HUMBLE)
+def _opened(path: Path) -> Iterator[tuple[Recording, list[Finding]]]:
+    """The recording, and what was found while opening it."""
     with tempfile.TemporaryDirectory(prefix="rovval-") as scratch:
         found: list[Finding] = []
         with _stage(path, "opening"):
-            for name, text in definitions.items():
-                store.register(get_types_from_msg(text, name))
-            reader = AnyReader([_whole(_bag(path), Path(scratch), found)], default_typestore=store)
-            reader.open()
-        try:
-            yield reader, found
-        finally:
-            reader.close()
-
-
-def _inside(folder: Path) -> list[Path]:
-    return sorted(p for p in folder.iterdir() if p.suffix in (".db3", ".mcap"))
-
-
-def _bag(path: Path) -> Path:
-    """What to open: a folder without metadata.yaml stands for the one file in it."""
-    if not path.is_dir() or (path / "metadata.yaml").is_file():
-        return path
-    inside = _inside(path)
-    if len(inside) != 1:
-        names = ", ".join(p.name for p in inside) or "none"
-        raise BadInput(f"{path}: a folder without metadata.yaml and with {len(inside)} bag files ({names})", "give one of the files")
-    return inside[0]
-
-
-def _whole(bag: Path, scratch: Path, found: list[Finding]) -> Path:
-    """The bag with what a crashed recorder left in SQLite's write-ahead log put back into it, in a copy.
-
-    rosbags opens a db3 as immutable and would leave those messages out without a word.
-    """
-    files = [bag] if bag.is_file() else _inside(bag)
-    left = [f for f in files if f.suffix == ".db3" and (wal := f.with_name(f.name + "-wal")).is_file() and wal.stat().st_size]
-    if not left:
-        return bag
-    copy = scratch / bag.name
-    if bag.is_dir():
-        shutil.copytree(bag, copy)
-    else:
-        shutil.copy(bag, copy)
-        shutil.copy(bag.with_name(bag.name + "-wal"), scratch)
-    for file in left:
-        database = sqlite3.connect(copy / file.name if bag.is_dir() else copy)
-        database.execute("PRAGMA wal_checkpoint(TRUNCATE)")
-        database.close()
-    names = ", ".join(f.name for f in left)
-    found.append(Finding("write_ahead_log", names, "the recorder did not close the file; messages of its write-ahead log are included"))
-    return copy
+            bag = recording.recording(path, Path(scratch), found)
+        yield bag, found
 
 
 @contextmanager
-def _stage(path: Path, stage: str, done: Callable[[], str] = lambda: "") -> Iterator[None]:
-    """Damaged bags make rosbags raise a dozen unrelated types: all become one refusal."""
+def _stage(path: Path, stage: str) -> Iterator[None]:
+    """A bag that is no bag makes its libraries raise a dozen unrelated types: all become one refusal."""
     try:
         yield
-    except (RovvalError, KeyboardInterrupt):
+    except (RovvalError, KeyboardInterrupt, OSError):
         raise
     except Exception as error:
-        so_far = f"; {done()}" if done() else ""
         said = str(error).splitlines()[0] if str(error) else ""
         hint = "is the file whole? `rosbag reindex` (ROS 1), `mcap recover` or `ros2 bag reindex` may mend it"
-        if "not ros2" in said:
-            hint = "this mcap is not of ROS 2; convert it, or export it as CSV"
-        if isinstance(error, KeyError) or "type definitions" in said:
+        if isinstance(error, KeyError):
             hint = "the bag does not define its message types; put their .msg texts into [messages] of a profile"
-        raise BadInput(f"{path}: damaged or foreign, while {stage}: {type(error).__name__}: {said}{so_far}", hint) from None
+        raise BadInput(f"{path}: damaged or foreign, while {stage}: {type(error).__name__}: {said}", hint) from None
