@@ -1,0 +1,86 @@
+"""Questions to published logs whose answer their publishers state: ballast, yaw drag, and an outside plant's effects."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from real_answers import Answer, Question, ask
+from real_data import real
+
+from rovval import vehicle
+from rovval.fit.calibration import calibrate
+from rovval.storage.archive import open_run
+from rovval.vehicle.model import as_matrix
+from rovval.vehicle.write import to_toml
+
+WITH_BALLAST, POWERED = ("ff_b1", "ff_b2"), tuple(f"exp1_{i}" for i in range(1, 6))
+YAW, YAW_DRAG = ("yaw_1", "yaw_2", "yaw_3"), ("linear_drag[yaw]", "quadratic_drag[yaw]")
+YAW_WINDOW_S = 4.0  # the shortest of the logs has thruster inputs for some 15 s
+SAME = {  # families of the outside plant, and what the library calls the same by its README: its effects act on all thrusters and axes concerned
+    "added_mass": ("added_mass[surge]", "added_mass[sway]", "added_mass[heave]"),
+    "rpm_scale": ("rpm_scale", "voltage_sag"),
+    "tether_drag": ("tether_drag", "tether_tension"),
+}
+FOREIGN = {"stick_slip", "slosh"}  # effects that no library need hold
+
+
+def _questions(folder: str, logs: tuple[str, ...], nominal: str, right: tuple[str, ...]) -> tuple[Question, ...]:
+    """Each log by itself, and all of them jointly."""
+    paths, of = tuple(real(f"{folder}/{name}.bag") for name in logs), to_toml(vehicle.load(nominal))
+    together = (Question("jointly", paths, of, right),) if len(paths) > 1 else ()
+    return (*(Question("each", (path,), of, right) for path in paths), *together)
+
+
+def ballast() -> tuple[Answer, ...]:
+    """Bags of a BlueROV2: released without ballast, released with, and powered."""
+    groups = (("ff_nb1",), WITH_BALLAST, POWERED)
+    return ask(tuple(one for logs in groups for one in _questions("bluerov2_ballast", logs, "bluerov2_heavy", ("buoyancy_error",))))
+
+
+def yaw_drag() -> tuple[Answer, ...]:
+    """Bags of a BlueROV of 2016 that only turns."""
+    return ask(_questions("bluerov_2016", YAW, "bluerov_2016", YAW_DRAG))
+
+
+def yaw_drag_over_thrust(logs: tuple[str, ...]) -> float:
+    """Linear drag of yaw (N m s) that takes as much power out of these runs as the calibrated vehicle's linear and quadratic drag do, over the factor that the
+    calibration puts on the thrust table: without a measured force nothing but this ratio is seen."""
+    runs = [open_run(real(f"bluerov_2016/{name}.bag")) for name in logs]
+    found = calibrate(runs, vehicle.load("bluerov_2016"), window_s=YAW_WINDOW_S)
+    rate = np.concatenate([run.get("r")[run.ok("r")] for run in runs])
+    linear, quadratic = (as_matrix(m)[5, 5] for m in (found.vehicle.body.linear_drag, found.vehicle.body.quadratic_drag))
+    drag = linear + quadratic * (np.abs(rate) ** 3).mean() / (rate**2).mean()
+    factor = {row.unknown.key: row.value for row in found.rows}
+    return float(drag / (factor["thrust.gain"] * np.sqrt(factor["thrust.astern"])))  # one of the two that turn it is always astern
+
+
+@cache
+def _truth() -> Mapping[str, Any]:
+    return dict(json.loads(real("outside_plant/truth.json").read_text(encoding="utf-8")))
+
+
+def _right(effects: list[Mapping[str, Any]]) -> tuple[str, ...]:
+    """Names of the library for what was put in."""
+    found = list[str]()
+    for one in effects:
+        if one["family"] not in FOREIGN:
+            found += SAME.get(one["family"], (f"{one['family']}[{one['params']['unit']}]" if "unit" in one["params"] else one["family"],))
+    return tuple(found)
+
+
+def outside_plant(minutes: float) -> tuple[Answer, ...]:
+    """Logs of at most ``minutes`` of the outside plant, in order of their names; those whose effect moves no axis are healthy ones."""
+    nominal = to_toml(vehicle.load("merlin"))
+    asked = list[Question]()
+    for name, truth in sorted(_truth().items()):
+        if truth["minutes"] <= minutes:
+            effects = truth["effects"] if truth["affected_axes"] else []
+            piece = " and ".join(one["family"] for one in effects) or "healthy"
+            path: Path = real(f"outside_plant/{name}.csv.gz")
+            asked.append(Question(piece, (path,), nominal, _right(effects)))
+    return ask(tuple(asked))
