@@ -62,9 +62,10 @@ def test_every_problem_is_named_at_once():
         "n:*": {"column": "rpm", "unit": "rpm"},
         "z": {"column": "d", "unit": "m", "span": 0.0},
         "x": {"column": "lat", "unit": "degree_latitude"},
+        "psi": {"column": "hdg", "unit": "deg"},
     }
     with pytest.raises(UsageProblem) as refused:
-        parse_profile(table(channels=wrong, frame="flu", time={"kind": "time_of_day", "columns": ["t"]}), "x")
+        parse_profile(table(channels=wrong, frame="flu", time={"kind": "time_of_day", "columns": ["h", "m"]}), "x")
     text = str(refused.value)
     for word in ("furlong", "'speed'", "exactly one of", "needs one *", "span", "go together", "flu", "time_of_day needs"):
         assert word in text, word

@@ -14,6 +14,7 @@ SI: dict[str, float] = {
     "ns": 1e-9,
     "h": 3600.0,
     "min": 60.0,
+    "day": 86400.0,
     "m": 1.0,
     "cm": 1e-2,
     "mm": 1e-3,
@@ -50,6 +51,7 @@ SI: dict[str, float] = {
     "degree_latitude": 1.0,  # latitude and longitude stay in degrees until they become x, y
 }
 
+TIME_UNITS = ("s", "ms", "us", "ns", "min", "h", "day")
 DEGREES = 180.0 / pi
 DEGREE_UNITS = {"rad": "deg", "rad/s": "deg/s"}
 

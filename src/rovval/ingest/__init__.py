@@ -60,16 +60,17 @@ def reader(name: str) -> Reader:
     return cast(Reader, importlib.import_module(f"{formats.__name__}.{name}"))
 
 
-def read(path: Path, profile: str | None = None) -> RawLog:
+def read(path: Path, profile: str | None = None, timezone: str | None = None) -> RawLog:
     """The log of ``path`` in SI, forward-starboard-down and north-east-down, each channel at its own stamps.
 
     ``profile`` is a built-in name or a path to a TOML file; without it the one built-in profile is taken whose required columns
-    or topics the log has. Raises `BadInput` for a log that cannot be used or that fits none or several profiles, `UsageProblem`
+    or topics the log has. ``timezone`` (``Europe/Berlin``, ``+02:00``) is that of stamps that are date and time without a zone of their own;
+    it goes before the profile's. Raises `BadInput` for a log that cannot be used or that fits none or several profiles, `UsageProblem`
     for a profile that does not exist or is wrong.
     """
     path = Path(path)
     refuse_unusable(path)
-    chosen = load_profile(profile) if profile is not None else _the_one_that_fits(path)
+    chosen = (load_profile(profile) if profile is not None else _the_one_that_fits(path)).in_zone(timezone)
     chosen_reader = reader(chosen.format)
     if path.is_dir() and "" not in chosen_reader.SUFFIXES:
         raise BadInput(f"{path}: a folder; profile {chosen.name!r} reads single files ({chosen.format})", "give one of the files in it")

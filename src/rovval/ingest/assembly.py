@@ -54,7 +54,7 @@ def build(
         if not present.any():
             found.append(Finding("empty_channel", name, "holds no value"))
         elif name == ATTITUDE:
-            series |= _attitude(signal, present)
+            series |= _attitude(profile, signal, present)
         else:
             series[name] = Series(signal.t[present], _si(signal.values[present], signal.source), signal.stamp)
     series, said = signed_by_command(profile, series)
@@ -87,8 +87,12 @@ def _si(raw: Array, source: Source) -> Array:
     return np.asarray((raw - source.zero if source.zero else raw) * factor)
 
 
-def _attitude(signal: Signal, present: Flags) -> dict[str, Series]:
+def _attitude(profile: Profile, signal: Signal, present: Flags) -> dict[str, Series]:
+    """Euler angles of the quaternion in the pair of axes that belongs to its world: fsd in ned, flu in enu and nwu."""
     q = signal.values[present]
+    if (profile.frame_of(ATTITUDE) == "fsd") != (profile.world_of(ATTITUDE) == "ned"):
+        w, x, y, z = q.T
+        q = np.stack([-x, w, z, -y], axis=1)  # half a turn about the bow first: fsd <-> flu
     norm = np.linalg.norm(q, axis=1)
     unit = np.abs(norm - 1.0) < 0.1
     euler = euler_from_quaternion(q[unit] / norm[unit, None])
@@ -113,25 +117,32 @@ def _geodetic(profile: Profile, series: dict[str, Series], facts: dict[str, str]
 
 
 def _turned(profile: Profile, series: dict[str, Series]) -> dict[str, Series]:
-    """Body components and world pose into forward-starboard-down and north-east-down (REP-103 to SNAME)."""
+    """Body components and world pose into forward-starboard-down and north-east-down (REP-103 to SNAME), each from the axes that it was logged in."""
     out = dict(series)
-    for name in SIDEWAYS_OR_DOWN:
-        declared = profile.channels[name].frame if name in profile.channels else None
-        if name in out and (declared or profile.frame) == "flu":
+    for name in (*SIDEWAYS_OR_DOWN, "theta"):
+        if name in out and _body_of(profile, name) == "flu":
             out[name] = _scaled(out[name], -1.0)
-    if profile.world == "ned":
-        return out
-    enu = profile.world == "enu"
-    geodetic = "x" in profile.channels and profile.channels["x"].unit == GEODETIC
-    if not geodetic:
-        x, y = ("y", "x") if enu else ("x", "y")
-        pose = {"x": series.get(x), "y": series.get(y)}
-        out |= {n: _scaled(s, -1.0 if n == "y" and not enu else 1.0) for n, s in pose.items() if s is not None}
-        out = {n: s for n, s in out.items() if n not in pose or pose[n] is not None}
-    for name, sign, offset in (("z", -1.0, 0.0), ("theta", -1.0, 0.0), ("psi", -1.0, np.pi / 2 if enu else 0.0)):
-        if name in series:
-            out[name] = Series(series[name].t, sign * series[name].values + offset, series[name].stamp)
-    return out
+    if "z" in out and profile.world_of("z") != "ned":
+        out["z"] = _scaled(out["z"], -1.0)
+    if "psi" in out and (world := profile.world_of(ATTITUDE if "psi" not in profile.channels else "psi")) != "ned":
+        out["psi"] = Series(out["psi"].t, -out["psi"].values + (np.pi / 2 if world == "enu" else 0.0), out["psi"].stamp)
+    return out if "x" in profile.channels and profile.channels["x"].unit == GEODETIC else _north_and_east(profile, out)
+
+
+def _body_of(profile: Profile, name: str) -> str:
+    """Body axes of a channel; the pitch of a quaternion is in those that belong to its world."""
+    if name == "theta" and ATTITUDE in profile.channels:
+        return "fsd" if profile.world_of(ATTITUDE) == "ned" else "flu"
+    return profile.frame_of(name)
+
+
+def _north_and_east(profile: Profile, series: dict[str, Series]) -> dict[str, Series]:
+    world = profile.world_of("x" if "x" in profile.channels else "y")
+    if world == "ned":
+        return series
+    north, east = ("y", "x") if world == "enu" else ("x", "y")
+    turned = {"x": series.get(north), "y": _scaled(series[east], -1.0 if world == "nwu" else 1.0) if east in series else None}
+    return {n: s for n, s in series.items() if n not in turned} | {n: s for n, s in turned.items() if s is not None}
 
 
 def _into_body(profile: Profile, series: dict[str, Series], found: list[Finding]) -> dict[str, Series]:
@@ -152,7 +163,7 @@ def _into_body(profile: Profile, series: dict[str, Series], found: list[Finding]
     if len(t) < 1:
         found.append(Finding("no_velocity", "u, v, w", "no attitude at the stamps of the velocity"))
         return rest
-    ned = np.stack([s.values[np.isin(s.t, t)] for s in (series[n] for n in WORLD_VELOCITY)], axis=1) @ TO_NED[profile.world].T
+    ned = np.stack([s.values[np.isin(s.t, t)] for s in (series[n] for n in WORLD_VELOCITY)], axis=1) @ TO_NED[profile.world_of("u")].T
     euler = np.stack([np.interp(t, series[n].t, np.unwrap(series[n].values)) for n in EULER], axis=1)
     body = np.einsum("nji,nj->ni", rotation_from_euler(euler), ned)
     return rest | {n: Series(t, body[:, i], series[n].stamp) for i, n in enumerate(WORLD_VELOCITY)}

@@ -28,9 +28,14 @@ def time_of_day(columns: list[Array]) -> Array:
     seconds = np.sum([c * s for c, s in zip(columns, scale, strict=False)], axis=0)
     for column, top in zip(columns, (24, 60, 61, 1000), strict=False):
         seconds[(column < 0) | (column >= top)] = np.nan
-    known = np.isfinite(seconds)
-    seconds[known] = np.unwrap(seconds[known], period=DAY_S)
-    return np.asarray(seconds, dtype=float)
+    return over_midnight(seconds)
+
+
+def over_midnight(seconds: Array) -> Array:
+    """Seconds since midnight (n,), carried on over it; NaN stays."""
+    out, known = np.array(seconds, dtype=float), np.isfinite(seconds)
+    out[known] = np.unwrap(out[known], period=DAY_S)
+    return out
 
 
 def increasing_stamps(t: Array, lines: Index, where: str) -> tuple[Index, Array, tuple[Finding, ...]]:

@@ -25,7 +25,7 @@ def test_nested_messages_become_addresses():
 
 def test_a_field_that_comes_and_goes_is_missing_in_between():
     collector = Collector()
-    messages = [{"a": 1.0}, {"a": 2.0, "mode": "hold"}, {}, {"b": 4.0}]
+    messages: list[dict[str, float | str]] = [{"a": 1.0}, {"a": 2.0, "mode": "hold"}, {}, {"b": 4.0}]
     assert all(collector.add("/t", "kind", {"record": float(i)}, m) is None for i, m in enumerate(messages))
     [block] = collector.rest()
     assert block.rows == 4

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,9 +18,6 @@ from rovval.ingest.files import sha256
 from rovval.ingest.header import header_of
 from rovval.ingest.inspection.block import Block
 from rovval.ingest.profile import Profile
-
-if TYPE_CHECKING:
-    import polars as pl
 
 SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".log", ".asc")
 HEAD = 262_144  # bytes that hold the banner and the header
@@ -46,17 +42,20 @@ def read(path: Path, profile: Profile) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming every missing column, or what else makes the file useless."""
     from rovval.ingest.assembly import Signal, build
     from rovval.ingest.cells import frame, numbers
-    from rovval.ingest.stamps import stamps
+    from rovval.ingest.stamps import stamps, written
 
     table, lost = _table(path, profile)
     where = columns_of(path, profile, table.header)
     if not table.rows:
         raise BadInput(f"{path}: a header and no complete row below it", "was the export interrupted?")
     text = frame(table, {c: at for _, columns in where.values() for c, at in columns.items()} | clock_columns(profile, table.header))
-    values, found = numbers(_only_numbers(text, profile), table, str(path))
+    as_text = [c for c in text.columns if c.startswith("time.") and written(profile.time)]
+    values, found = numbers(text.drop(as_text), table, str(path))
     logged, t0_ns = stamps(path, profile, text, values)
     rows, t, clock_found = increasing_stamps(logged, np.array(table.lines), str(path))
     start = {"time_of_day_s_at_start": f"{float(t[0]) % DAY_S:.3f}"} if profile.time.kind == "time_of_day" else {}
+    if profile.time.kind == "datetime":
+        start = {"timezone": profile.time.timezone or "UTC where the stamps do not say theirs"}
     signals = {}
     for name, (source, columns) in where.items():
         block = np.stack([values[c][rows] for c in columns], axis=1)
@@ -96,7 +95,3 @@ def _table(path: Path, profile: Profile) -> tuple[text_table.Table, tuple[Findin
         hint = "give --profile for another source, or write a profile (a TOML file) for this one"
         raise BadInput(f"{path}: no header of profile {profile.name!r} in its first {text_table.HEADER_WITHIN} lines; wanted: {columns}", hint)
     return table, lost
-
-
-def _only_numbers(text: pl.DataFrame, profile: Profile) -> pl.DataFrame:
-    return text.select([c for c in text.columns if not (profile.time.kind == "datetime" and c.startswith("time."))])
