@@ -7,7 +7,21 @@ from typing import Annotated
 
 import typer
 
-from rovval.cli import blind, compare, demo, diagnose, fit, import_vehicle, ingest, listing, run, scenario, simulate, view
+from rovval.cli import (
+    blind,
+    compare,
+    demo,
+    diagnose,
+    fit,
+    import_vehicle,
+    ingest,
+    listing,
+    run,
+    scenario,
+    simulate,
+    trend,
+    view,
+)
 from rovval.core.version import __version__
 
 app = typer.Typer(
@@ -47,6 +61,7 @@ COMMANDS = (
     ("import-vehicle", import_vehicle.command, "A vehicle of uuv_simulator as a vehicle file of ours."),
     ("scenario", scenario.command, "The thesis's five test scenarios."),
     ("run", run.command, "A batch over many logs."),
+    ("trend", trend.command, "How gaps and causes change over dives."),
     ("view", view.command, "A run in the rerun viewer."),
     ("list", listing.list_command, "Names of vehicles, effects, profiles, metrics, runs."),
     ("show", listing.show_command, "One vehicle, effect, profile, metric or run."),
