@@ -39,7 +39,7 @@ def test_ingest_then_use_the_id(here):
 
 
 def test_ingest_of_a_folder_names_the_logs_that_it_cannot_read(here):
-    """HDF5, Matlab and PX4 logs beside a CSV were passed over at exit 0, without a word."""
+    """Damaged HDF5, Matlab and PX4 logs beside a CSV: none is passed over at exit 0 without a word."""
     Path("logs").mkdir()
     Path("dive.csv").rename("logs/dive.csv")
     for name in ("a.h5", "b.MAT", "c.ulg"):
@@ -47,7 +47,7 @@ def test_ingest_of_a_folder_names_the_logs_that_it_cannot_read(here):
     Path("logs/notes.md").write_text("not a log")
     done = run("ingest", "logs", code=3)
     assert done.stdout.startswith("dive-") and len(done.stdout.split()) == 1
-    assert all(f"logs/{name}: of no known format" in done.stderr for name in ("a.h5", "b.MAT", "c.ulg")) and "notes.md" not in done.stderr
+    assert all(f"rovval: logs/{name}: " in done.stderr for name in ("a.h5", "b.MAT", "c.ulg")) and "notes.md" not in done.stderr
 
 
 def test_ingest_of_a_folder_goes_on_after_a_bad_log(here):

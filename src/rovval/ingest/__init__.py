@@ -2,14 +2,16 @@
 
 A reader has ``SUFFIXES`` (lower case, with dot), ``sniff(path) -> bool``, ``missing(path, profile) -> tuple[str, ...]`` (what the
 profile requires and the log has not), ``read(path, profile) -> RawLog`` and ``contents(path) -> Iterator[Block]`` (all that the log holds,
-without a profile: for `rovval inspect` and `rovval profile propose`). A source is one TOML file of ``profiles``.
+without a profile: for `rovval inspect` and `rovval profile propose`), and ``ALSO``, the formats whose profiles it reads beside its own: what
+is a column of a CSV is one of a workbook, too. `rovval.ingest.topics` reads by profile whatever yields blocks. A source is one TOML file of
+``profiles``.
 """
 
 from __future__ import annotations
 
 import importlib
 import pkgutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Protocol, cast
 
@@ -28,6 +30,7 @@ class Reader(Protocol):
     """What a reader module offers."""
 
     SUFFIXES: tuple[str, ...]
+    ALSO: tuple[str, ...]
 
     def sniff(self, path: Path) -> bool:
         """Whether the file can be of this format, from its first bytes."""
@@ -71,7 +74,8 @@ def read(path: Path, profile: str | None = None, timezone: str | None = None) ->
     path = Path(path)
     refuse_unusable(path)
     chosen = (load_profile(profile) if profile is not None else _the_one_that_fits(path)).in_zone(timezone)
-    chosen_reader = reader(chosen.format)
+    able = [name for name in readers() if _able(name, path)]
+    chosen_reader = reader(next(iter(_of_profile(chosen, able)), chosen.format))
     if path.is_dir() and "" not in chosen_reader.SUFFIXES:
         raise BadInput(f"{path}: a folder; profile {chosen.name!r} reads single files ({chosen.format})", "give one of the files in it")
     return chosen_reader.read(path, chosen)
@@ -83,10 +87,10 @@ def _the_one_that_fits(path: Path) -> Profile:
         raise _of_no_format(path)
     fits, near = [], []
     for candidate in (load_profile(name) for name in profiles()):
-        if candidate.format not in able:
+        if not (readers_of_it := _of_profile(candidate, able)):
             continue
         try:
-            gone = reader(candidate.format).missing(path, candidate)
+            gone = reader(readers_of_it[0]).missing(path, candidate)
         except BadInput as error:
             raise BadInput(error.message, error.hint or "is the file whole?") from None
         if gone:
@@ -101,6 +105,11 @@ def _the_one_that_fits(path: Path) -> Profile:
         raise BadInput(f"{path}: fits several profiles: {names}", "say which with --profile")
     hint = "give --profile: one of these, or a TOML file of your own"
     raise BadInput(f"{path}: fits no built-in profile" + "".join(near), hint)
+
+
+def _of_profile(profile: Profile, able: Sequence[str]) -> list[str]:
+    """Of the readers that are able to read a file those that read such a profile, the profile's own first."""
+    return sorted((name for name in able if profile.format in (name, *reader(name).ALSO)), key=lambda name: name != profile.format)
 
 
 def _of_no_format(path: Path) -> BadInput:

@@ -13,7 +13,7 @@ from rovval.ingest.compression import lost_of, opened
 
 SEPARATORS = (",", ";", "\t", "|")
 HEADER_WITHIN = 200  # lines of banner above the header that are looked through
-ELEMENT = re.compile(r"\[\d+\]$")
+ELEMENT = re.compile(r"\S\[\d+\]$")  # of an array; "throttle [1]" is a unit
 HEAD = 65536  # bytes by which text is told from binary content
 
 
@@ -78,7 +78,7 @@ def plain_name(name: str) -> str:
 
 def stated_unit(name: str) -> str | None:
     """What a header cell says in brackets: ``"Roll (deg)"`` -> ``deg``."""
-    found = re.search(r"[\[(]\s*(.*?)\s*[\])]", name)
+    found = None if ELEMENT.search(name) else re.search(r"[\[(]\s*(.*?)\s*[\])]", name)
     return found.group(1) if found else None
 
 

@@ -12,8 +12,10 @@ from pathlib import Path
 from rovval.core.errors import BadInput, all_at_once
 from rovval.ingest.compression import suffix
 
-SUFFIXES = (".csv", ".tsv", ".txt", ".bag", ".db3", ".mcap", ".bin", ".tlog", ".xlsx", ".parquet")
-FOREIGN = (".h5", ".hdf5", ".mat", ".ulg", ".ulog", ".xls")  # logs by their names that no reader is there for: named and refused, not passed over
+SUFFIXES = (
+    ".csv", ".tsv", ".txt", ".xlsx", ".xls", ".xlsm", ".xlsb", ".ods", ".parquet", ".pq", ".mat", ".h5", ".hdf5", ".hdf", ".he5",
+    ".bag", ".db3", ".mcap", ".bin", ".tlog", ".ulg", ".ulog",
+)  # fmt: skip
 WILD = "*?["
 
 
@@ -91,7 +93,7 @@ def _inside(folder: Path) -> list[Path]:
 
 
 def _looks_like_log(path: Path) -> bool:
-    return suffix(path) in (*SUFFIXES, *FOREIGN)
+    return suffix(path) in SUFFIXES
 
 
 def _parts(pattern: str) -> tuple[str, ...]:

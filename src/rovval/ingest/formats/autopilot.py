@@ -27,6 +27,7 @@ from rovval.ingest.inspection.flatten import flat
 from rovval.ingest.profile import ATTITUDE, Profile, Source
 
 SUFFIXES = (".bin", ".tlog")
+ALSO: tuple[str, ...] = ()  # formats whose profiles this reads beside its own
 DATAFLASH = b"\xa3\x95"  # every DataFlash packet begins so
 MAVLINK = (0xFE, 0xFD)  # first byte of a MAVLink 1 and 2 packet, after the 8 bytes of stamp that a .tlog adds
 PARAMETER = {"PARM": ("Name", "Value"), "PARAM_VALUE": ("param_id", "param_value")}  # message type -> fields of name and value

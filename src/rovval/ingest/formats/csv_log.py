@@ -20,6 +20,7 @@ from rovval.ingest.inspection.block import Block
 from rovval.ingest.profile import Profile
 
 SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".log", ".asc")
+ALSO: tuple[str, ...] = ()  # formats whose profiles this reads beside its own
 HEAD = 262_144  # bytes that hold the banner and the header
 
 

@@ -23,11 +23,13 @@ from rovval.ingest.bags.layout import Layout
 from rovval.ingest.bags.recording import Recording
 from rovval.ingest.clock import increasing_stamps
 from rovval.ingest.files import sha256
+from rovval.ingest.formats.mcap import holds_other_messages
 from rovval.ingest.inspection.block import MOST_MEMBERS, Block
 from rovval.ingest.inspection.flatten import LONGEST_TEXT
 from rovval.ingest.profile import ATTITUDE, Profile, Source
 
 SUFFIXES = (*recording.SUFFIXES, "")  # "": a folder
+ALSO: tuple[str, ...] = ()  # formats whose profiles this reads beside its own
 SIM_TIME_NS = 10**18  # stamps before 2001 count from the start of a simulation, not from 1970
 QUATERNION = ("w", "x", "y", "z")
 
@@ -37,7 +39,8 @@ def sniff(path: Path) -> bool:
     if path.is_dir():
         return bool(recording.inside(path)) or (path / "metadata.yaml").is_file()
     with path.open("rb") as file:
-        return file.read(16).startswith(recording.MAGIC)
+        known = file.read(16).startswith(recording.MAGIC)
+    return known and not holds_other_messages(path)
 
 
 def missing(path: Path, profile: Profile) -> tuple[str, ...]:

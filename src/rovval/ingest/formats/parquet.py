@@ -1,0 +1,53 @@
+"""Logs as Parquet: one table, its columns as a profile for CSV or Parquet names them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from rovval.core.data import RawLog
+from rovval.core.errors import BadInput
+from rovval.ingest.inspection.block import Block
+from rovval.ingest.profile import Profile
+
+SUFFIXES = (".parquet", ".pq")
+ALSO: tuple[str, ...] = ("csv_log",)
+MAGIC = b"PAR1"  # Apache Parquet, file format: a file begins and ends so
+
+
+def sniff(path: Path) -> bool:
+    """Whether the file begins as Parquet does."""
+    with path.open("rb") as file:
+        return file.read(4) == MAGIC
+
+
+def missing(path: Path, profile: Profile) -> tuple[str, ...]:
+    """Required columns of ``profile`` that the file has not, and `absent` ones that it has."""
+    from rovval.ingest.topics import missing_in
+
+    block = next(_blocks(path, rows=0))
+    return missing_in({"": (*block.numbers, *block.texts)}, profile)
+
+
+def read(path: Path, profile: Profile) -> RawLog:
+    """The log of ``path``. Raises `BadInput` naming every missing column, or what makes the file useless."""
+    from rovval.ingest.topics import read_blocks
+
+    return read_blocks(path, profile, contents(path))
+
+
+def contents(path: Path) -> Iterator[Block]:
+    """The table's columns; nested ones by address. Raises `BadInput` for a damaged file."""
+    return _blocks(path)
+
+
+def _blocks(path: Path, rows: int | None = None) -> Iterator[Block]:
+    import polars as pl
+
+    from rovval.ingest.frame_block import block_of
+
+    try:
+        frame = pl.read_parquet(path, n_rows=rows, use_pyarrow=False, glob=False)
+    except (pl.exceptions.PolarsError, OSError) as error:
+        raise BadInput(f"{path}: damaged: {str(error).splitlines()[0]}", "Parquet keeps its index at the end: is the file whole?") from None
+    yield block_of("", frame)
