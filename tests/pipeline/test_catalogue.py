@@ -60,3 +60,17 @@ def test_two_pipelines_share_an_archive(tmp_path):
         batch.run(tmp_path / name / "nightly.toml", workers=1)
     rows = pl.read_parquet(tmp_path / "archive/catalogue/**/*.parquet", hive_partitioning=True)
     assert sorted(rows["pipeline"]) == ["one", "two"] and rows["sha256"].n_unique() == 1
+
+
+def test_a_dive_that_is_unusual_for_its_vehicle_exceeds_a_tolerance_of_the_pipeline(tmp_path):
+    """Two dives of one kind, and one whose log says another speed than it drove at; half a sigma, since two dives tell little."""
+    for number in range(2):
+        batch_case.write_log(tmp_path / "logs" / f"{number}.csv", seconds=11, seed=number)
+    path = batch_case.write_pipeline(tmp_path, 'tolerances = ["trend.surge=0.5"]', steps=COMPARED)
+    assert batch.run(path, workers=1)["exit_code"] == 0
+    batch_case.write_log(tmp_path / "logs" / "z.csv", seconds=11, seed=99, rpm=200.0)
+    done = batch.run(path, workers=1)
+    assert done["exit_code"] == 1 and {e["limit"].split(":")[0] for e in done["tolerances_exceeded"]} >= {"trend.surge"}
+    assert "0.5 sigma above the 2 dives before it" in done["tolerances_exceeded"][0]["limit"]
+    assert "trend.surge" in (tmp_path / "reports" / "index.html").read_text(encoding="utf-8")
+    assert batch.run(path, workers=1)["exit_code"] == 0  # told the night that it came

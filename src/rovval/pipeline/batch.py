@@ -57,11 +57,13 @@ def run(
                 progress(f"{number} of {len(todo.todo)} logs, {task.log.name}", number / len(todo.todo))
         except UsageProblem as problem:
             stop = problem
-        seconds = time.monotonic() - began
+        records = [*finished, *todo.done, *todo.kept]
+        damaged, unusual, unwritten = _entered(pipeline, records, finished)
+        stop, seconds = stop or unwritten, time.monotonic() - began
         document = summary.summarise(
-            pipeline.name, finished, todo.done, aside, todo.waiting, pipeline.tolerances, seconds, why, todo.missing, stop
+            pipeline.name, finished, todo.done, aside, todo.waiting, pipeline.tolerances, seconds, why, todo.missing, stop, unusual, damaged
         )
-        _publish(pipeline, document, [*finished, *todo.done, *todo.kept])
+        _publish(pipeline.reports, document, records)
     if stop:
         raise stop
     return document
@@ -74,15 +76,24 @@ def _spread(pipeline: Pipeline, tasks: Sequence[Task], workers: int | None, sche
     return execute(tasks, work, died, workers or pipeline.workers or os.cpu_count() or 1, pipeline.timeout_s)
 
 
-def _publish(pipeline: Pipeline, summary: dict[str, Any], records: list[Mapping[str, Any]]) -> None:
-    """Rows of the catalogue, and the summary for programs and for people: both of this batch, or both of the one before. Where the disk is too
-    full for them, what stopped the batch takes the place of the page of the night before, which would look like this night's."""
+def _entered(
+    pipeline: Pipeline, records: Sequence[Mapping[str, Any]], done: Sequence[Mapping[str, Any]]
+) -> tuple[list[str], list[dict[str, str]], UsageProblem | None]:
+    """Put the records into the catalogue: what of it was damaged, which of the runs ``done`` are unusual among their vehicle's dives, and why it
+    could not be written."""
+    try:
+        return catalogue.enter(pipeline, records, datetime.now(UTC)), catalogue.unusual(pipeline, done), None
+    except UsageProblem as problem:
+        return [], [], problem
+
+
+def _publish(reports: Path, summary: dict[str, Any], records: list[Mapping[str, Any]]) -> None:
+    """The summary for programs and for people: both of this batch, or both of the one before. Where the disk is too full for them, what
+    stopped the batch takes the place of the page of the night before, which would look like this night's."""
     from rovval.report.batch import html as batch_html
     from rovval.report.common.files import write_all
 
-    reports = pipeline.reports
     try:
-        summary["damaged"] = catalogue.enter(pipeline, records, datetime.now(UTC))
         write_all(reports, {SUMMARY: json_text(summary), INDEX: batch_html.text(summary, records)})
     except Unwritable as error:
         stopped = {**summary, "exit_code": STOPPED, "stopped_by": {"reason": error.message, "next": error.hint}}

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rovval.core.channels import AXES
-from rovval.pipeline import lock
+from rovval.pipeline import lock, tolerances
 from rovval.pipeline.config import Pipeline
 
 Record = Mapping[str, Any]
@@ -25,6 +25,34 @@ def enter(pipeline: Pipeline, records: Sequence[Record], now: datetime) -> list[
 
     with lock.held(pipeline.archive / catalogue.FOLDER, wait=True):
         return catalogue.update(pipeline.archive, [_row(pipeline, record) for record in records], now)
+
+
+def unusual(pipeline: Pipeline, done: Sequence[Record]) -> list[dict[str, str]]:
+    """The runs that this batch has ``done`` and whose gap exceeds a tolerance over dives (``trend.surge=3``), each with the sentence that says so. Only
+    the last dives of a vehicle are held against those before them: after an update of rovval the whole archive is done."""
+    limits = tolerances.parse_trends(pipeline.tolerances)
+    if not limits:
+        return []
+    from rovval.trend import recent
+    from rovval.trend.series import all_series
+
+    logs, found = {record["run"]: record["log"] for record in done}, []
+    for series in all_series(rows_of(pipeline)):
+        if series.of == "gap" and (sigmas := limits.get(series.name)):
+            most = recent.limits(series, sigmas)
+            for before, (run, value) in list(enumerate(zip(series.runs, series.values, strict=True)))[-recent.DIVES :]:
+                if run in logs and value > most.get(run, value):
+                    of = f"{sigmas:g} sigma above the {min(before, recent.DIVES)} dives before it"
+                    said = f"trend.{series.name}: {value:.4g} {series.unit} is above the limit {most[run]:.4g}, {of}"
+                    found.append({"log": logs[run], "run": run, "limit": said})
+    return found
+
+
+def rows_of(pipeline: Pipeline) -> list[dict[str, Any]]:
+    """The rows of the catalogue that this pipeline entered."""
+    from rovval.storage import catalogue
+
+    return [row for row in catalogue.find(pipeline.archive) if row["pipeline"] == pipeline.name]
 
 
 def _row(pipeline: Pipeline, record: Record) -> dict[str, Any]:

@@ -51,7 +51,8 @@ class Pipeline(Strict):
     @classmethod
     def _parsed(cls, texts: tuple[str, ...]) -> tuple[str, ...]:
         try:
-            tolerances.parse(texts)
+            tolerances.parse(tolerances.of_one_run(texts))
+            tolerances.parse_trends(texts)
         except UsageProblem as problem:
             raise ValueError(problem.message) from None
         return texts

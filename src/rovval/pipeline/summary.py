@@ -23,10 +23,13 @@ def summarise(
     why: Mapping[str, int],
     missing: Sequence[tuple[str, str]] = (),
     stopped_by: UsageProblem | None = None,
+    unusual: Sequence[Mapping[str, str]] = (),
+    damaged: Sequence[str] = (),
 ) -> dict[str, Any]:
     """The summary document. ``why`` there was something to do, by `Plan.why`. Tolerances are held against every run of the plan, new or
-    unchanged. ``missing`` are sources without a log, each with the reason; ``stopped_by`` is what ended the batch before its end."""
-    parsed = tolerances.parse(limits)
+    unchanged. ``missing`` are sources without a log, each with the reason; ``stopped_by`` is what ended the batch before its end. ``unusual``
+    are runs beyond a tolerance over dives, ``damaged`` what was set aside of the catalogue."""
+    parsed = tolerances.parse(tolerances.of_one_run(limits))
     beyond, stopped = [], []
     for record in (*finished, *skipped):
         compared = record["steps"].get("compare")
@@ -34,6 +37,7 @@ def summarise(
             stopped.append({"log": record["log"], "run": record["run"], "stops": list(stops)})
         lines = tolerances.exceeded(parsed, compared["comparison"]) if compared else ()
         beyond += [{"log": record["log"], "run": record["run"], "limit": line} for line in lines]
+    beyond += [dict(u) for u in unusual]
     ends = ((STOPPED, stopped_by), (UNUSABLE, set_aside or missing), (LEFT_LIMITS, stopped), (BEYOND, beyond))
     code = next((code for code, holds in ends if holds), DONE)
     return {
@@ -52,6 +56,7 @@ def summarise(
             "missing_sources": len(missing),
         },
         "why": dict(why),
+        "damaged": list(damaged),
         "stopped_by": {"reason": stopped_by.message, "next": stopped_by.hint} if stopped_by else None,
         "missing_sources": [{"logs": logs, "why": why} for logs, why in missing],
         "done": [{"log": r["log"], "run": r["run"]} for r in finished],

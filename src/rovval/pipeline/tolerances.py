@@ -1,4 +1,5 @@
-"""Stated tolerances: ``surge=0.1`` (rmse of the free run), ``surge.iae=12``, ``window.surge.rms=0.05``, all in SI."""
+"""Stated tolerances: ``surge=0.1`` (rmse of the free run), ``surge.iae=12``, ``window.surge.rms=0.05``, all in SI; of a pipeline also
+``trend.surge=3``: so many standard deviations above what the vehicle's dives before it let expect."""
 
 from __future__ import annotations
 
@@ -11,6 +12,7 @@ from rovval.core.errors import UsageProblem, all_at_once
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 FREE = ("rmse", "mae", "iae", "mean_error")
 WINDOWED = ("rms", "iae")
+TREND = "trend."
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +29,7 @@ class Tolerance:
 
 
 def parse(texts: Sequence[str]) -> tuple[Tolerance, ...]:
-    """Limits of the command line or of a pipeline file; every wrong one is named at once."""
+    """Limits of one run, of the command line or of a pipeline file; every wrong one is named at once."""
     found, problems = [], []
     for text in texts:
         tolerance = _one(text)
@@ -37,6 +39,26 @@ def parse(texts: Sequence[str]) -> tuple[Tolerance, ...]:
             all_at_once(problems, "tolerance"), "write AXIS=VALUE, AXIS.METRIC=VALUE or window.AXIS.METRIC=VALUE"
         )
     return tuple(found)
+
+
+def parse_trends(texts: Sequence[str]) -> dict[str, float]:
+    """The limits of a pipeline file that hold over dives, in standard deviations by axis; every wrong one is named at once."""
+    pairs = [text.removeprefix(TREND).partition("=") for text in texts if text.startswith(TREND)]
+    if wrong := [f"{TREND}{axis}={value}" for axis, _, value in pairs if axis not in AXES or not _positive(value)]:
+        raise UsageProblem(all_at_once([f"{text!r}" for text in wrong], "tolerance"), f"write trend.AXIS=SIGMAS, AXIS one of {', '.join(AXES)}")
+    return {axis: float(value) for axis, _, value in pairs}
+
+
+def of_one_run(texts: Sequence[str]) -> tuple[str, ...]:
+    """The limits that can be held against a run by itself."""
+    return tuple(text for text in texts if not text.startswith(TREND))
+
+
+def _positive(value: str) -> bool:
+    try:
+        return 0 < float(value) < float("inf")
+    except ValueError:
+        return False
 
 
 def _one(text: str) -> Tolerance | str:

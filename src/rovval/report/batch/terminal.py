@@ -26,5 +26,6 @@ def text(summary: Mapping[str, Any]) -> str:
     lines += [f"  quarantined  {row['log']}: {row['reason'].removeprefix(row['log'] + ': ')}" for row in summary["quarantined"]]
     lines += [f"  exceeded     {row['log']}: {row['limit']}" for row in summary["tolerances_exceeded"]]
     lines += [f"  left limits  {row['log']}: {row['stops'][0]}" for row in summary["left_sane_limits"]]
+    lines += [f"  damaged      {what}" for what in summary.get("damaged", ())]
     lines += [f"  waiting      {row['log']}: {row['why']}" for row in summary["waiting"]]
     return "\n".join(lines)
