@@ -10,7 +10,8 @@ from typer.testing import CliRunner
 from rovval.cli import complete
 from rovval.cli.app import COMMANDS, app
 
-CONTRACT = {"demo", "ingest", "simulate", "compare", "diagnose", "fit", "scenario", "run", "view", "list", "show", "blind", "import-vehicle", "trend"}
+CONTRACT = {"demo", "ingest", "simulate", "compare", "diagnose", "fit", "scenario", "run", "view", "list", "show", "blind", "import-vehicle"}
+CONTRACT |= {"trend", "archive"}
 NAMES = [name for name, _, _ in COMMANDS]
 HEAVY = ("numpy", "polars", "numba", "scipy", "rerun", "pydantic", "rosbags", "mcap", "rich")
 RUNNER = CliRunner()

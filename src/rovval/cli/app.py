@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from rovval.cli import (
+    archive,
     blind,
     compare,
     demo,
@@ -62,6 +63,7 @@ COMMANDS = (
     ("scenario", scenario.command, "The thesis's five test scenarios."),
     ("run", run.command, "A batch over many logs."),
     ("trend", trend.command, "How gaps and causes change over dives."),
+    ("archive", archive.command, "Is what is kept whole and true; mend it."),
     ("view", view.command, "A run in the rerun viewer."),
     ("list", listing.list_command, "Names of vehicles, effects, profiles, metrics, runs."),
     ("show", listing.show_command, "One vehicle, effect, profile, metric or run."),

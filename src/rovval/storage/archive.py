@@ -25,7 +25,7 @@ from rovval.core.data import ClockReport, Resampled, Run
 from rovval.core.errors import BadInput, Finding
 from rovval.core.version import __version__
 from rovval.ingest import read
-from rovval.storage.atomic import refusal, refuse_url
+from rovval.storage.atomic import read_json, refusal, refuse_url
 
 SCHEMA = "rovval.run/1"
 REASON = "reason:"
@@ -127,6 +127,12 @@ def load_run(id_or_folder: str | Path, archive: Path = ARCHIVE) -> Run:
     if manifest.get("table_sha256") != hashlib.sha256(table).hexdigest():
         raise BadInput(f"{folder}: run.parquet is not the table that the manifest describes", "ingest the log again")
     return _run(manifest, pl.read_parquet(io.BytesIO(table)))
+
+
+def manifest(folder: Path) -> dict[str, Any] | None:
+    """The facts of the run in ``folder``, which may be damaged beside them; None where they are themselves."""
+    facts = read_json(folder / "manifest.json")
+    return facts if facts and {"source", "sha256", "profile"} <= facts.keys() else None
 
 
 def run_ids(archive: Path = ARCHIVE) -> tuple[str, ...]:

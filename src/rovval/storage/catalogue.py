@@ -87,6 +87,17 @@ def update(archive: Path, rows: Sequence[Mapping[str, Any]], now: datetime) -> l
     return [f"{place}: damaged, set aside as {_aside(place).name}" for place in damaged]
 
 
+def faults(archive: Path) -> dict[Path, str]:
+    """The files of the catalogue that cannot be read, each with the reason."""
+    found = {}
+    for file in sorted((Path(archive) / FOLDER).glob("*/*/*.parquet")):
+        try:
+            _read(file)
+        except BadInput as error:
+            found[file] = error.message.removeprefix(f"{file}: ")
+    return found
+
+
 def _merged(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
     """Old and new rows as one table, by date."""
     kept = old.join(new, on=["pipeline", "sha256"], how="anti")
