@@ -39,7 +39,7 @@ INSIDE = {
     "blind": (("",), ("scoring",), ("sealed",), ("baselines", "cases"), ("planted",), ("missions",), ("plant",)),
     "report": (("",), ("batch", "blind", "diagnosis", "recording"), ("comparison",), ("common",)),
     "effects": (("library",), ("",)),
-    "plant": (("reference",), ("",), ("codegen",)),
+    "plant": (("reference",), ("",), ("codegen",), ("platforms",)),
 }
 DEEPEST = 4  # files in the longest chain of imports inside a room of `diagnose`
 MOST_FILES = 12  # in a room of `diagnose`

@@ -10,9 +10,11 @@ from rovval.cli import complete
 from rovval.cli.app import app
 from rovval.comparison import metrics
 from rovval.ingest.profile import profiles
+from rovval.plant import platforms
 
 RUNNER = CliRunner()
 KINDS: dict[str, Callable[[], tuple[str, ...]]] = {
+    "platform": platforms.names,
     "effect": effects.names, "metric": metrics.names, "profile": profiles, "vehicle": vehicle.names,
 }  # fmt: skip
 

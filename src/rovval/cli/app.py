@@ -65,8 +65,8 @@ COMMANDS = (
     ("trend", trend.command, "How gaps and causes change over dives."),
     ("archive", archive.command, "Is what is kept whole and true; mend it."),
     ("view", view.command, "A run in the rerun viewer."),
-    ("list", listing.list_command, "Names of vehicles, effects, profiles, metrics, runs."),
-    ("show", listing.show_command, "One vehicle, effect, profile, metric or run."),
+    ("list", listing.list_command, "Names of vehicles, platforms, effects, profiles, metrics, runs."),
+    ("show", listing.show_command, "One vehicle, platform, effect, profile, metric or run."),
 )
 for _name, _command, _help in COMMANDS:
     app.command(_name, short_help=_help)(_command)

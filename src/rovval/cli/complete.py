@@ -6,9 +6,9 @@ import os
 from pathlib import Path
 
 PACKAGE = Path(__file__).parent.parent
-KINDS = ("vehicle", "effect", "profile", "metric", "run")
+KINDS = ("vehicle", "platform", "effect", "profile", "metric", "run")
 _PLACES = {"vehicle": ("vehicle/library", ".toml"), "profile": ("ingest/profiles", ".toml")}
-_CODE = {"effect": "effects/library", "metric": "comparison/metrics"}
+_CODE = {"platform": "plant/platforms", "effect": "effects/library", "metric": "comparison/metrics"}
 
 
 def known(kind: str, archive: Path = Path("archive")) -> list[str]:

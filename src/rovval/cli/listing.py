@@ -23,6 +23,7 @@ class Kind(StrEnum):
     """What can be listed."""
 
     vehicle = "vehicle"
+    platform = "platform"
     effect = "effect"
     profile = "profile"
     metric = "metric"
@@ -42,7 +43,7 @@ def list_command(
     since: Annotated[datetime | None, typer.Option("--since", help="Of the archive's catalogue, the runs that began since then (UTC).")] = None,
     json_: options.JsonFlag = False,
 ) -> None:
-    """List vehicles, effects, profiles, metrics, or the archive's runs; with --where or --since, what batches found of them.
+    """List vehicles, platforms, effects, profiles, metrics, or the archive's runs; with --where or --since, what batches found of them.
 
     \b
     Example:
@@ -86,7 +87,7 @@ def show_command(
     archive: options.ArchiveOption = Path("archive"),
     json_: options.JsonFlag = False,
 ) -> None:
-    """Show one vehicle, effect, profile, metric or run. A vehicle or profile is printed as TOML, to copy and to change.
+    """Show one vehicle, platform, effect, profile, metric or run. A vehicle or profile is printed as TOML, to copy and to change.
 
     \b
     Example:
@@ -94,7 +95,7 @@ def show_command(
       rovval show effect inflow_loss
       rovval show run RUN --json
     """
-    shown = {Kind.vehicle: _vehicle, Kind.effect: _effect, Kind.profile: _profile, Kind.metric: _metric}
+    shown = {Kind.vehicle: _vehicle, Kind.platform: _platform, Kind.effect: _effect, Kind.profile: _profile, Kind.metric: _metric}
     text, document = _run(name, archive) if kind is Kind.run else shown[kind](name)
     output.result_json(document()) if json_ else output.result(text.rstrip("\n"))
 
@@ -122,6 +123,17 @@ def _vehicle(name: str) -> Shown:
         f"axes that the thrusters cannot push alone: {free}; hash {loaded.hash}"
     )
     return path.read_text(encoding="utf-8"), lambda: loaded.model_dump(mode="json") | {"hash": loaded.hash}
+
+
+def _platform(name: str) -> Shown:
+    from rovval.plant import platforms
+
+    platform = platforms.load(name)
+    lists = {"leaves out": platform.leaves_out, "assumed, for want of a printed figure": platform.assumed}
+    lines = [f"{name}: {platform.title}", f"equations: {platform.equations}", f"source: {platform.source}"]
+    lines += [line for head, items in lists.items() if items for line in (f"{head}:", *(f"  - {item}" for item in items))]
+    document = {"name": name} | {k: getattr(platform, k) for k in ("title", "equations", "source")}
+    return "\n".join(lines), lambda: document | {"leaves_out": list(platform.leaves_out), "assumed": list(platform.assumed)}
 
 
 def _profile(name: str) -> Shown:

@@ -13,9 +13,10 @@ from rovval.core.errors import UsageProblem
 
 
 class Model(StrEnum):
-    """The two simulators of the thesis."""
+    """The platforms, a file of `rovval.plant.platforms` each."""
 
     fossen = "fossen"
+    uuv = "uuv"
     freefloating = "freefloating"
 
 
@@ -58,7 +59,14 @@ FromOption = Annotated[
     typer.Option("--from", metavar="S", help="Take the log from here, s since the run's start, as if it began there."),
 ]
 ToOption = Annotated[float | None, typer.Option("--to", metavar="S", help="Take the log to here, s since the run's start.")]
-ModelOption = Annotated[Model, typer.Option("--model", help="Equations of motion.")]
+ModelOption = Annotated[
+    Model,
+    typer.Option(
+        "--model",
+        help="Platform: fossen (equation 3.10 of the thesis, its Simulink model), uuv (uuv_simulator in Gazebo, its ROS simulator), "
+        "freefloating (no added mass, no linear drag); `rovval show platform NAME` has sources and what each leaves out.",
+    ),
+]
 ArchiveOption = Annotated[Path, typer.Option("--archive", metavar="DIR", help="Where runs are kept.")]
 EffectOption = Annotated[
     list[str] | None,

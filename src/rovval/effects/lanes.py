@@ -27,7 +27,6 @@ class Lanes:
     """
 
     vehicle: Vehicle
-    model: str
     mass: Array
     centre_of_gravity: Array
     inertia: Array
@@ -66,12 +65,11 @@ class Lanes:
         return replace(self, **each)
 
     def _numbers(self) -> list[str]:
-        return [f.name for f in fields(self) if f.name not in ("vehicle", "model")]
+        return [f.name for f in fields(self) if f.name != "vehicle"]
 
 
-def nominal(vehicle: Vehicle, model: str) -> Lanes:
-    """One lane of the vehicle as its file has it. ``freefloating`` has no added mass and no linear drag (thesis 2.1 and 2.3: M_a
-    and G_a are zero, damping is quadratic)."""
+def nominal(vehicle: Vehicle) -> Lanes:
+    """One lane of the vehicle as its file has it."""
 
     def each(value: object) -> Array:
         one = np.array([value], dtype=float)
@@ -79,16 +77,14 @@ def nominal(vehicle: Vehicle, model: str) -> Lanes:
         return one
 
     body = vehicle.body
-    fossen = 1.0 if model == "fossen" else 0.0
     zero = each(0.0)
     return Lanes(
         vehicle=vehicle,
-        model=model,
         mass=each(body.mass),
         centre_of_gravity=each(body.centre_of_gravity),
         inertia=each(inertia(body)),
-        added_mass=each(fossen * as_matrix(body.added_mass)),
-        linear_drag=each(fossen * as_matrix(body.linear_drag)),
+        added_mass=each(as_matrix(body.added_mass)),
+        linear_drag=each(as_matrix(body.linear_drag)),
         quadratic_drag=each(as_matrix(body.quadratic_drag)),
         weight=each(vehicle.weight),
         buoyancy=each(vehicle.buoyancy),

@@ -10,6 +10,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 
 from rovval.core.errors import RovvalError, UsageProblem, all_at_once
 from rovval.pipeline import tolerances
+from rovval.plant.platforms import USUAL
+from rovval.plant.platforms import names as platforms
 from rovval.storage.atomic import refuse_url
 
 Step = Literal["ingest", "simulate", "compare", "diagnose"]
@@ -38,7 +40,7 @@ class Pipeline(Strict):
     steps: Annotated[tuple[Step, ...], Field(min_length=1)] = ("ingest", "simulate", "compare")
     archive: Path = Path("../archive")
     reports: Path = Path("../reports")
-    model: Literal["fossen", "freefloating"] = "fossen"
+    model: str = USUAL
     effects: tuple[str, ...] = ()
     window_s: Annotated[float, Field(ge=0.5)] = 10.0
     calibration_slop: Annotated[float, Field(ge=0, le=0.5)] = 0.05
@@ -56,6 +58,13 @@ class Pipeline(Strict):
         except UsageProblem as problem:
             raise ValueError(problem.message) from None
         return texts
+
+    @field_validator("model")
+    @classmethod
+    def _platform(cls, model: str) -> str:
+        if model not in platforms():
+            raise ValueError(f"no platform of that name: use one of {', '.join(platforms())}")
+        return model
 
     @field_validator("steps")
     @classmethod

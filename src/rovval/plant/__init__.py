@@ -1,4 +1,4 @@
-"""The plant: two platform models of a vehicle with every effect of the library in them, run over a batch of lanes at once.
+"""The plant: the platforms' models of a vehicle with every effect of the library in them, run over a batch of lanes at once.
 
 A lane is a stretch of a run with its own parameter vector. Its entries, the slots, are the parameters of every effect, axes and thrusters spelt out;
 at their null values nothing is changed, to the last bit.
@@ -13,6 +13,7 @@ one; `integration` runs the kernel over blocks of lanes; `sensors` write the log
 
 The equations stand twice. `codegen.kernel` is what runs: typed Python of which `codegen` makes one compiled function for each kind of vehicle.
 `reference` is the same in plain NumPy, matrix by matrix as the thesis has it (3.10 to 3.15); tests hold the two against each other.
+`platforms` has one file a simulator whose equations these are: fossen, uuv, freefloating.
 `geometry` says which thruster's jet reaches which; `thruster_lag` and `electrical` are laws of a thruster for logs before they come here.
 """
 

@@ -14,6 +14,7 @@ from rovval.plant.codegen import cache
 from rovval.plant.codegen.spec import Spec, W
 from rovval.plant.inputs import Inputs, Prepared
 from rovval.plant.lowering import Lowered, mass_numbers, pack, steps_before_nothing, with_payload
+from rovval.plant.platforms import Engine
 from rovval.vehicle.model import Vehicle, as_matrix
 
 Array = NDArray[np.float64]
@@ -39,13 +40,17 @@ class Starts:
 class Integrator:
     """The kernels of one vehicle: a nominal one, and one with every effect for the lanes that need it."""
 
-    def __init__(self, vehicle: Vehicle, substeps: int) -> None:
-        """``substeps``: Runge-Kutta steps per sample of the log."""
+    def __init__(self, vehicle: Vehicle, substeps: int, engine: Engine | None) -> None:
+        """``substeps``: Runge-Kutta steps per sample of the log; an ``engine`` has a step of its own."""
         body = vehicle.body
-        self.thrusters, self.substeps = len(vehicle.thruster), substeps
+        self.thrusters, self.substeps, self.engine = len(vehicle.thruster), substeps, engine
         self._dense = any(_coupled(m) for m in (body.added_mass, body.linear_drag, body.quadratic_drag))
         self._advance = any(t.diameter > 0 and any((*t.advance_pos, *t.advance_neg)) for t in vehicle.thruster)
         self._geometry = _geometry(vehicle)
+
+    def steps(self, dt: float) -> int:
+        """Steps of the integration in a sample of ``dt`` s."""
+        return self.substeps if self.engine is None else max(1, round(dt / self.engine.step))
 
     def motion(self, inputs: Inputs, prepared: Prepared, lowered: Lowered, starts: Starts, steps: int) -> tuple[Array, Indices, Indices]:
         """True motion (B, steps + 1, 12): u v w p q r, x y z phi theta psi; first invalid sample (B,) (-1: none) and its reason (B,)."""
@@ -65,11 +70,11 @@ class Integrator:
         return self.one_kernel(self.packed(lowered, inputs.dt, full), lowered, prepared, starts, inputs.dt, inputs.hold, steps, full)
 
     def _spec(self, full: bool) -> Spec:
-        return Spec(self.thrusters, self._dense, self._advance, full)
+        return Spec(self.thrusters, self._dense, self._advance, full, self.engine.share if self.engine else 0.0)
 
     def packed(self, lowered: Lowered, dt: float, full: bool) -> Array:
         """Numbers of the lanes as `one_kernel` takes them, with every effect in the kernel (``full``) or none."""
-        return blocked(pack(lowered, self._spec(full), dt, self.substeps))
+        return blocked(pack(lowered, self._spec(full), dt, self.steps(dt)))
 
     def one_kernel(
         self, numbers: Array, lowered: Lowered, prepared: Prepared, starts: Starts, dt: float, hold: bool, steps: int, full: bool
@@ -77,7 +82,7 @@ class Integrator:
         """As `motion`, all lanes by one kernel, from numbers that are `packed` already."""
         spec = self._spec(full)
         size, blocks = len(starts.sample), -(-len(starts.sample) // W)
-        late, onset = _payload(lowered.lanes, blocks)
+        late, onset = _payload(lowered.lanes, spec, blocks)
         states = blocked(np.concatenate([starts.eta[:, :3], quaternion_from_euler(starts.eta[:, 3:]), starts.nu], axis=1))
         out = np.empty((blocks * W, steps + 1, 12))
         stopped, reason = np.full((blocks, W), -1), np.zeros((blocks, W), dtype=np.int64)
@@ -88,7 +93,7 @@ class Integrator:
             spec, blocks,
             (
                 numbers, _some(lowered.acts), late, onset, states, _flat(starts.sample), _flat(limit), _flat(starts.which, -1), _flat(starts.gain),
-                prepared.speed, prepared.log, prepared.t, prepared.extra, *self._geometry, dt, hold, steps, self.substeps,
+                prepared.speed, prepared.log, prepared.t, prepared.extra, *self._geometry, dt, hold, steps, self.steps(dt),
                 out, stopped, reason,
             ),
         )  # fmt: skip
@@ -118,13 +123,13 @@ def _some(acts: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return np.asarray(padded.reshape(-1, W, count).any(axis=1))
 
 
-def _payload(lanes: Lanes, blocks: int) -> tuple[Array, Array]:
+def _payload(lanes: Lanes, spec: Spec, blocks: int) -> tuple[Array, Array]:
     """Mass numbers after a payload's onset, and the onsets (s; infinite where there is none)."""
     onset = np.full(blocks * W, np.inf)
     if not lanes.payload_mass.any():
         return np.zeros((blocks, 1)), onset.reshape(blocks, W)
     onset[: len(lanes)] = np.where(lanes.payload_mass != 0, lanes.payload_onset, np.inf)
-    return blocked(mass_numbers(with_payload(lanes))), onset.reshape(blocks, W)
+    return blocked(mass_numbers(with_payload(lanes), spec)), onset.reshape(blocks, W)
 
 
 def _coupled(values: tuple[float, ...] | tuple[tuple[float, ...], ...]) -> bool:

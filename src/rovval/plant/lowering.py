@@ -115,11 +115,12 @@ def steps_before_nothing(lanes: Lanes, first: Array, dt: float) -> NDArray[np.in
     return steps
 
 
-def mass_numbers(lanes: Lanes) -> Array:
-    """(B, 31): m, m r_G, inertia (6), M^-1 (21)."""
+def mass_numbers(lanes: Lanes, spec: Spec) -> Array:
+    """(B, 31): m, m r_G, inertia (6), M^-1 (21): of body and added mass, or of the body alone where added mass is a force."""
     moment = lanes.mass[:, None] * lanes.centre_of_gravity
     i = lanes.inertia
-    inverse = np.linalg.inv(rigid_body(lanes.mass, moment, i) + lanes.added_mass)
+    body = rigid_body(lanes.mass, moment, i)
+    inverse = np.linalg.inv(body if spec.explicit else body + lanes.added_mass)
     upper = np.stack([0.5 * (inverse[:, a, b] + inverse[:, b, a]) for a, b in SYMMETRIC], axis=1)
     tensor = np.stack([i[:, a, b] for a in range(3) for b in range(a, 3)], axis=1)
     return np.concatenate([lanes.mass[:, None], moment, tensor, upper], axis=1)
@@ -134,7 +135,7 @@ def pack(lowered: Lowered, spec: Spec, dt: float, substeps: int) -> Array:
     def put(first: int, values: Array) -> None:
         out[:, first : first + values.shape[1]] = values
 
-    put(where.first["mass"], mass_numbers(lanes))
+    put(where.first["mass"], mass_numbers(lanes, spec))
     lever = lanes.weight[:, None] * lanes.centre_of_gravity - lanes.buoyancy[:, None] * lanes.centre_of_buoyancy
     put(where.first["restoring"], np.concatenate([(lanes.weight - lanes.buoyancy)[:, None], lever], axis=1))
     displaced = (lanes.buoyancy / lanes.vehicle.water.gravity)[:, None]

@@ -1,4 +1,4 @@
-"""A vehicle as one of the two platforms has it, with every effect of the library in it."""
+"""A vehicle as one of the platforms has it, with every effect of the library in it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rovval.core.errors import UsageProblem
 from rovval.effects.lanes import nominal
 from rovval.effects.log import Log
-from rovval.plant import sensors, slots
+from rovval.plant import platforms, sensors, slots
 from rovval.plant.arguments import checked
 from rovval.plant.codegen.layout import RATE_LIMIT, SPEED_LIMIT
 from rovval.plant.inputs import Inputs, Prepared, prepare
@@ -23,7 +23,6 @@ from rovval.vehicle.model import Vehicle
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-MODELS = ("fossen", "freefloating")  # thesis 3.10; thesis 2.1 to 2.3
 REASONS = (
     "", f"speed above {SPEED_LIMIT:g} m/s", f"rate above {RATE_LIMIT:g} rad/s", "state not finite", "thruster speed missing in the log",
     "the payload that was set down leaves no inertia")  # fmt: skip
@@ -41,16 +40,20 @@ class Motion:
 
 
 class Plant:
-    """A vehicle as one of the two platforms has it, and the library's parameters for it (see the package's example).
+    """A vehicle as one of the platforms has it, and the library's parameters for it (see the package's example).
 
     ``slots``: what each of the K numbers of a lane's parameter vector is; ``null`` (K,): their values at which no effect changes anything; ``index``:
-    where each key stands; ``hypotheses``: the slots of each effect, by axis, thruster or sensor where it has one; ``nominal``: the vehicle's own numbers.
+    where each key stands; ``hypotheses``: the slots of each effect, by axis, thruster or sensor where it has one; ``integrator`` runs it;
+    ``simulated``: the vehicle with the numbers that the platform takes, ``nominal``: these as a lane.
     """
 
     def __init__(self, vehicle: Vehicle, model: str = "fossen", substeps: int = 1) -> None:
-        """``substeps``: Runge-Kutta steps per sample of the log. Raises UsageProblem for a model that is none of `MODELS`, or no step at all."""
-        if model not in MODELS or substeps < 1:
-            raise UsageProblem(f"model {model!r} with {substeps} substeps", f"model is one of {', '.join(MODELS)}, substeps at least 1")
+        """``substeps``: Runge-Kutta steps per sample of the log; a platform with an engine has a step of its own. Raises UsageProblem for a model that
+        is no platform, a vehicle that the platform cannot simulate, or no step at all."""
+        if substeps < 1:
+            raise UsageProblem(f"model {model!r} with {substeps} substeps", "at least 1")
+        platform = platforms.load(model)
+        self.simulated = platform.vehicle(vehicle)
         self.vehicle, self.model, self.substeps = vehicle, model, substeps
         self.slots: tuple[slots.Slot, ...] = slots.slots(vehicle, model)
         self.null: Array = np.array([s.parameter.null for s in self.slots])
@@ -60,14 +63,19 @@ class Plant:
         for i, slot in enumerate(self.slots):
             groups[slot.hypothesis] = (*groups.get(slot.hypothesis, ()), i)
         self.hypotheses: Mapping[str, tuple[int, ...]] = MappingProxyType(groups)
-        self.nominal = nominal(vehicle, model)
-        self._integrator = Integrator(vehicle, substeps)
+        late = platform.engine.time_constant(vehicle) if platform.engine else 0.0
+        self.nominal = replace(nominal(self.simulated), vehicle=vehicle, lag=np.array([late]))
+        self.integrator = Integrator(self.simulated, substeps, platform.engine)
+
+    def steps(self, dt: float) -> int:
+        """Steps of the integration in a sample of ``dt`` s."""
+        return self.integrator.steps(dt)
 
     def thrust(self, speed: Array) -> Array:
         """Nominal thrust (S, k) N of thruster speeds (S, k) rev/s, at rest in the water."""
         n = 60.0 * np.asarray(speed, dtype=float)
-        ahead = np.array([t.k_pos for t in self.vehicle.thruster])
-        astern = np.array([t.k_neg for t in self.vehicle.thruster])
+        ahead = np.array([t.k_pos for t in self.simulated.thruster])
+        astern = np.array([t.k_neg for t in self.simulated.thruster])
         return np.asarray(np.where(n > 0, ahead, astern) * n * np.abs(n))
 
     def simulate(
@@ -90,7 +98,7 @@ class Plant:
         starts = Starts(start, *sensors.unobserve(self.vehicle, self.index, self.null, beta, nu0, eta0), which, gain)
         delays = sensors.delays(self.index, self.null, beta)
         starts, before, after = self._behind(delays, inputs, prepared, lowered, starts) if delays else (starts, np.empty((len(start), 0, 12)), 0)
-        out, stopped, codes = self._integrator.motion(inputs, prepared, lowered, starts, steps + after)
+        out, stopped, codes = self.integrator.motion(inputs, prepared, lowered, starts, steps + after)
         out, first = np.concatenate([before, out], axis=1) if delays else out, before.shape[1]
         seen = sensors.overwritten(
             self.vehicle, self.index, self.null, beta,
@@ -109,7 +117,7 @@ class Plant:
 
         def simulate(some: Indices, start: Indices, state: Array, steps: int) -> tuple[Array, Indices]:
             there = replace(starts.take(some), sample=start, nu=state[:, :6], eta=state[:, 6:])
-            out, stopped, _ = self._integrator.motion(inputs, prepared, lowered.take(some), there, steps)
+            out, stopped, _ = self.integrator.motion(inputs, prepared, lowered.take(some), there, steps)
             return out, stopped
 
         clock = Clock(simulate, inputs.dt, len(inputs.speed))

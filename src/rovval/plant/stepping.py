@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from rovval.plant import slots
 from rovval.plant.inputs import FAR, Prepared
-from rovval.plant.integration import Integrator, Starts
+from rovval.plant.integration import Starts
 from rovval.plant.lowering import lower
 from rovval.plant.model import REASONS, Plant
 
@@ -32,7 +32,7 @@ class Stepper:
         self.nu, self.eta, self.stopped = nu.copy(), eta.copy(), np.full(size, -1)
         self.why = [""] * size
         self._lowered = lower(plant.nominal, plant.slots, plant.index, plant.null, beta)
-        self._integrator = Integrator(plant.vehicle, plant.substeps)
+        self._integrator = plant.integrator
         self._dt, self._step = dt, 0
         lanes = self._lowered.lanes
         back = int(LAG_MEMORY * lanes.lag.max() / dt) + 1 + int(np.ceil(np.abs(lanes.shift).max() / dt)) if lanes.lag.any() or lanes.shift.any() else 0

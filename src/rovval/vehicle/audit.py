@@ -115,6 +115,8 @@ def _commands(vehicle: Vehicle) -> list[str]:
                 problems.append(f"mixer: stick {stick!r} has {len(row)} factors for {len(vehicle.thruster)} thrusters")
         if not problems:
             problems = _driven_backwards(vehicle, mixer) + _unlike_its_frame(mixer)
+    if (own := vehicle.uuv) and {len(own.k_pos), len(own.k_neg)} not in ({0}, {len(vehicle.thruster)}):
+        problems.append(f"uuv: {len(own.k_pos)} k_pos and {len(own.k_neg)} k_neg for {len(vehicle.thruster)} thrusters")
     if table := vehicle.pulse_table:
         sizes = {len(table.pwm_us), len(table.thrust), len(table.pwm_us if table.rpm is None else table.rpm)}
         if len(sizes) != 1 or (np.diff(table.pwm_us) <= 0).any():

@@ -104,6 +104,15 @@ class PulseTable(Strict):
     k_neg: tuple[Positive, ...] = ()
 
 
+class Uuv(Strict):
+    """What uuv_simulator has of its own of this vehicle (platform `uuv`): the ``time_constant`` (s) of its thrusters' first-order answer, and its
+    conversion curves as gains ahead and astern (N/rpm2, one for each thruster), where they are not the vehicle's."""
+
+    time_constant: NotNegative
+    k_pos: tuple[Positive, ...] = ()
+    k_neg: tuple[Positive, ...] = ()
+
+
 class Vehicle(Strict):
     """One vehicle. ``sources`` names where each number comes from; ``convention`` guards against drag stored as negative.
 
@@ -120,6 +129,7 @@ class Vehicle(Strict):
     thruster: Annotated[tuple[Thruster, ...], Field(min_length=1)]
     mixer: Mixer | None = None
     pulse_table: PulseTable | None = None
+    uuv: Uuv | None = None
     effects: dict[str, dict[str, float]] = {}
     calibration: dict[str, float] = {}
 
@@ -147,6 +157,8 @@ class Vehicle(Strict):
         numbers = self.model_dump(mode="json", exclude=left_out)
         if (table := numbers["pulse_table"]) and not table["k_pos"]:
             numbers["pulse_table"] = {key: value for key, value in table.items() if key not in ("k_pos", "k_neg")}
+        if numbers["uuv"] is None:
+            del numbers["uuv"]
         text = json.dumps(numbers, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:12]
 

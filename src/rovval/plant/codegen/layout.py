@@ -18,6 +18,7 @@ GROUPS = ("mass", "restoring", "displaced", "added", "linear", "quadratic", "lag
 
 SPEED_LIMIT = 20.0  # m/s; no ROV comes near it (design: limits)
 RATE_LIMIT = 30.0  # rad/s
+SETTLING = 100  # steps after which a filter that takes 0.3 of its input has settled to the last bit: 0.7^100 = 3e-16
 ADVANCE_LIMIT = 1.0  # |J_a| beyond which the cubic K_T is held: open-water series end near there, and a cubic turns up again
 
 
@@ -68,6 +69,7 @@ def constants(spec: Spec) -> dict[str, float]:
     array: LLVM then proves with few checks at run time that what a loop writes is not what it reads."""
     where, k = layout(spec), spec.thrusters
     numbers: dict[str, float] = {"FULL": spec.full, "DENSE": spec.dense, "ADVANCE": spec.advance, "FLOW": spec.flow}
+    numbers |= {"EXPLICIT": spec.explicit, "LAGGED": spec.full or spec.explicit, "SHARE": spec.share, "SETTLING": SETTLING}
     numbers |= {name.upper(): where.first[name] for name in GROUPS}
     numbers |= {
         "W": spec.lanes, "THRUSTERS": k, "BODY": where.body_rows, "STRIDE": where.stride, "INPUT_ROWS": where.rows, "LOG_ROWS": LOG_ROWS,
@@ -76,6 +78,7 @@ def constants(spec: Spec) -> dict[str, float]:
     }  # fmt: skip
     place = where.rows
     sizes = {"STATE": 5 * 13, "EULER": 3, "ENDS": 2 * k, "MEMORY": k, "NEXT": k, "ALIVE": 1, "CODE": 2, "CURRENT": 3, "WATER": 9, "EXTRA": 6}
+    sizes |= {"FILTERED": 6, "BEFORE": 6} if spec.explicit else {}
     for name, size in sizes.items():
         numbers[name] = place
         place += size

@@ -39,12 +39,14 @@ class Hook:
 @dataclass(frozen=True, slots=True)
 class Spec:
     """What a kernel holds: number of ``thrusters``; ``dense`` 6 x 6 added mass and drag or diagonals; ``advance``: thrust depends on
-    the advance ratio; ``full``: every effect or none; ``lanes`` of a block."""
+    the advance ratio; ``full``: every effect or none; ``share``: of the newest acceleration in the filtered one of which added mass is a force,
+    in a step of Euler's (0: added mass is in the mass matrix, in one of Runge and Kutta's); ``lanes`` of a block."""
 
     thrusters: int
     dense: bool
     advance: bool
     full: bool
+    share: float = 0.0
     lanes: int = W
 
     @property
@@ -53,9 +55,15 @@ class Spec:
         return self.full or self.advance
 
     @property
+    def explicit(self) -> bool:
+        """Whether added mass is a force on a rigid body."""
+        return self.share > 0.0
+
+    @property
     def name(self) -> str:
         """Short name, part of the file's name."""
-        return f"{'full' if self.full else 'nominal'}_{self.thrusters}{'_dense' if self.dense else ''}{'_advance' if self.advance else ''}"
+        kinds = {"dense": self.dense, "advance": self.advance, "explicit": self.explicit}
+        return "_".join(["full" if self.full else "nominal", str(self.thrusters), *(kind for kind, has in kinds.items() if has)])
 
 
 @cache

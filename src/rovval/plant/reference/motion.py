@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from rovval.core.frames import rotation_from_quaternion
 from rovval.plant.codegen.layout import ADVANCE_LIMIT
+from rovval.plant.platforms import load
 from rovval.plant.reference.state import LOG, Run, chain, total
 
 Array = NDArray[np.float64]
@@ -16,6 +17,39 @@ Array = NDArray[np.float64]
 
 def derivative(run: Run, x: Array, stage: Mapping[str, Array]) -> Array:
     """Time derivative of x y z, q_wxyz, nu (B, 13)."""
+    force, _, water = forces(run, x, stage)
+    force = force + _matmul(run.lanes.added_mass, water)
+    nu_dot = np.linalg.solve(run.mass + run.lanes.added_mass, force[..., None])[..., 0]
+    return np.concatenate([*kinematics(x, x[:, 7:]), nu_dot], axis=1)
+
+
+def engine_step(run: Run, x: Array, stage: Mapping[str, Array], h: float) -> Array:
+    """The state after a semi-implicit Euler step of the rigid body, added mass being a force of the filtered acceleration (`plant.platforms.uuv`)."""
+    engine = load(run.plant.model).engine
+    assert engine is not None
+    force, nu_r, _ = forces(run, x, stage)
+    if run.before is None:
+        run.filtered = np.linalg.solve(run.mass + run.lanes.added_mass, force[..., None])[..., 0]
+    else:
+        run.filtered = (1.0 - engine.share) * run.filtered + engine.share * (nu_r - run.before) / h
+    run.before = nu_r
+    force = force - _matmul(run.lanes.added_mass, run.filtered)
+    nu = x[:, 7:] + h * np.linalg.solve(run.mass, force[..., None])[..., 0]
+    over_ground, q_dot = kinematics(x, nu)
+    attitude = x[:, 3:7] + h * q_dot
+    return np.concatenate([x[:, :3] + h * over_ground, attitude / np.linalg.norm(attitude, axis=1, keepdims=True), nu], axis=1)
+
+
+def kinematics(x: Array, nu: Array) -> tuple[Array, Array]:
+    """Rates of position (B, 3) and quaternion (B, 4) of a velocity at the attitude of a state."""
+    q, omega = x[:, 3:7], nu[:, 3:]
+    w, vector = q[:, :1], q[:, 1:]
+    q_dot = 0.5 * np.concatenate([-(vector * omega).sum(axis=1, keepdims=True), w * omega + np.cross(vector, omega)], axis=1)
+    return _turn(rotation_from_quaternion(q), nu[:, :3]), q_dot
+
+
+def forces(run: Run, x: Array, stage: Mapping[str, Array]) -> tuple[Array, Array, Array]:
+    """All that acts on the body but inertia (B, 6), velocity relative to the water (B, 6), acceleration of the water in the body frame (B, 6)."""
     lanes = run.lanes
     q, nu = x[:, 3:7], x[:, 7:]
     rotation = rotation_from_quaternion(q)
@@ -37,12 +71,9 @@ def derivative(run: Run, x: Array, stage: Mapping[str, Array]) -> Array:
     drag = _matmul(lanes.linear_drag, nu_r) + _matmul(lanes.quadratic_drag, np.abs(nu_r) * nu_r)
     force = (
         _thrusters(run, nu_r, stage) + restoring + pressed - drag - _coriolis(run.mass, nu) - _coriolis(lanes.added_mass, nu_r)
-        + _matmul(lanes.added_mass, nu_c_dot) + stage["extra"] + total(run, "wrench", names, 6)
+        + stage["extra"] + total(run, "wrench", names, 6)
     )  # fmt: skip
-    nu_dot = np.linalg.solve(run.mass + lanes.added_mass, force[..., None])[..., 0]
-    w, vector = q[:, :1], q[:, 1:]
-    q_dot = 0.5 * np.concatenate([-(vector * omega).sum(axis=1, keepdims=True), w * omega + np.cross(vector, omega)], axis=1)
-    return np.concatenate([over_ground, q_dot, nu_dot], axis=1)
+    return force, nu_r, nu_c_dot
 
 
 def _coriolis(mass: Array, nu: Array) -> Array:
@@ -69,7 +100,7 @@ def _thrusters(run: Run, nu_r: Array, stage: Mapping[str, Array]) -> Array:
 def _advance(run: Run, n: Array, axial: Array) -> Array:
     """K_T(J) / K_T(0), J held within +-ADVANCE_LIMIT (thesis's upstream: rho D^4 n|n| theta K_T(J_a))."""
     factor = np.ones_like(n)
-    for i, thruster in enumerate(run.plant.vehicle.thruster):
+    for i, thruster in enumerate(run.plant.simulated.thruster):
         if thruster.diameter > 0:
             j = np.clip(axial[:, i] * n[:, i] / (thruster.diameter * (n[:, i] ** 2 + 1e-12)), -ADVANCE_LIMIT, ADVANCE_LIMIT)
             powers = np.stack([j, j**2, j**3], axis=1)

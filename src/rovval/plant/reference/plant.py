@@ -17,8 +17,9 @@ from rovval.plant.codegen.layout import RATE_LIMIT, SPEED_LIMIT
 from rovval.plant.inputs import Inputs, Prepared, prepare
 from rovval.plant.lowering import Lowered, lower, rigid_body, steps_before_nothing, with_payload
 from rovval.plant.model import Motion, Plant
+from rovval.plant.platforms import load
 from rovval.plant.reference.inputs import at_stages, warm
-from rovval.plant.reference.motion import derivative
+from rovval.plant.reference.motion import derivative, engine_step
 from rovval.plant.reference.state import Run
 
 Array = NDArray[np.float64]
@@ -61,18 +62,19 @@ def _integrate(
 ) -> tuple[Array, Array, Indices]:  # fmt: skip
     lanes = lowered.lanes
     mass = rigid_body(lanes.mass, lanes.mass[:, None] * lanes.centre_of_gravity, lanes.inertia)
-    run = Run(plant, lowered, inputs, prepared, start, which, gain, lanes, mass, np.zeros((len(start), 1)))
+    run = Run(plant, lowered, inputs, prepared, start, which, gain, lanes, mass, np.zeros((len(start), 1)), np.zeros((len(start), 6)))
     run.memory = warm(run)
     state = np.concatenate([eta0[:, :3], quaternion_from_euler(eta0[:, 3:]), nu0], axis=1)
     states, stopped = [state], np.full(len(start), -1)
     limit = np.minimum(prepared.steps_before_gap(start, inputs.hold), steps_before_nothing(lowered.lanes, prepared.t[start], inputs.dt))
-    h = inputs.dt / plant.substeps
+    substeps, engine = plant.steps(inputs.dt), load(plant.model).engine
+    h = inputs.dt / substeps
     for step in range(steps):
-        for sub in range(plant.substeps):
-            f0, f1 = sub / plant.substeps, (sub + 1) / plant.substeps
+        for sub in range(substeps):
+            f0, f1 = sub / substeps, (sub + 1) / substeps
             _take_payload(run, step, f0)
             stages = at_stages(run, step, f0, f1, h)
-            new = _runge_kutta(run, state, stages, h)
+            new = _runge_kutta(run, state, stages, h) if engine is None else engine_step(run, state, stages[0], h)
             speed, rate = (new[:, 7:10] ** 2).sum(axis=1), (new[:, 10:] ** 2).sum(axis=1)
             sane = (speed < SPEED_LIMIT**2) & (rate < RATE_LIMIT**2) & (np.abs(new[:, :3]).sum(axis=1) < 1e12) & (step < limit)
             stopped = np.where((stopped < 0) & ~sane, step + 1, stopped)

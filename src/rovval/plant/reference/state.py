@@ -37,6 +37,8 @@ class Run:
     lanes: Lanes
     mass: Array  # (B, 6, 6) M_RB
     memory: Array  # (B, k) lagged speed
+    filtered: Array  # (B, 6) filtered acceleration, of a platform whose engine takes added mass as a force
+    before: Array | None = None  # (B, 6) velocity relative to the water at the step before
 
     def __post_init__(self) -> None:
         vehicle = self.plant.vehicle

@@ -31,17 +31,7 @@ def equations_of_motion(m: Array, tv: Array, xs: int, xn: int, reach: float, hal
             ur, vr, wr = u, v, w
         k0, k1, k2 = vn, ve, vd
         k3, k4, k5, k6 = quaternion_rate(qw, qx, qy, qz, r_p, r_q, r_r)
-        s1, s2, s3, t1, t2, t3 = momentum(m, j, u, v, w, r_p, r_q, r_r, ur, vr, wr)
-        X, Y, Z, K, M, N = applied(m, tv, j)
-        net = m[RESTORING * W + j]
-        g1, g2, g3 = m[(RESTORING + 1) * W + j], m[(RESTORING + 2) * W + j], m[(RESTORING + 3) * W + j]
-        X, Y, Z, K, M, N = without_drag(m, j, X, Y, Z, K, M, N, ur, vr, wr, r_p, r_q, r_r)
-        X = X + net * r31 - r_q * s3 + r_r * s2
-        Y = Y + net * r32 - r_r * s1 + r_p * s3
-        Z = Z + net * r33 - r_p * s2 + r_q * s1
-        K = K + g2 * r33 - g3 * r32 - r_q * t3 + r_r * t2 - v * s3 + w * s2
-        M = M + g3 * r31 - g1 * r33 - r_r * t1 + r_p * t3 - w * s1 + u * s3
-        N = N + g1 * r32 - g2 * r31 - r_p * t2 + r_q * t1 - u * s2 + v * s1
+        X, Y, Z, K, M, N = net_wrench(m, tv, j, u, v, w, r_p, r_q, r_r, ur, vr, wr, r31, r32, r33)
         k7 = symmetric_product(m, MASS + 10, 0, j, (X, Y, Z, K, M, N))
         k8 = symmetric_product(m, MASS + 10, 1, j, (X, Y, Z, K, M, N))
         k9 = symmetric_product(m, MASS + 10, 2, j, (X, Y, Z, K, M, N))
@@ -51,6 +41,25 @@ def equations_of_motion(m: Array, tv: Array, xs: int, xn: int, reach: float, hal
         rate = (k0, k1, k2, k3, k4, k5, k6, k7, k8, k9, k10, k11, k12)
         for c in unrolled(13):
             m[xn + c * W + j] = m[(STATE + c) * W + j] + (half if 3 <= c < 7 else reach) * rate[c]
+
+
+def net_wrench(
+    m: Array, tv: Array, j: int, u: Lanes, v: Lanes, w: Lanes, r_p: Lanes, r_q: Lanes, r_r: Lanes, ur: Lanes, vr: Lanes, wr: Lanes,
+    r31: Lanes, r32: Lanes, r33: Lanes,
+) -> Six:  # fmt: skip
+    """All that accelerates the body: thrust and effects less drag, weight and buoyancy, Coriolis terms."""
+    s1, s2, s3, t1, t2, t3 = momentum(m, j, u, v, w, r_p, r_q, r_r, ur, vr, wr)
+    X, Y, Z, K, M, N = applied(m, tv, j)
+    net = m[RESTORING * W + j]
+    g1, g2, g3 = m[(RESTORING + 1) * W + j], m[(RESTORING + 2) * W + j], m[(RESTORING + 3) * W + j]
+    X, Y, Z, K, M, N = without_drag(m, j, X, Y, Z, K, M, N, ur, vr, wr, r_p, r_q, r_r)
+    X = X + net * r31 - r_q * s3 + r_r * s2
+    Y = Y + net * r32 - r_r * s1 + r_p * s3
+    Z = Z + net * r33 - r_p * s2 + r_q * s1
+    K = K + g2 * r33 - g3 * r32 - r_q * t3 + r_r * t2 - v * s3 + w * s2
+    M = M + g3 * r31 - g1 * r33 - r_r * t1 + r_p * t3 - w * s1 + u * s3
+    N = N + g1 * r32 - g2 * r31 - r_p * t2 + r_q * t1 - u * s2 + v * s1
+    return X, Y, Z, K, M, N
 
 
 def quaternion_rate(qw: Lanes, qx: Lanes, qy: Lanes, qz: Lanes, r_p: Lanes, r_q: Lanes, r_r: Lanes) -> tuple[Lanes, Lanes, Lanes, Lanes]:

@@ -12,7 +12,7 @@ from rovval.plant.codegen.kernel.matrix import plus_translation, product
 from rovval.plant.codegen.kernel.state import attitude, over_ground, rates, rotation, through_water, velocity
 
 from rovval.plant.codegen.kernel.symbols import (  # isort: skip
-    ADDED, ADVANCE, ADVANCE_LIMIT, BODY, CURRENT, DISPLACED, EXTRA, FLOW, FULL, MASS, PAYLOAD_ROWS, STRIDE, THRUSTERS, WATER, Array, W,
+    ADDED, ADVANCE, ADVANCE_LIMIT, BODY, CURRENT, DISPLACED, EXPLICIT, EXTRA, FLOW, FULL, MASS, PAYLOAD_ROWS, STRIDE, THRUSTERS, WATER, Array, W,
     any_at_work, at_work, effect_value, effects_of, in_turn, pruned, unrolled,
 )  # fmt: skip
 from rovval.plant.codegen.kernel.thrust import add_wrench, with_force
@@ -101,6 +101,8 @@ def force_of_water(m: Array, xs: int) -> None:
         m[(CURRENT + 2) * W + j] = cz
         ur, vr, wr = u - cx, v - cy, w - cz
         wx, wy, wz = dx - (r_q * cz - r_r * cy), dy - (r_r * cx - r_p * cz), dz - (r_p * cy - r_q * cx)
+        if EXPLICIT:  # the filtered acceleration is that relative to the water: the water's own is in it
+            wx, wy, wz = 0.0, 0.0, 0.0
         a0 = product(m, ADDED, 0, j, (ur, vr, wr, r_p, r_q, r_r))
         a1 = product(m, ADDED, 1, j, (ur, vr, wr, r_p, r_q, r_r))
         a2 = product(m, ADDED, 2, j, (ur, vr, wr, r_p, r_q, r_r))

@@ -6,11 +6,13 @@ import math
 
 from rovval.plant.codegen.kernel.body import equations_of_motion
 from rovval.plant.codegen.kernel.effects import effects_on_state, loops_needed, take_payload
+from rovval.plant.codegen.kernel.explicit import explicit_step
 from rovval.plant.codegen.kernel.log import lag_memory, speeds_of_step
 from rovval.plant.codegen.kernel.step import halt, record, take_step
 
 from rovval.plant.codegen.kernel.symbols import (  # isort: skip
-    ALIVE, EULER, FLOW, FULL, INPUT_ROWS, JET, LOG_ROWS, MEMORY, NEXT, ROWS, STATE, THRUST_ROWS, THRUSTERS, Array, W, compiled_function, spread,
+    ALIVE, EULER, EXPLICIT, FLOW, FULL, INPUT_ROWS, JET, LAGGED, LOG_ROWS, MEMORY, NEXT, ROWS, STATE, THRUST_ROWS, THRUSTERS, Array, W,
+    compiled_function, spread,
 )  # fmt: skip
 from rovval.plant.codegen.kernel.thrust import thrust_of_stage
 from rovval.plant.codegen.runtime import aligned, load_log
@@ -34,6 +36,7 @@ def run(
         if FULL:
             use_rest, use_water, use_cross, use_flow, use_state, use_log = loops_needed(acts, b, use_extra, pending)
             clear_log(la, lg)
+        if LAGGED:
             lag_memory(speed, t, start[b], dt, hold, m)
         record(m, out, 0, b * W)
         begin = 0
@@ -53,9 +56,13 @@ def run(
                 )
                 if FULL and pending:
                     take_payload(m, late, onset, b, begin * LOG_ROWS * W + 4 * W, lg)
-                if FULL:
+                if LAGGED:
                     remember_lag(m)
-                motion_over_substep(m, th, lg, g, acts, b, begin, h, use_state, use_water, use_cross, use_flow)
+                if EXPLICIT:
+                    inverse_h = 1.0 / h if step + sub > 0 else 0.0
+                    engine_over_substep(m, th, lg, g, acts, b, begin, h, inverse_h, use_state, use_water, use_cross, use_flow)
+                else:
+                    motion_over_substep(m, th, lg, g, acts, b, begin, h, use_state, use_water, use_cross, use_flow)
                 take_step(m, stopped[b], reason[b], step)
             record(m, out, step + 1, b * W)
 
@@ -89,6 +96,18 @@ def motion_over_substep(
         half = 0.5 * reach
         effects_on_state(m, tv, lv, g, acts, b, xs, use_state, use_water, use_cross, use_flow)
         equations_of_motion(m, tv, xs, xn, reach, half)
+
+
+def engine_over_substep(
+    m: Array, th: Array, lg: Array, g: Array, acts: Array, b: int, begin: int, h: float, inverse_h: float, use_state: bool, use_water: bool,
+    use_cross: bool, use_flow: bool,
+) -> None:  # fmt: skip
+    """A physics engine's step of length ``h`` (s), with the thrust and the effects of its beginning."""
+    tv = th[begin * (THRUST_ROWS * W) : (begin + 1) * (THRUST_ROWS * W)]
+    if FULL:
+        lv = lg[begin * LOG_ROWS * W : (begin + 1) * LOG_ROWS * W]
+    effects_on_state(m, tv, lv, g, acts, b, STATE * W, use_state, use_water, use_cross, use_flow)
+    explicit_step(m, tv, h, inverse_h)
 
 
 def load_block(m: Array, numbers: Array, states: Array, b: int) -> None:

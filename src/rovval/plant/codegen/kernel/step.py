@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from rovval.plant.codegen.kernel.symbols import (  # isort: skip
-    ALIVE, CODE, EULER, RATE_LIMIT_2, SPEED_LIMIT_2, STATE, THIRD, Array, Lanes, W, compiled_function, unrolled,
+    ALIVE, CODE, EULER, EXPLICIT, RATE_LIMIT_2, SPEED_LIMIT_2, STATE, THIRD, Array, Lanes, W, compiled_function, unrolled,
 )  # fmt: skip
 from rovval.plant.codegen.runtime import atan2
 
@@ -15,10 +15,10 @@ def take_step(m: Array, stopped: Array, reason: Array, step: int) -> None:
     """The state after a step out of those at its stages, its quaternion made of unit length, for every lane that is alive and sane. Others stop:
     1 too fast, 2 turns too fast, 3 not finite."""
     for j in range(W):
-        n0, n1, n2 = runge_kutta(m, 0, j), runge_kutta(m, 1, j), runge_kutta(m, 2, j)
-        n3, n4, n5, n6 = runge_kutta(m, 3, j), runge_kutta(m, 4, j), runge_kutta(m, 5, j), runge_kutta(m, 6, j)
-        n7, n8, n9 = runge_kutta(m, 7, j), runge_kutta(m, 8, j), runge_kutta(m, 9, j)
-        n10, n11, n12 = runge_kutta(m, 10, j), runge_kutta(m, 11, j), runge_kutta(m, 12, j)
+        n0, n1, n2 = after_step(m, 0, j), after_step(m, 1, j), after_step(m, 2, j)
+        n3, n4, n5, n6 = after_step(m, 3, j), after_step(m, 4, j), after_step(m, 5, j), after_step(m, 6, j)
+        n7, n8, n9 = after_step(m, 7, j), after_step(m, 8, j), after_step(m, 9, j)
+        n10, n11, n12 = after_step(m, 10, j), after_step(m, 11, j), after_step(m, 12, j)
         inverse = 1.0 / math.sqrt(n3 * n3 + n4 * n4 + n5 * n5 + n6 * n6)
         n3, n4, n5, n6 = n3 * inverse, n4 * inverse, n5 * inverse, n6 * inverse
         speed, rate = n7 * n7 + n8 * n8 + n9 * n9, n10 * n10 + n11 * n11 + n12 * n12
@@ -41,6 +41,11 @@ def take_step(m: Array, stopped: Array, reason: Array, step: int) -> None:
         for j in range(W):
             if m[CODE * W + j] > 0.0:
                 stopped[j], reason[j], m[ALIVE * W + j] = step + 1, int(m[CODE * W + j]), 0.0
+
+
+def after_step(m: Array, c: int, j: int) -> Lanes:
+    """Number ``c`` of the state after a step, as the plant's scheme has it."""
+    return m[(STATE + 13 + c) * W + j] if EXPLICIT else runge_kutta(m, c, j)
 
 
 def runge_kutta(m: Array, c: int, j: int) -> Lanes:

@@ -14,6 +14,8 @@ FULL = False  # every effect of the library is in, else none
 DENSE = False  # added mass and drag are 6 x 6 matrices, else diagonals
 ADVANCE = False  # thrust depends on the advance ratio
 FLOW = False  # thrust depends on the flow past the thruster: FULL or ADVANCE
+EXPLICIT = False  # added mass is a force of the filtered acceleration of the steps before, and the step one of Euler's
+LAGGED = False  # thruster speeds answer late: FULL or EXPLICIT
 
 # Sizes.
 W = 16  # lanes of a block
@@ -48,12 +50,16 @@ CODE = 0  # why a lane stops in this step, and room for its sum
 CURRENT = 0  # velocity of the water in the body frame (3)
 WATER = 0  # velocity of the water, its change along the path and at a fixed point, north east down (9)
 EXTRA = 0  # wrench of all that acts on the state beyond the rigid body (6)
+FILTERED = 0  # filtered acceleration relative to the water (6)
+BEFORE = 0  # velocity relative to the water at the step before (6)
 
 # Limits.
+SETTLING = 1  # steps of the acceleration's filter before a lane's first
 SPEED_LIMIT_2 = 0.0  # (m/s)^2
 RATE_LIMIT_2 = 0.0  # (rad/s)^2
 ADVANCE_LIMIT = 0.0
 THIRD = 1.0 / 3.0
+SHARE = 0.0  # of the newest acceleration in the filtered one
 
 
 def compiled_function(function: Function) -> Function:

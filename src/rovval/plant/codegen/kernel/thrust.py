@@ -6,7 +6,7 @@ Thruster speeds are taken at the stage times: frozen over the step they make the
 from __future__ import annotations
 
 from rovval.plant.codegen.kernel.symbols import (  # isort: skip
-    ADVANCE, BODY, ENDS, FLOW, FULL, JET, LAG, LOG_ROWS, MEMORY, NEXT, STRIDE, THRUSTERS, Array, Lanes, W, in_turn, unrolled,
+    ADVANCE, BODY, ENDS, FLOW, FULL, JET, LAG, LAGGED, LOG_ROWS, MEMORY, NEXT, STRIDE, THRUSTERS, Array, Lanes, W, in_turn, unrolled,
 )  # fmt: skip
 
 
@@ -40,12 +40,12 @@ def thrust_at_rest(
 ) -> Lanes:
     """Thrust of thruster ``i`` (N, thesis 3.14: k n |n|, k of its own for each sense) at its acting speed, which a lag (exact for a speed that runs
     linearly from ``f0`` to ``f``) and effects stand before."""
-    if FULL:
+    if LAGGED:
         tau, left = m[LAG * W + j], m[(LAG + 1 + s) * W + j]
     a = m[(ENDS + i) * W + j]
     d = m[(ENDS + THRUSTERS + i) * W + j] - a
     n = a + d * f
-    if FULL:
+    if LAGGED:
         slope = d * inv_dt * tau
         n = n - slope + (m[(MEMORY + i) * W + j] - (a + d * f0) + slope) * left
         m[(NEXT + i) * W + j] = n
