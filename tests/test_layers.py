@@ -37,7 +37,7 @@ ROOMS = (
 INSIDE = {
     "diagnose": (("",), ("result",), ("decision",), ("search",), ("hypotheses",), ("inference",), ("problem",), ("residuals",), ("windows",), ("criteria",)),
     "blind": (("",), ("scoring",), ("sealed",), ("baselines", "cases"), ("planted",), ("missions",), ("plant",)),
-    "report": (("",), ("batch", "blind", "diagnosis", "recording"), ("comparison",), ("common",)),
+    "report": (("scenario",), ("",), ("batch", "blind", "diagnosis", "recording"), ("comparison",), ("common",)),
     "effects": (("library",), ("",)),
     "plant": (("reference",), ("",), ("codegen",), ("platforms",)),
 }

@@ -217,3 +217,20 @@ def test_blind_make(here):
     assert Path("cases.key").is_file()
     assert b"buoyancy_error" not in Path("cases/labels.sealed").read_bytes()
     run("compare", str(log), "--json", "--vehicle", "merlin")
+
+
+def test_compare_between_two_platforms_and_two_files(tmp_path, monkeypatch):
+    """Without a log both fly the movement protocol; a file beside itself is a tie; two files need no log."""
+    monkeypatch.chdir(tmp_path)
+    write_dive(tmp_path)
+    done = json.loads(run("compare", "--between", "fossen", "freefloating", "--json").stdout)
+    assert (done["schema"], done["a"], done["b"], done["tie"]) == ("rovval.between/1", "fossen", "freefloating", False)
+    assert done["axes"]["surge"]["per_cent"] > 10 and done["axes"]["surge"]["mean"] != 0
+    on_log = run("compare", "dive.csv", "--between", "fossen", "fossen", "--out", "between").stdout
+    assert "A tie" in on_log and (tmp_path / "between" / "difference.md").is_file()
+    run("simulate", "dive.csv", "--out", "a.parquet")
+    assert json.loads(run("compare", "--between", "a.parquet", "a.parquet", "--json").stdout)["tie"]
+    with pytest.raises(UsageProblem, match="need no log"):
+        run("compare", "dive.csv", "--between", "a.parquet", "a.parquet")
+    with pytest.raises(UsageProblem, match="needs a log"):
+        run("compare")

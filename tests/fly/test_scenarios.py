@@ -38,3 +38,31 @@ def test_scenario_4_lists_the_channels_and_5_compares(tmp_path, monkeypatch):
     assert {"u", "n:HFP", "n_cmd:HFP", "udot"} <= {c["channel"] for c in four["channels"]}
     five = json.loads(run("scenario", "5", "dive.csv", "--json").stdout)
     assert five["table_6_2"]["yaw"]["unit"] == "deg/s"
+
+
+def test_a_vehicle_without_a_righting_moment_fails_scenario_1(tmp_path):
+    """Centre of buoyancy at the centre of gravity: upright it lies as still as any, tilted it stays so."""
+    source = (vehicle.LIBRARY / "merlin.toml").read_text().replace("centre_of_buoyancy = [0.0, 0.0, -0.10]", "centre_of_buoyancy = [0.0, 0.0, 0.0]")
+    (tmp_path / "neutral.toml").write_text(source)
+    document = json.loads(run("scenario", "1", "--vehicle", str(tmp_path / "neutral.toml"), "--json", code=1).stdout)
+    assert [c["expected"] for c in document["checks"] if not c["holds"]] == ["rights itself when it is let go tilted"]
+    assert document["tilt_left_deg"] == pytest.approx(10.0, abs=0.2)
+
+
+def test_speeds_are_relative_to_the_vehicle_and_can_be_asked_for():
+    """70 rpm on Merlin; a vehicle whose propellers turn faster for the same speed gets more; what hardly moves does not pass."""
+    assert json.loads(run("scenario", "3", "--json").stdout)["fastest_rpm"] == pytest.approx(70.0)
+    assert json.loads(run("scenario", "3", "--vehicle", "bluerov2_heavy", "--json").stdout)["fastest_rpm"] > 1000.0
+    slow = json.loads(run("scenario", "3", "--rpm", "1", "--json", code=1).stdout)
+    assert slow["fastest_rpm"] == pytest.approx(1.0) and not slow["passed"]
+
+
+def test_a_document_follows_the_thesis_figure_by_figure(tmp_path):
+    """Each figure of the scenarios that were asked for, in the thesis's order, and its tables beside ours."""
+    run("scenario", "2", "--out", str(tmp_path / "two"), "--model", "fossen")
+    page = (tmp_path / "two" / "scenarios.html").read_text()
+    places = [page.index(f">Figure 5.{n}:") for n in range(6, 13)]
+    assert places == sorted(places) and page.count("<svg") == 12
+    text = (tmp_path / "two" / "scenarios.md").read_text()
+    assert "| VFP | 82.7 | 80.5 | -2.7 % |" in text and "Circular" in text
+    assert (tmp_path / "two" / "scenario-2-fossen.rrd").stat().st_size > 1000

@@ -4,7 +4,7 @@ from report_cases import make_run, make_sim
 
 from rovval.comparison import compare
 from rovval.fly.scenarios import Check, Outcome
-from rovval.report.scenario import text
+from rovval.report.scenario.terminal import text
 
 
 def outcome(**more: object) -> Outcome:

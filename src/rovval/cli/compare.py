@@ -8,11 +8,27 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rovval.cli import complete, logs, options, output
+from rovval.core.errors import UsageProblem
 
 if TYPE_CHECKING:
     from rovval.core.data import Comparison
     from rovval.vehicle.model import Vehicle
 
+Optional = Annotated[
+    str | None,
+    typer.Argument(
+        metavar="[LOG|RUN]", help="A log file, a bag folder, or a run of the archive; needed but between two files.", autocompletion=complete.sources
+    ),
+]
+Between = Annotated[
+    tuple[str, str] | None,
+    typer.Option(
+        "--between",
+        metavar="A B",
+        help="Simulator against simulator, B minus A: two platforms, on the log or, without one, on the thesis's movement protocol; or two "
+        ".parquet of `rovval simulate`, or two runs.",
+    ),
+]
 With = Annotated[
     Path | None,
     typer.Option(
@@ -30,7 +46,8 @@ Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Report f
 
 
 def command(
-    source: options.Source,
+    source: Optional = None,
+    between: Between = None,
     with_: With = None,
     with_profile: WithProfile = None,
     vehicle: options.VehicleOption = None,
@@ -49,7 +66,8 @@ def command(
     """Simulate a run and say how far the simulator is from the vehicle on each axis; write the report.
 
     Errors are simulated minus measured. The report is json, md, html and a rerun recording. With --json and without --out
-    nothing is written. Exit 4 where the simulation left sane limits, 1 where a tolerance is exceeded.
+    nothing is written. With --between neither is the vehicle: B minus A itself is printed, and a tie is called one. Exit 4 where
+    the simulation left sane limits, 1 where a tolerance is exceeded.
 
     \b
     Example:
@@ -57,7 +75,16 @@ def command(
       rovval compare dive.csv --fail-above surge=0.10 --fail-above yaw.iae=5 --json
       rovval compare dive.csv --from 12 --to 95
       rovval compare run_a.csv --with run_a.sim.csv --with-profile bluerov2_tank_sim
+      rovval compare dive.csv --between fossen uuv
+      rovval compare --between fossen uuv --vehicle bluerov2_heavy
     """
+    if between is not None:
+        from rovval.cli.between import difference
+
+        difference(between, source, vehicle, tuple(effect or ()), profile, (start_s, end_s), archive, out, json_, quiet)
+        return
+    if source is None:
+        raise UsageProblem("compare needs a log or run", "give one, or --between A B")
     from rovval.comparison import compare
     from rovval.pipeline import tolerances
     from rovval.pipeline.steps import other_velocities, simulated, vehicle_of

@@ -6,22 +6,35 @@ from typing import Any
 
 from rovval.comparison.between import RESOLUTION, ChannelDifference, Difference
 from rovval.core.units import in_degrees, integral_unit
+from rovval.report.common.markdown import grid
 from rovval.report.common.numbers import MISSING, listed, number, per_cent
 
 CLAIM = 0.10  # thesis 6.1: "a 10% variation in ROV dynamics across the platforms"
 PLATFORMS = ("fossen", "uuv")  # the thesis's two: its Simulink and its ROS model
+FOOT = f"of A: integral of |B - A| over that of |A|; a tie: no difference above {RESOLUTION:g} of the fastest motion of its kind, the integration's accuracy"
 HEAD = ("", "unit", "mean", "rms", "largest", "IAE", "of A", "rows", "")
 
 
 def text(difference: Difference, what: str) -> str:
     """The table of ``what`` both were driven by, angles in degrees, and what it says of the thesis's claim."""
     d = difference
-    rows = [HEAD, *(_cells(axis, row) for axis, row in d.velocities.items()), *(_cells(name, row) for name, row in d.pose.items())]
+    rows = [HEAD, *lines(d)]
     widths = [max(len(r[j]) for r in rows) for j in range(len(HEAD))]
-    lines = ["  ".join(c.ljust(w) if j < 2 else c.rjust(w) for j, (c, w) in enumerate(zip(r, widths, strict=True))).rstrip() for r in rows]
+    aligned = ["  ".join(c.ljust(w) if j < 2 else c.rjust(w) for j, (c, w) in enumerate(zip(r, widths, strict=True))).rstrip() for r in rows]
     head = [f"{d.b.name} minus {d.a.name}: {what}", said(d), ""]
-    foot = "of A: integral of |B - A| over integral of |A|; a tie: no difference above "
-    return "\n".join([*head, *lines, "", foot + f"{RESOLUTION:g} of the fastest motion of its kind, the integration's own accuracy"])
+    return "\n".join([*head, *aligned, "", FOOT])
+
+
+def markdown(difference: Difference, what: str) -> str:
+    """The same as Markdown."""
+    d = difference
+    return "\n\n".join([f"# {d.b.name} minus {d.a.name}", what, said(d), grid(HEAD, lines(d), 2), FOOT]) + "\n"
+
+
+def lines(difference: Difference) -> list[tuple[str, ...]]:
+    """Its rows under `HEAD`, velocities by axis and then the pose, angles in degrees."""
+    rows = (*difference.velocities.items(), *difference.pose.items())
+    return [_cells(name, row) for name, row in rows]
 
 
 def said(difference: Difference) -> str:

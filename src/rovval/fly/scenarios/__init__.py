@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from rovval.core.data import Comparison
+from rovval.core.data import Comparison, Run, SimResult
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +20,8 @@ class Check:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """A scenario's result. ``document`` has every number with its unit in its key; ``comparison`` is what was compared, where anything was."""
+    """A scenario's result. ``document`` has every number with its unit in its key; ``comparison`` is what was compared,
+    ``motion`` the motion and ``run`` the log that the scenario's pictures show, where there is any."""
 
     number: int
     title: str
@@ -29,6 +30,8 @@ class Outcome:
     checks: Sequence[Check]
     document: Mapping[str, Any] = field(default_factory=dict)
     comparison: Comparison | None = None
+    motion: SimResult | None = None
+    run: Run | None = None
 
     @property
     def passed(self) -> bool:

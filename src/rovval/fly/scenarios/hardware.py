@@ -28,6 +28,7 @@ def hardware(run: Run) -> Outcome:
         "",
         tuple(checks),
         {"run": run.id, "channels": rows},
+        run=run,
     )
 
 

@@ -11,11 +11,10 @@ import numpy as np
 from rovval.core.channels import AXES
 from rovval.core.data import Array
 from rovval.fly.scenarios import Check, Outcome
+from rovval.fly.scenarios.speed import COUNTS, scenario_rpm
 from rovval.fly.scenarios.still_water import swim
-from rovval.vehicle.model import PulseTable, Thruster, Vehicle, allocation
+from rovval.vehicle.model import Vehicle, allocation
 
-MERLIN_RPM = 70.0  # thesis 4.3
-TABLE_SHARE = 0.25  # chosen: a quarter of the fastest speed in the vehicle's pulse table, where it has one
 MOVE_S, REST_S = 30.0, 30.0
 MOVEMENTS = tuple((axis, sign) for axis in ("surge", "sway", "heave", "yaw") for sign in (1, -1))
 # Thesis 6.4, T0..T6 = VFP VFS VAC HFP HFS HAP HAS: sign of each thrust. Its "upward" is heave -1 here, where z is down, and its
@@ -32,61 +31,45 @@ SECTION_6_4 = {
 }
 
 
-def movements(vehicle: Vehicle, model: str) -> Outcome:
+def protocol(vehicle: Vehicle, rpm: float | None = None) -> Array:
+    """Thruster speeds (n, k) rpm at 10 Hz of the movements one after the other, each with its rest; the fastest thruster at `scenario_rpm`."""
+    top = scenario_rpm(vehicle, rpm)
+    patterns = [_pattern(vehicle, axis, sign, top) for axis, sign in MOVEMENTS]
+    return np.vstack([np.vstack([np.tile(p, (round(MOVE_S * 10), 1)), np.zeros((round(REST_S * 10), len(p)))]) for p in patterns])
+
+
+def movements(vehicle: Vehicle, model: str, rpm: float | None = None) -> Outcome:
     """Command each movement through the pseudo-inverse of the allocation, as a pilot's joystick mapping does."""
-    patterns = [_pattern(vehicle, axis, sign) for axis, sign in MOVEMENTS]
-    blocks = [np.vstack([np.tile(p, (round(MOVE_S * 10), 1)), np.zeros((round(REST_S * 10), len(p)))]) for p in patterns]
-    sim = swim(vehicle, np.vstack(blocks), model, "scenario-3")
+    speeds = protocol(vehicle, rpm)
+    sim = swim(vehicle, speeds, model, "scenario-3")
     length = round((MOVE_S + REST_S) * 10)
     checks, rows = [], []
-    for k, ((axis, sign), pattern) in enumerate(zip(MOVEMENTS, patterns, strict=True)):
+    for k, (axis, sign) in enumerate(MOVEMENTS):
         i = AXES.index(axis)
         nu = sim.free.nu[k * length : k * length + round(MOVE_S * 10)]
         thrust = sim.thrust[k * length + 1]
         reached = float(nu[-1, i])
         unit = "m/s" if i < 3 else "rad/s"
-        checks.append(
-            Check(
-                f"{axis} {sign:+d}: goes that way",
-                f"{reached:+.3f} {unit} after {MOVE_S:g} s",
-                bool(np.isfinite(reached) and reached * sign > 0),
-            )
-        )
+        goes = bool(np.isfinite(reached) and reached * sign > COUNTS)
+        checks.append(Check(f"{axis} {sign:+d}: goes that way, by more than {COUNTS:g} {unit}", f"{reached:+.3f} {unit} after {MOVE_S:g} s", goes))
         if vehicle.name == "merlin":
             signs = np.sign(np.where(np.abs(thrust) > 1e-9, thrust, 0.0))
             agrees = bool((signs == np.array(SECTION_6_4[axis, sign])).all())
-            checks.append(
-                Check(
-                    f"{axis} {sign:+d}: thrusters push as in thesis 6.4",
-                    " ".join(f"{s:+.0f}" if s else "0" for s in signs),
-                    agrees,
-                )
-            )
-        rows.append(
-            {"axis": axis, "sign": sign, "rpm": pattern.tolist(), "thrust_n": thrust.tolist(), f"reached_{unit}": reached}
-        )
+            said = " ".join(f"{s:+.0f}" if s else "0" for s in signs)
+            checks.append(Check(f"{axis} {sign:+d}: thrusters push as in thesis 6.4", said, agrees))
+        rows.append({"axis": axis, "sign": sign, "rpm": speeds[k * length].tolist(), "thrust_n": thrust.tolist(), f"reached_{unit}": reached})
     return Outcome(
-        3,
-        "movement protocol",
-        vehicle.name,
-        model,
-        tuple(checks),
-        document={"thrusters": list(vehicle.thrusters), "movements": rows},
-    )
+        3, "movement protocol, open loop", vehicle.name, model, tuple(checks),
+        document={"thrusters": list(vehicle.thrusters), "fastest_rpm": float(np.abs(speeds).max()), "movements": rows}, motion=sim,
+    )  # fmt: skip
 
 
-def _fastest(table: PulseTable, thruster: Thruster) -> float:
-    """The table's highest speed (rpm); of a table without speeds, that at which the thruster's law gives its greatest thrust."""
-    return float(np.sqrt(max(table.thrust) / thruster.k_pos)) if table.rpm is None else max(table.rpm)
-
-
-def _pattern(vehicle: Vehicle, axis: str, sign: int) -> Array:
-    """Speeds (k,) rpm that push along one axis, the fastest at 70 rpm (or a quarter of its table); a thruster that hardly helps stays still."""
+def _pattern(vehicle: Vehicle, axis: str, sign: int, top: float) -> Array:
+    """Speeds (k,) rpm that push along one axis, the fastest at ``top``; a thruster that hardly helps stays still."""
     wrench = np.zeros(6)
     wrench[AXES.index(axis)] = float(sign)
     share = np.linalg.pinv(allocation(vehicle)) @ wrench
     share = np.where(np.abs(share) > 0.05 * np.abs(share).max(), share, 0.0)
     gain = np.array([t.k_pos if s > 0 else t.k_neg for t, s in zip(vehicle.thruster, share, strict=True)])
     rpm = np.sign(share) * np.sqrt(np.abs(share) / gain)
-    top = TABLE_SHARE * _fastest(vehicle.pulse_table, vehicle.thruster[0]) if vehicle.pulse_table else MERLIN_RPM
     return np.asarray(top * rpm / np.abs(rpm).max())

@@ -47,4 +47,6 @@ def performance(run: Run, vehicle: Vehicle, model: str) -> Outcome:
         tuple(checks),
         {"run": run.id, "table_6_2": rows},
         comparison,
+        comparison.sim,
+        run,
     )

@@ -13,14 +13,17 @@ DEPTH_M = 20.0  # chosen: far from the surface and from any bottom
 RPM = 1.0 / 60.0
 
 
-def commanded(vehicle: Vehicle, speed_rpm: Array, name: str) -> Run:
-    """A run whose thrusters turn as ``speed_rpm`` (n, k) says at 10 Hz, started at rest at 20 m depth."""
+AT_REST = (0.0, 0.0, DEPTH_M, 0.0, 0.0, 0.0)
+
+
+def commanded(vehicle: Vehicle, speed_rpm: Array, name: str, pose: tuple[float, ...] = AT_REST) -> Run:
+    """A run whose thrusters turn as ``speed_rpm`` (n, k) says at 10 Hz, started at rest at a ``pose`` (x y z phi theta psi; m, rad)."""
     n = len(speed_rpm)
     values = {f"n:{thruster}": speed_rpm[:, j] * RPM for j, thruster in enumerate(vehicle.thrusters)}
     start = np.full(n, np.nan)
     start[0] = 0.0
     values |= dict.fromkeys((*VELOCITIES, *POSE), start)
-    values["z"] = start + DEPTH_M
+    values |= {channel: start + value for channel, value in zip(POSE, pose, strict=True)}
     reasons = {c: np.where(np.isfinite(v), Reason.OK, Reason.NOT_LOGGED).astype(np.uint8) for c, v in values.items()}
     clock = ClockReport("row", n, n, 1.0 / RATE_HZ, None, None, "commanded, not recorded")
     return Run(
@@ -39,6 +42,17 @@ def commanded(vehicle: Vehicle, speed_rpm: Array, name: str) -> Run:
     )
 
 
-def swim(vehicle: Vehicle, speed_rpm: Array, model: str, name: str) -> SimResult:
-    """The simulator's motion under these speeds."""
-    return simulate(commanded(vehicle, speed_rpm, name), vehicle, model)
+def swim(vehicle: Vehicle, speed_rpm: Array, model: str, name: str, pose: tuple[float, ...] = AT_REST) -> SimResult:
+    """The simulator's motion under these speeds from rest at a ``pose``."""
+    return simulate(commanded(vehicle, speed_rpm, name, pose), vehicle, model)
+
+
+def unmeasured(sim: SimResult) -> Run:
+    """A run as long as a simulation in which nothing was measured: what a recording of the motion alone stands on."""
+    n = len(sim.free.ok)
+    reasons = np.full(n, Reason.NOT_LOGGED, dtype=np.uint8)
+    return Run(
+        id=f"{sim.run_id}-{sim.model}", source="scenario", sha256="", profile="", vehicle=sim.vehicle, t0_ns=None, dt=sim.dt,
+        values={"x": np.full(n, np.nan)}, reasons={"x": reasons}, resampled={},
+        clock=ClockReport("row", n, n, sim.dt, None, None, "commanded, not recorded"), properties={},
+    )  # fmt: skip

@@ -11,7 +11,7 @@ from rovval.plant.codegen.kernel.matrix import product, symmetric_product
 from rovval.plant.codegen.kernel.state import attitude, over_ground, rates, rotation, through_water, velocity
 
 from rovval.plant.codegen.kernel.symbols import (  # isort: skip
-    ADDED, BEFORE, FILTERED, FULL, MASS, SETTLING, SHARE, STATE, Array, Lanes, W, unrolled,
+    ADDED, BEFORE, FILTERED, FULL, MASS, SETTLING, SHARE, STATE, Array, Lanes, W, compiled_function, unrolled,
 )  # fmt: skip
 
 
@@ -50,6 +50,7 @@ def explicit_step(m: Array, tv: Array, h: float, inverse_h: float) -> None:
             m[(STATE + 13 + c) * W + j] = new[c]
 
 
+@compiled_function
 def settle(m: Array, tv: Array) -> None:
     """One step of the filter towards the acceleration that body and added mass have together under the forces at hand."""
     for j in range(W):

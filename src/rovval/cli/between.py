@@ -1,0 +1,74 @@
+"""`rovval compare --between A B`: two platforms on one log or protocol, two simulations, or two runs, beside each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rovval.cli import complete, logs, output
+from rovval.core.errors import UsageProblem
+
+if TYPE_CHECKING:
+    from rovval.comparison.between import Track
+    from rovval.core.data import Run
+    from rovval.vehicle.model import Vehicle
+
+PROTOCOL = "the movement protocol (thesis, table 4.6)"
+
+
+def difference(
+    names: tuple[str, str], source: str | None, vehicle: str | None, effects: Sequence[str], profile: str | None,
+    between: tuple[float | None, float | None], archive: Path, out: Path | None, as_json: bool, quiet: bool,
+) -> None:  # fmt: skip
+    """B minus A on stdout; difference.json and difference.md into ``out``, where it is given."""
+    from rovval.comparison.between import between as subtract
+    from rovval.report import between as report
+    from rovval.report.common.files import write_all
+
+    platforms = [name for name in names if name in complete.known("platform")]
+    if not platforms and source is not None:
+        raise UsageProblem(f"{source}: two files need no log", f"leave it out, or give platforms: {', '.join(complete.known('platform'))}")
+    driven: tuple[Run, Vehicle] | None = _driven(source, vehicle, profile, archive, quiet, between) if platforms else None
+    a, b = (_track(name, driven, effects, profile, archive, quiet) for name in names)
+    result = subtract(a, b)
+    what = "as recorded in the files" if driven is None else f"{driven[1].name}, {driven[0].source or PROTOCOL}"
+    if out is not None:
+        import json
+
+        files = {"difference.json": json.dumps(report.document(result, what), indent=2, allow_nan=False) + "\n", "difference.md": report.markdown(result, what)}
+        output.say(output.places(write_all(out, files)), quiet)
+    output.result_json(report.document(result, what)) if as_json else output.result(report.text(result, what))
+
+
+def _driven(
+    source: str | None, vehicle: str | None, profile: str | None, archive: Path, quiet: bool, between: tuple[float | None, float | None]
+) -> tuple[Run, Vehicle]:
+    """The run that drives platforms, and whose vehicle: a log's, or the movement protocol of any vehicle."""
+    from dataclasses import replace
+
+    from rovval import vehicle as vehicles
+    from rovval.pipeline.steps import vehicle_of
+
+    if source is not None:
+        run = logs.opened(source, profile, archive, quiet, *between)
+        return run, vehicle_of(run, vehicle)
+    from rovval.fly.scenarios.movements import protocol
+    from rovval.fly.scenarios.still_water import commanded
+
+    loaded = vehicles.load(vehicle or "merlin")
+    return replace(commanded(loaded, protocol(loaded), "movement-protocol"), source=""), loaded
+
+
+def _track(name: str, driven: tuple[Run, Vehicle] | None, effects: Sequence[str], profile: str | None, archive: Path, quiet: bool) -> Track:
+    """The motion that a name stands for: of a platform, of a simulation's file, or of a run."""
+    from rovval.comparison.between import of_run, of_simulation
+    from rovval.simulation.file import load_simulation
+
+    if driven is not None and name in complete.known("platform"):
+        from rovval.simulation import simulate
+
+        return of_simulation(simulate(*driven, name, effects), name)
+    if name.endswith(".parquet") and Path(name).is_file():
+        return of_simulation(load_simulation(Path(name)), Path(name).stem)
+    return of_run(logs.opened(name, profile, archive, quiet), name)
