@@ -62,7 +62,7 @@ def test_a_document_follows_the_thesis_figure_by_figure(tmp_path):
     run("scenario", "2", "--out", str(tmp_path / "two"), "--model", "fossen")
     page = (tmp_path / "two" / "scenarios.html").read_text()
     places = [page.index(f">Figure 5.{n}:") for n in range(6, 13)]
-    assert places == sorted(places) and page.count("<svg") == 12
+    assert places == sorted(places) and page.count("<svg") == 11
     text = (tmp_path / "two" / "scenarios.md").read_text()
     assert "| VFP | 82.7 | 80.5 | -2.7 % |" in text and "Circular" in text
     assert (tmp_path / "two" / "scenario-2-fossen.rrd").stat().st_size > 1000

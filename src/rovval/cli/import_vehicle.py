@@ -1,4 +1,4 @@
-"""`rovval import-vehicle`: a vehicle of uuv_simulator or Plankton as a vehicle file of ours."""
+"""`rovval import-vehicle`: a vehicle of uuv_simulator or Plankton, or of the thesis's Simulink project, as a vehicle file of ours."""
 
 from __future__ import annotations
 
@@ -18,8 +18,9 @@ def command(
     files: Annotated[
         list[Path],
         typer.Argument(
-            metavar="FILE.yaml...",
-            help="YAML of the model, of the allocation matrix (TAM) and of the thruster manager; one file or several.",
+            metavar="FILE.yaml...|FOLDER",
+            help="YAML of the model, of the allocation matrix (TAM) and of the thruster manager, one file or several; or the folder of "
+            "text matrices (M_RB.txt, T.txt, K_T.txt ...) of the thesis's Simulink project.",
             autocompletion=complete.yaml_files,
         ),
     ],
@@ -29,7 +30,8 @@ def command(
     json_: options.JsonFlag = False,
     quiet: options.QuietOption = False,
 ) -> None:
-    """Read a vehicle from the YAML of uuv_simulator or Plankton and write it as TOML, in rovval's axes and signs, audited.
+    """Read a vehicle from the YAML of uuv_simulator or Plankton, or from the thesis's folder of text matrices, and write it as TOML,
+    in rovval's axes and signs, audited.
 
     Forward-left-up becomes forward-starboard-down, negative damping positive, the thrusters' gain N per rpm^2. Nothing is
     written unless every number is there and can be a vehicle's.
@@ -37,16 +39,19 @@ def command(
     \b
     Example:
       rovval import-vehicle rexrov.yaml TAM.yaml thruster_manager.yaml --out rexrov.toml
+      rovval import-vehicle preprocessing/minerva --out minerva.toml
       rovval show vehicle rexrov.toml
     """
     from rovval.storage.atomic import write_text
-    from rovval.vehicle import parse, uuv_yaml
+    from rovval.vehicle import parse, text_matrices, uuv_yaml
 
     if out.suffix != ".toml":
         raise UsageProblem(f"--out {out}: a vehicle file ends in .toml", f"write --out {out.with_suffix('.toml')}")
     if out.exists() and not overwrite:
         raise UsageProblem(f"--out {out}: is there already", "name another file, or add --overwrite")
-    text = uuv_yaml.as_toml(files, name or out.stem)
+    if len(files) > 1 and any(file.is_dir() for file in files):
+        raise UsageProblem("a folder of text matrices is a vehicle by itself", "give it alone")
+    text = text_matrices.as_toml(files[0], name or out.stem) if files[0].is_dir() else uuv_yaml.as_toml(files, name or out.stem)
     vehicle = parse(text, " + ".join(map(str, files)))
     write_text(out, text)
     document = _document(vehicle, out)

@@ -29,7 +29,7 @@ def engine_step(run: Run, x: Array, stage: Mapping[str, Array], h: float) -> Arr
     assert engine is not None
     force, nu_r, _ = forces(run, x, stage)
     if run.before is None:
-        run.filtered = np.linalg.solve(run.mass + run.lanes.added_mass, force[..., None])[..., 0]
+        run.filtered = np.asarray(np.linalg.solve(run.mass + run.lanes.added_mass, force[..., None])[..., 0], dtype=np.float64)
     else:
         run.filtered = (1.0 - engine.share) * run.filtered + engine.share * (nu_r - run.before) / h
     run.before = nu_r

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -61,16 +62,20 @@ def write(outcomes: Outcomes, vehicle: Vehicle, folder: Path, document: Mapping[
     """scenarios.html, scenarios.md and scenarios.json into ``folder``, and a recording of each motion; name -> path."""
     import json
 
-    from rovval.report.recording import write as recording
-
     files: dict[str, str | Writer] = {
         "scenarios.html": html(outcomes, vehicle), "scenarios.md": markdown(outcomes, vehicle),
         "scenarios.json": json.dumps(document, indent=2, allow_nan=False) + "\n",
     }  # fmt: skip
     for (scenario, model), outcome in outcomes.items():
         if (comparison := recorded(outcome)) is not None:
-            files[f"scenario-{scenario}-{model}.rrd"] = lambda path, c=comparison: recording.write(c, path, vehicle)
+            files[f"scenario-{scenario}-{model}.rrd"] = partial(_record, comparison, vehicle)
     return write_all(folder, files)
+
+
+def _record(comparison: Comparison, vehicle: Vehicle, path: Path) -> None:
+    from rovval.report.recording import write as recording
+
+    recording.write(comparison, path, vehicle)
 
 
 def recorded(outcome: Outcome) -> Comparison | None:
