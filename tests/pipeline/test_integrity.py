@@ -14,6 +14,7 @@ from rovval.storage.archive import load_run, run_ids
 
 def archive(site, action, *args):
     done = CliRunner().invoke(app, ["archive", action, "--archive", str(site / "archive"), "--reports", str(site / "reports"), *args])
+    assert done.exception is None or isinstance(done.exception, SystemExit), done.exception
     return done.exit_code, done.stdout
 
 

@@ -102,7 +102,7 @@ def _made_anew(fault: Fault) -> Run | None:
     """The run of a damaged folder, from the log that its manifest names; None where the log is gone or another by now."""
     from rovval.storage.archive import manifest, open_run
 
-    facts = manifest(fault.place)
+    facts = manifest(fault.place) if fault.place.is_dir() else None
     if facts is None or not Path(facts["source"]).exists() or sha256(Path(facts["source"])) != facts["sha256"]:
         return None
     try:
