@@ -39,7 +39,9 @@ class Reason(IntEnum):
 
 
 def frozen_array(values: Any, dtype: Any = np.float64) -> NDArray[Any]:
-    """A read-only copy (a frozen dataclass alone does not freeze its arrays)."""
+    """A read-only copy (a frozen dataclass alone does not freeze its arrays); an array that nobody can write to any more as it is."""
+    if isinstance(values, np.ndarray) and values.dtype == dtype and values.flags.owndata and not values.flags.writeable:
+        return values
     copy = np.array(values, dtype=dtype)
     copy.setflags(write=False)
     return copy

@@ -56,7 +56,8 @@ def build(
         elif name == ATTITUDE:
             series |= _attitude(profile, signal, present)
         else:
-            series[name] = Series(signal.t[present], _si(signal.values[present], signal.source), signal.stamp)
+            t, values = (signal.t, signal.values) if present.all() else (signal.t[present], signal.values[present])
+            series[name] = Series(t, _si(values, signal.source), signal.stamp)
     series, said = signed_by_command(profile, series)
     series, spikes = without_spikes(series)
     found += [*said, *spikes]
@@ -84,7 +85,11 @@ def _in_order(profile: Profile, series: Mapping[str, Series]) -> list[str]:
 
 def _si(raw: Array, source: Source) -> Array:
     factor = source.sign / source.span * to_si(source.unit)
-    return np.asarray((raw - source.zero if source.zero else raw) * factor)
+    if factor == 1.0 and not source.zero:
+        return raw
+    values = np.asarray((raw - source.zero if source.zero else raw) * factor)
+    values.setflags(write=False)  # nobody else holds it: no copy is made of it
+    return values
 
 
 def _attitude(profile: Profile, signal: Signal, present: Flags) -> dict[str, Series]:
@@ -185,9 +190,10 @@ def _angles(name: str, series: Series, found: list[Finding]) -> Series:
     step, over = np.abs(wrap(np.diff(values))), np.abs(wrap(values[2:] - values[:-2]))
     spike = np.concatenate(([False], (step[:-1] > SPIKE_RAD) & (step[1:] > SPIKE_RAD) & (over < SPIKE_RAD / 3), [False]))
     spike = spike[: len(values)] & (np.abs(values) <= np.pi)
-    if spike.any():
-        detail = f"{spike.sum()} single samples far from both neighbours, from t = {series.t[spike][0]:.1f} s; dropped"
-        found.append(Finding("angle_spike", name, detail))
+    if not spike.any():
+        return Series(series.t, values, series.stamp) if beyond.any() else series
+    detail = f"{spike.sum()} single samples far from both neighbours, from t = {series.t[spike][0]:.1f} s; dropped"
+    found.append(Finding("angle_spike", name, detail))
     return Series(series.t[~spike], values[~spike], series.stamp)
 
 

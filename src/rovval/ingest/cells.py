@@ -9,57 +9,25 @@ import numpy as np
 import polars as pl
 
 from rovval.core.data import Array
-from rovval.core.errors import BadInput, Finding, all_at_once
-from rovval.ingest.text_table import Table, cells, first_few
+from rovval.ingest.text_table import cells
 
 BLANK = ("", "nan", "-", "--", "null", "none", "n/a", "na", "#n/a", "-nan", "nan(ind)", "-nan(ind)")
 LONGEST_EXAMPLE = 40  # characters of a cell that a message shows
 DECIMAL_COMMA = r"^[+-]?\d+,\d*([eE][+-]?\d+)?$"
 
 
-def frame(table: Table, columns: Mapping[str, int]) -> pl.DataFrame:
-    """The wanted columns (name -> position in the header) as text, stripped."""
-    text = "\n".join(table.rows).encode()
-    names = [f"c{i}" for i in range(len(table.header))]
+def cells_of(text: bytes, rows: int, separator: str, width: int, columns: Mapping[str, int]) -> pl.DataFrame:
+    """The wanted columns (name -> position) of ``rows`` lines of ``width`` cells as text, stripped."""
+    names = [f"c{i}" for i in range(width)]
     quote = '"' if b'"' in text else None
     try:
-        wide = pl.read_csv(
-            io.BytesIO(text), has_header=False, infer_schema=False, separator=table.separator, quote_char=quote, new_columns=names
-        )
+        wide = pl.read_csv(io.BytesIO(text), has_header=False, infer_schema=False, separator=separator, quote_char=quote, new_columns=names)
     except pl.exceptions.PolarsError:
         wide = pl.DataFrame()
-    if wide.shape != (len(table.rows), len(names)):  # a stray quote makes rows run together: take them one by one
-        apart = [cells(row, table.separator) for row in table.rows]
+    if wide.shape != (rows, width):  # a stray quote makes rows run together: take them one by one
+        apart = [cells(row, separator) for row in text.decode().split("\n")[:-1]]
         wide = pl.DataFrame({n: [row[i] if i < len(row) else None for row in apart] for i, n in enumerate(names)}, schema=dict.fromkeys(names, pl.String))
     return wide.select(pl.col(f"c{at}").str.strip_chars().alias(name) for name, at in columns.items())
-
-
-def numbers(text: pl.DataFrame, table: Table, path: str) -> tuple[dict[str, Array], tuple[Finding, ...]]:
-    """Every column as float with NaN where a cell is blank or not a number, and what was found of either.
-
-    Raises `BadInput` naming every column of which more than half of the written cells are not numbers.
-    """
-    values, findings, hopeless = {}, [], []
-    lines = np.array(table.lines)
-    for column in text.iter_columns():
-        name = column.name
-        blank = (column.is_null() | column.str.to_lowercase().is_in(BLANK)).to_numpy()
-        value = _cast(column)
-        bad = ~blank & ~np.isfinite(value)
-        value[blank | bad] = np.nan
-        values[name] = value
-        if blank.any():
-            findings.append(Finding("blank_cell", name, f"{blank.sum()} cells are blank, from line {lines[blank][0]}; taken as missing"))
-        if bad.any():
-            examples = ", ".join(_shown(c) for c in column.filter(pl.Series(bad))[:3])
-            where = first_few(lines[bad].tolist())
-            findings.append(Finding("not_a_number", name, f"{bad.sum()} cells are not numbers ({examples}; {where}); dropped"))
-            if bad.sum() > 0.5 * (~blank).sum():
-                hopeless.append(f"column {name!r}: {bad.sum()} of {(~blank).sum()} cells are not numbers, such as {examples} ({where})")
-    if hopeless:
-        hint = "are separator and decimal sign mixed, or is this another column than the profile means?"
-        raise BadInput(all_at_once(hopeless, f"{path}: unreadable"), hint)
-    return values, tuple(findings)
 
 
 def numbers_and_texts(text: pl.DataFrame) -> tuple[dict[str, Array], dict[str, list[str]]]:
@@ -77,7 +45,7 @@ def numbers_and_texts(text: pl.DataFrame) -> tuple[dict[str, Array], dict[str, l
     return values, texts
 
 
-def _shown(cell: str) -> str:
+def shown(cell: str) -> str:
     """A cell as a message quotes it: its beginning, and how long it is, where a damaged row made it endless."""
     return repr(cell) if len(cell) <= LONGEST_EXAMPLE else f"{cell[:LONGEST_EXAMPLE]!r}... of {len(cell)} characters"
 

@@ -1,11 +1,10 @@
-"""A table of text as it comes out of real exports: find its encoding, its header and its separator; keep the whole rows."""
+"""A table of text as it comes out of real exports: its encoding, its header and its separator."""
 
 from __future__ import annotations
 
 import csv
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from rovval.core.errors import BadInput, Finding
@@ -15,17 +14,6 @@ SEPARATORS = (",", ";", "\t", "|")
 HEADER_WITHIN = 200  # lines of banner above the header that are looked through
 ELEMENT = re.compile(r"\S\[\d+\]$")  # of an array; "throttle [1]" is a unit
 HEAD = 65536  # bytes by which text is told from binary content
-
-
-@dataclass(frozen=True, slots=True)
-class Table:
-    """``header`` as written, ``rows`` the data lines that hold as many cells as it, ``lines`` their numbers in the file from 1."""
-
-    header: tuple[str, ...]
-    separator: str
-    rows: list[str]
-    lines: list[int]
-    findings: tuple[Finding, ...]
 
 
 def decode(path: Path, most: int = -1) -> tuple[str, tuple[Finding, ...]]:
@@ -106,44 +94,11 @@ def cells(line: str, separator: str) -> list[str]:
     return [c.strip() for c in line.split(separator)]
 
 
-def split(text: str, wanted: Sequence[str]) -> Table | None:
-    """The table below the line that fits most of the ``wanted`` column patterns; None where no line fits any."""
+def header_place(text: str, wanted: Sequence[str]) -> tuple[tuple[str, ...], int, str] | None:
+    """Cells of the line that fits most of the ``wanted`` column patterns, its number from 0, and the separator; None where no line fits any."""
     lines = re.split(r"\r\n|\n|\r", text)
     place = _header(lines[:HEADER_WITHIN], wanted)
-    if place is None:
-        return None
-    at, separator = place
-    header = tuple(cells(lines[at], separator))
-    width = len(header)
-    rows: list[str] = []
-    numbers: list[int] = []
-    short: list[int] = []
-    long: list[int] = []
-    again: list[int] = []
-    seen: set[str] = set()
-    for number, line in enumerate(lines[at + 1 :], at + 2):
-        if not line.strip() or line.startswith("#") or line == lines[at]:
-            continue
-        count = line.count(separator) + 1 if '"' not in line else len(cells(line, separator))
-        if count > width and line.endswith(separator):
-            line, count = line[: -(count - width)] if line.endswith(separator * (count - width)) else line, width
-        if line in seen:
-            again.append(number)
-        elif count == width:
-            seen.add(line)
-            rows.append(line)
-            numbers.append(number)
-        else:
-            (short if count < width else long).append(number)
-    cut = [n for n in short if numbers and n > numbers[-1] and n == len(lines)]
-    whole = [n for n in short if n not in cut] + long
-    findings = [Finding("cut_line", f"line {cut[0]}", "the last line is cut; dropped")] if cut else []
-    if again:
-        detail = f"{len(again)} rows repeat an earlier one to the letter, stamp included; dropped"
-        findings.append(Finding("repeated_row", first_few(again), detail))
-    if whole:
-        findings.append(Finding("ragged_row", first_few(whole), f"{len(whole)} rows have not the header's {width} cells; dropped"))
-    return Table(header, separator, rows, numbers, tuple(findings))
+    return None if place is None else (tuple(cells(lines[place[0]], place[1])), *place)
 
 
 def _header(lines: Sequence[str], wanted: Sequence[str]) -> tuple[int, str] | None:
@@ -163,7 +118,7 @@ def _header(lines: Sequence[str], wanted: Sequence[str]) -> tuple[int, str] | No
     return place
 
 
-def first_few(numbers: Sequence[int], what: str = "line") -> str:
-    """The first few of many line numbers: ``lines 7, 9, 12, ...``."""
-    shown = ", ".join(str(n) for n in numbers[:5])
-    return f"{what}{'s' if len(numbers) > 1 else ''} {shown}{', ...' if len(numbers) > 5 else ''}"
+def first_few(numbers: Sequence[int], what: str = "line", more: int = 0) -> str:
+    """The first few of many line numbers: ``lines 7, 9, 12, ...``; of ``more`` lines where ``numbers`` are only the first of them."""
+    count = max(more, len(numbers))
+    return f"{what}{'s' if count > 1 else ''} {', '.join(str(n) for n in numbers[:5])}{', ...' if count > 5 else ''}"
