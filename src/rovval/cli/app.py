@@ -16,6 +16,7 @@ from rovval.cli import (
     fit,
     import_vehicle,
     ingest,
+    inspect,
     listing,
     run,
     scenario,
@@ -54,6 +55,7 @@ def options(
 
 COMMANDS = (
     ("demo", demo.command, "The whole job on an embedded sample log."),
+    ("inspect", inspect.command, "What is in a log, and which profiles would read it."),
     ("ingest", ingest.command, "Logs into the archive."),
     ("simulate", simulate.command, "Drive the simulator with a log's thruster speeds."),
     ("compare", compare.command, "Per-axis error of the simulator, and the report."),

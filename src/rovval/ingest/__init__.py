@@ -23,7 +23,7 @@ from rovval.ingest.files import refuse_unusable
 from rovval.ingest.inspection.block import Block
 from rovval.ingest.profile import Profile, load_profile, profiles
 
-__all__ = ["Profile", "Reader", "load_profile", "profiles", "read", "reader", "readers"]
+__all__ = ["Profile", "Reader", "formats_of", "load_profile", "profiles", "read", "reader", "readers"]
 
 
 class Reader(Protocol):
@@ -63,6 +63,14 @@ def reader(name: str) -> Reader:
     return cast(Reader, importlib.import_module(f"{formats.__name__}.{name}"))
 
 
+def formats_of(path: Path) -> tuple[str, ...]:
+    """The formats that a file may be of, by its name and first bytes. Raises `BadInput` for one of no known format."""
+    able = tuple(name for name in readers() if _able(name, path))
+    if not able:
+        raise _of_no_format(path)
+    return able
+
+
 def read(path: Path, profile: str | None = None, timezone: str | None = None) -> RawLog:
     """The log of ``path`` in SI, forward-starboard-down and north-east-down, each channel at its own stamps.
 
@@ -82,9 +90,7 @@ def read(path: Path, profile: str | None = None, timezone: str | None = None) ->
 
 
 def _the_one_that_fits(path: Path) -> Profile:
-    able = [name for name in readers() if _able(name, path)]
-    if not able:
-        raise _of_no_format(path)
+    able = formats_of(path)
     fits, near = [], []
     for candidate in (load_profile(name) for name in profiles()):
         if not (readers_of_it := _of_profile(candidate, able)):

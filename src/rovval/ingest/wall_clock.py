@@ -53,11 +53,12 @@ def nanoseconds(stamps: pl.Series, order: str | None, timezone: str) -> pl.Serie
 
 def date_orders(stamps: pl.Series) -> tuple[str, ...]:
     """The orders of year, month and day that stamps may be written in: one where they say it themselves or where a day above 12 shows it."""
-    known = stamps.str.replace(COMPACT, "$1-$2-$3 $4:$5:$6").str.extract_groups(STAMP).struct.unnest().drop_nulls("h")
+    parts = stamps.str.replace(COMPACT, "$1-$2-$3 $4:$5:$6").str.extract_groups(STAMP).struct.unnest()
+    known = parts.drop_nulls("h")
     if not len(known):
         return ()
     try:
-        return (_order(known, ""),)
+        return (_order(known, str(stamps.filter(parts["h"].is_not_null())[0])),)
     except BadInput:
         day_first, month_first = (bool((known[c].cast(pl.Int64, strict=False) > 12).any()) for c in "ab")
         return ("dmy",) if day_first else ("mdy",) if month_first else ("dmy", "mdy")

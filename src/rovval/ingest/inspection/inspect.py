@@ -1,0 +1,59 @@
+"""What is in a log, and which profiles would read it: reader -> blocks -> summary -> stamps and matches."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from rovval import ingest
+from rovval.core.errors import BadInput, Finding
+from rovval.ingest.files import refuse_unusable
+from rovval.ingest.inspection.matches import Match, match
+from rovval.ingest.inspection.stamps_of_table import Stamps, readings
+from rovval.ingest.inspection.summary import Contents, summarised
+
+__all__ = ["Inspection", "inspect"]
+
+
+@dataclass(frozen=True, slots=True)
+class Inspection:
+    """What is in a log. ``stamps``: of a table, every reading of columns as its stamps, best first. ``matches``: each built-in profile of the
+    format, those that find most first; ``lacking``: its name -> what it requires and the log has not, () where it reads the log as it is."""
+
+    path: Path
+    format: str
+    contents: Contents
+    stamps: tuple[Stamps, ...]
+    matches: tuple[Match, ...]
+    lacking: Mapping[str, tuple[str, ...]]
+
+    @property
+    def fits(self) -> tuple[str, ...]:
+        """Profiles that read the log as it is."""
+        return tuple(m.profile for m in self.matches if not self.lacking[m.profile])
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """Damage met while reading."""
+        return self.contents.findings
+
+
+def inspect(path: Path) -> Inspection:
+    """Everything that the log holds, by the reader whose format it is. Raises `BadInput` for a file that no reader reads."""
+    path = Path(path)
+    refuse_unusable(path)
+    refused: list[BadInput] = []
+    for name in ingest.formats_of(path):
+        try:
+            contents = summarised(ingest.reader(name).contents(path))
+        except BadInput as error:
+            refused.append(error)
+            continue
+        profiles = [ingest.load_profile(p) for p in ingest.profiles()]
+        mine = [p for p in profiles if p.format == name]
+        matches = sorted((match(p, contents) for p in mine), key=lambda m: (len(m.gone), -len(m.found)))
+        lacking = {p.name: ingest.reader(name).missing(path, p) for p in mine}
+        table = contents.topics.get("")
+        return Inspection(path, name, contents, tuple(readings(table)) if table else (), tuple(matches), lacking)
+    raise refused[0]
