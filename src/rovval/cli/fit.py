@@ -8,11 +8,14 @@ from typing import Annotated
 import typer
 
 from rovval.cli import logs, options, output
+from rovval.core.errors import UsageProblem
 
 
 def command(
     sources: options.Sources,
-    out: Annotated[Path, typer.Option("--out", metavar="VEHICLE.toml", help="Where the fitted vehicle is written.")],
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="VEHICLE.toml", help="Where the fitted vehicle is written; of a bench's table, the result as JSON.")
+    ] = None,
     parameters: Annotated[
         list[str] | None,
         typer.Option(
@@ -20,6 +23,15 @@ def command(
             help="Tune these alone, such as quadratic_drag[surge]; repeatable. Default: all that a file may have wrong.",
         ),
     ] = None,
+    motor: Annotated[
+        bool, typer.Option("--motor", help="Fit equation 2.4 of the thesis to a bench's table of voltage and thrust (V, N) instead.")
+    ] = False,
+    response: Annotated[
+        bool, typer.Option("--response", help="Fit a thruster's time constant to a bench's record of steps (s, any unit) instead.")
+    ] = False,
+    columns: Annotated[
+        str, typer.Option("--columns", metavar="I,J", help="Columns of the bench's table, counted from 1.")
+    ] = "1,2",
     vehicle: options.VehicleOption = None,
     model: options.ModelOption = options.Model.fossen,
     window: options.WindowOption = 10.0,
@@ -39,7 +51,16 @@ def command(
     Example:
       rovval fit dive1.csv dive2.csv --out calibrated.toml
       rovval fit dive.csv --parameters quadratic_drag[surge],quadratic_drag[sway] --out tuned.toml
+      rovval fit bench.csv --motor --columns 1,2
+      rovval fit step.csv --response --columns 2,21
     """
+    if motor or response:
+        from rovval.cli.bench import fitted
+
+        fitted(sources, motor, response, columns, out, json_, quiet)
+        return
+    if out is None:
+        raise UsageProblem("fit needs --out VEHICLE.toml", "name the file that the fitted vehicle is written to")
     from rovval.pipeline.steps import vehicle_of
     from rovval.report.fit import text
     from rovval.storage.atomic import refuse_unwritable, write_text
