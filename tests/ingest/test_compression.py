@@ -84,7 +84,7 @@ def test_binary_content_is_refused(tmp_path, name, content):
 
 def test_another_compressed_log_is_refused_with_what_to_do(tmp_path):
     (tmp_path / "dive.bag.gz").write_bytes(gzip.compress(b"#ROSBAG V2.0\n"))
-    with pytest.raises(BadInput, match="only tables of text") as refusal:
+    with pytest.raises(BadInput, match="only logs of text") as refusal:
         read(tmp_path / "dive.bag.gz")
     assert "unpack" in refusal.value.hint
 

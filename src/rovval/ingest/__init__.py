@@ -24,6 +24,7 @@ from rovval.ingest.inspection.block import Block
 from rovval.ingest.profile import Profile, load_profile, profiles
 
 __all__ = ["Profile", "Reader", "formats_of", "load_profile", "profiles", "read", "reader", "readers"]
+OF_TEXT = ("csv_log", "json_lines", "nmea")  # readers of text: they read it compressed, too
 
 
 class Reader(Protocol):
@@ -123,8 +124,8 @@ def _of_no_format(path: Path) -> BadInput:
     if path.is_dir():
         hint = f"give one of the logs in it, or put all of them into the archive: `rovval ingest {path}`"
         return BadInput(f"{path}: of no known format: a folder that holds no bag", hint)
-    if (packed := is_compressed(path)) and compression.suffix(path) not in reader("csv_log").SUFFIXES:
-        return BadInput(f"{path}: of no known format: compressed, and only tables of text are read so", "unpack it first")
+    if (packed := is_compressed(path)) and not any(compression.suffix(path) in reader(name).SUFFIXES for name in OF_TEXT):
+        return BadInput(f"{path}: of no known format: compressed, and only logs of text are read so", "unpack it first")
     if packed or path.suffix.lower() in known:
         said = f"its name ends in {path.suffix}, and it does not begin as such a file does"
         return BadInput(f"{path}: of no known format: {said}", "is the file whole, and is it what its name says?")

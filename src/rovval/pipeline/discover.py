@@ -14,7 +14,7 @@ from rovval.ingest.compression import suffix
 
 SUFFIXES = (
     ".csv", ".tsv", ".txt", ".xlsx", ".xls", ".xlsm", ".xlsb", ".ods", ".parquet", ".pq", ".mat", ".h5", ".hdf5", ".hdf", ".he5",
-    ".bag", ".db3", ".mcap", ".bin", ".tlog", ".ulg", ".ulog",
+    ".bag", ".db3", ".mcap", ".bin", ".tlog", ".ulg", ".ulog", ".jsonl", ".ndjson", ".nmea",
 )  # fmt: skip
 WILD = "*?["
 
