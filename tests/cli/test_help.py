@@ -11,7 +11,7 @@ from rovval.cli import complete
 from rovval.cli.app import COMMANDS, app
 
 CONTRACT = {"demo", "ingest", "simulate", "compare", "diagnose", "fit", "scenario", "run", "view", "list", "show", "blind", "import-vehicle"}
-CONTRACT |= {"trend", "archive", "inspect"}
+CONTRACT |= {"trend", "archive", "inspect", "profile"}
 NAMES = [name for name, _, _ in COMMANDS]
 HEAVY = ("numpy", "polars", "numba", "scipy", "rerun", "pydantic", "rosbags", "mcap", "rich")
 RUNNER = CliRunner()
@@ -27,7 +27,7 @@ def rovval(*args: str, **environment: str) -> subprocess.CompletedProcess[str]:
 def test_every_command_of_the_contract_is_listed():
     shown = RUNNER.invoke(app, ["--help"])
     assert shown.exit_code == 0
-    assert set(NAMES) | {"blind"} == CONTRACT
+    assert set(NAMES) | {"blind", "profile"} == CONTRACT
     for name in CONTRACT:
         assert f"\n  {name} " in shown.output
 

@@ -18,6 +18,7 @@ from rovval.cli import (
     ingest,
     inspect,
     listing,
+    profile,
     run,
     scenario,
     simulate,
@@ -73,3 +74,4 @@ COMMANDS = (
 for _name, _command, _help in COMMANDS:
     app.command(_name, short_help=_help)(_command)
 app.add_typer(blind.app, name="blind", short_help="The withheld-effect check.")
+app.add_typer(profile.app, name="profile", short_help="A profile for a new log: propose one, check one.")

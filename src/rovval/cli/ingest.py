@@ -19,6 +19,7 @@ def command(
         ),
     ],
     profile: options.ProfileOption = None,
+    timezone: options.TimezoneOption = None,
     archive: options.ArchiveOption = Path("archive"),
     json_: options.JsonFlag = False,
     quiet: options.QuietOption = False,
@@ -42,7 +43,7 @@ def command(
     for number, log in enumerate(files):
         show(f"ingest {log.name}", number / len(files))
         try:
-            run = open_run(str(log), profile, archive)
+            run = open_run(str(log), profile, archive, timezone)
             save_run(run, archive)
         except RovvalError as error:
             worst = max(worst, error.exit_code)

@@ -45,6 +45,14 @@ ProfileOption = Annotated[
         help="How to read the log: a name of `rovval list profile` or a TOML file. Default: the profile that fits the log.",
     ),
 ]
+TimezoneOption = Annotated[
+    str | None,
+    typer.Option(
+        "--timezone",
+        metavar="ZONE",
+        help="Of stamps that are date and time without a zone of their own: Europe/Berlin, +02:00. Default: the profile's, else UTC.",
+    ),
+]
 VehicleOption = Annotated[
     str | None,
     typer.Option(

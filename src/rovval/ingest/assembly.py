@@ -45,6 +45,9 @@ def build(
 ) -> RawLog:
     """The log out of its signals (channel name -> signal). Raises `BadInput` when no signal holds a value."""
     found = list(findings)
+    if profile.draft:
+        detail = "its units, frames and channels are guesses that nobody has reviewed: confirm them and delete the line `draft`"
+        found.insert(0, Finding("draft_profile", profile.name, detail))
     facts = {"profile_sha256": profile.sha256, **properties}
     series: dict[str, Series] = {}
     for name, signal in signals.items():

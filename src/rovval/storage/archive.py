@@ -32,8 +32,8 @@ REASON = "reason:"
 ARCHIVE = Path("archive")
 
 
-def open_run(source: str | Path, profile: str | None = None, archive: Path = ARCHIVE) -> Run:
-    """A log file (ingested on the fly), a run's folder, or the id of a run in ``archive`` -> the run.
+def open_run(source: str | Path, profile: str | None = None, archive: Path = ARCHIVE, timezone: str | None = None) -> Run:
+    """A log file (ingested on the fly), a run's folder, or the id of a run in ``archive`` -> the run. ``timezone`` as of `rovval.ingest.read`.
 
     Raises `BadInput` or `UsageProblem` as `read`, `align` and `load` do.
     """
@@ -44,7 +44,7 @@ def open_run(source: str | Path, profile: str | None = None, archive: Path = ARC
         near = ", ".join(run_ids(archive)[:5])
         hint = f"runs in {archive}: {near}" if near else f"check the path; {archive} holds no runs"
         raise BadInput(f"{source}: no such log file, and no such run in {archive}", hint)
-    raw = read(path, profile)
+    raw = read(path, profile, timezone)
     return align(replace(raw, findings=tuple(dict.fromkeys((*raw.findings, *check(raw))))))
 
 

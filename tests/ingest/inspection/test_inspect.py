@@ -7,6 +7,7 @@ import json
 import numpy as np
 import pytest
 from bag_case import START_NS, N, write
+from german_dive import german
 from real_data import real
 from typer.testing import CliRunner
 
@@ -15,16 +16,6 @@ from rovval.cli.app import app
 from rovval.core.errors import BadInput
 from rovval.ingest.inspection.inspect import inspect
 from rovval.report import inspection
-
-GERMAN = "Export der Topside;Tauchgang 7\nDatum;Uhrzeit;Tiefe [m];Kurs [°];Vor [kn];U_BB [1/min];Modus\n"
-
-
-def german(path, rows=60, gap_at=30):
-    late = [0.1 * i + (5.0 if i >= gap_at else 0.0) for i in range(rows)]
-    values = [f"{2.5 + 0.01 * i};{(350 + i) % 360};{0.5 + 0.001 * i};{-1250.5 - i};{'HOLD' if i < 9 else 'DEPTH'}" for i in range(rows)]
-    cells = [f"03.05.2024;14:03:{t:04.1f};{v}" for t, v in zip(late, values, strict=True)]
-    path.write_text((GERMAN + "\n".join(cells) + "\n").replace(".", ",").replace("03,05,2024", "03.05.2024"), encoding="utf-8")
-    return path
 
 
 def test_a_table_with_a_banner_decimal_commas_and_text(tmp_path):

@@ -98,7 +98,7 @@ class Clock(BaseModel):
 
 
 # Keys that came after the first archives: they count for the digest where they are set, so that the ids of runs stay as they were.
-LATER = {"source": ("sign_from", "world"), "time": ("since", "date_order", "timezone"), "profile": ("ardusub_frame",)}
+LATER = {"source": ("sign_from", "world"), "time": ("since", "date_order", "timezone"), "profile": ("ardusub_frame", "draft")}
 
 
 class Profile(BaseModel):
@@ -123,6 +123,8 @@ class Profile(BaseModel):
     """World axes. `ned`: north-east-down (heading clockwise from north). `enu`: east-north-up (yaw counter-clockwise from east). `nwu`:
     north-west-up (counter-clockwise from north). Any body goes with any world; where they do not belong together (fsd with enu), heading and
     quaternion have to state their own."""
+    draft: bool = False
+    """The guesses of `rovval profile propose` that nobody has reviewed yet: every run says so. Delete it once each line is confirmed."""
     relative_heading: bool = False
     """The heading counts from the start while the position is in fixed axes; the constant between them is found from the log and reported."""
     time: Clock
@@ -172,7 +174,7 @@ class Profile(BaseModel):
         unset = {name: {k for k in LATER["source"] if getattr(source, k) is None} for name, source in self.channels.items()}
         words: dict[str, Any] = {"notes": True, "description": True, "channels": {n: keys for n, keys in unset.items() if keys}}
         words["time"] = {k for k in LATER["time"] if getattr(self.time, k) == Clock.model_fields[k].default}
-        words |= {k: True for k in LATER["profile"] if getattr(self, k) is None}
+        words |= {k: True for k in LATER["profile"] if getattr(self, k) == Profile.model_fields[k].default}
         return hashlib.sha256(self.model_dump_json(exclude=words).encode()).hexdigest()
 
 
