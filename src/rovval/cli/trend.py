@@ -28,7 +28,7 @@ def command(
       rovval trend
       rovval trend --archive /data/archive --vehicle merlin --since 2026-01-01 --json
     """
-    from rovval.report import trend as words
+    from rovval.report.common import trend as words
     from rovval.storage import catalogue
     from rovval.trend import trends
 

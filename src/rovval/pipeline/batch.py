@@ -16,9 +16,10 @@ from rovval.pipeline.config import Pipeline
 from rovval.pipeline.plan import Plan, Task, plan
 from rovval.pipeline.processes import execute
 from rovval.pipeline.summary import STOPPED
+from rovval.pipeline.trends import trends
 from rovval.pipeline.worker import Outcome, set_aside, work
 from rovval.report.batch.terminal import reasons
-from rovval.storage.atomic import json_text, sweep, write_over
+from rovval.storage.atomic import json_text, read_json, sweep, write_over
 
 SUMMARY, INDEX = "summary.json", "index.html"
 
@@ -59,11 +60,13 @@ def run(
             stop = problem
         records = [*finished, *todo.done, *todo.kept]
         damaged, unusual, unwritten = _entered(pipeline, records, finished)
+        before = read_json(pipeline.reports / SUMMARY)
         stop, seconds = stop or unwritten, time.monotonic() - began
         document = summary.summarise(
             pipeline.name, finished, todo.done, aside, todo.waiting, pipeline.tolerances, seconds, why, todo.missing, stop, unusual, damaged
         )
-        _publish(pipeline.reports, document, records)
+        document["night_before"] = summary.night_before(before)
+        _publish(pipeline, document, records)
     if stop:
         raise stop
     return document
@@ -87,14 +90,15 @@ def _entered(
         return [], [], problem
 
 
-def _publish(reports: Path, summary: dict[str, Any], records: list[Mapping[str, Any]]) -> None:
+def _publish(pipeline: Pipeline, summary: dict[str, Any], records: list[Mapping[str, Any]]) -> None:
     """The summary for programs and for people: both of this batch, or both of the one before. Where the disk is too full for them, what
     stopped the batch takes the place of the page of the night before, which would look like this night's."""
     from rovval.report.batch import html as batch_html
     from rovval.report.common.files import write_all
 
+    reports = pipeline.reports
     try:
-        write_all(reports, {SUMMARY: json_text(summary), INDEX: batch_html.text(summary, records)})
+        write_all(reports, {SUMMARY: json_text(summary), INDEX: batch_html.text(summary, records, trends(pipeline))})
     except Unwritable as error:
         stopped = {**summary, "exit_code": STOPPED, "stopped_by": {"reason": error.message, "next": error.hint}}
         short = {key: [] if isinstance(value, list) else value for key, value in stopped.items()}

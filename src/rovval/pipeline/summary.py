@@ -9,6 +9,7 @@ from typing import Any
 from rovval.core.errors import UsageProblem
 from rovval.pipeline import tolerances
 
+ATTENTION = ("quarantined", "tolerances_exceeded", "left_sane_limits")
 DONE, BEYOND, STOPPED, UNUSABLE, LEFT_LIMITS = 0, 1, 2, 3, 4
 
 
@@ -64,4 +65,15 @@ def summarise(
         "left_sane_limits": stopped,
         "quarantined": [{k: r[k] for k in ("log", "kind", "reason", "next")} for r in set_aside],
         "waiting": [{"log": str(log), "why": why} for log, why in waiting],
+    }
+
+
+def night_before(summary: Mapping[str, Any] | None) -> dict[str, Any] | None:
+    """What of the summary of the batch before is kept beside this one's: its counts, and the logs that needed attention. None where there is none."""
+    if summary is None or not {"ended", "counts", *ATTENTION} <= summary.keys():
+        return None
+    return {
+        "ended": summary["ended"],
+        "counts": summary["counts"],
+        "attention": sorted({row["log"] for part in ATTENTION for row in summary[part]}),
     }

@@ -20,8 +20,16 @@ class Trend:
 
 
 def trends(rows: Iterable[Row]) -> list[Trend]:
-    """The trend of every series of the catalogue's ``rows``; the prior odds of a change are such that all series together raise a false alarm
-    with a probability of `FALSE_ALARMS` at most."""
+    """The trend of every series of the catalogue's ``rows``."""
     followed: Sequence[Series] = all_series(rows)
-    odds = FALSE_ALARMS / max(len(followed), 1)
-    return [Trend(series, changes(series.time_s, series.level, series.least, odds)) for series in followed]
+    return [trend_of(series, prior_odds(len(followed))) for series in followed]
+
+
+def prior_odds(series: int) -> float:
+    """Those of a change in one of so many series: such that all of them together raise a false alarm with a probability of `FALSE_ALARMS` at most."""
+    return FALSE_ALARMS / max(series, 1)
+
+
+def trend_of(series: Series, odds: float) -> Trend:
+    """A series with its changes, one of which has prior ``odds``."""
+    return Trend(series, changes(series.time_s, series.level, series.least, odds))

@@ -110,10 +110,11 @@ def _one_more(t: Array, y: Array, chosen: Sequence[Begin], least: float) -> Chan
     where, w = np.array([places[i][1] for i in ours]), weight[ours] / weight[ours].sum()
     before_it = np.cumsum(w.sum(axis=1)) - w.sum(axis=1)
     low, high = (int(where[before_it <= q].max()) for q in (0.05, 0.95))
+    between = int(np.diff(where).max(initial=1)) - 1  # dives that were not tried
     likeliest = int(where[np.argmax(w.sum(axis=1))])
     span = (t[-1] - t[where])[:, None] if kind == "ramp" else np.ones((len(where), 1))
     return Change(
-        kind, by_kind[kind] / sum(by_kind.values()), likeliest, (low, high), _moments(w, size[ours], spread[ours]),
+        kind, by_kind[kind] / sum(by_kind.values()), likeliest, (max(low - between, 0), min(high + between, len(t) - 1)), _moments(w, size[ours], spread[ours]),
         _moments(w, size[ours] / span, spread[ours] / span), _log_sum(joint) - _log_sum(before),
     )  # fmt: skip
 

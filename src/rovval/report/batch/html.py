@@ -6,18 +6,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from rovval.report.batch import table
+from rovval.report.batch import nights, sparklines, table
 from rovval.report.batch.row import Record, Row, row
 from rovval.report.common.numbers import duration, listed
 from rovval.report.common.page import render
 from rovval.report.common.versions import versions
+from rovval.trend import Trend
 
 MOST_LISTED = 200  # rows of a list above the table; summary.json has all
 FAILED = ("crash", "internal")  # kinds of a quarantine record that are no refusal
 
 
-def text(summary: Mapping[str, Any], records: Sequence[Record]) -> str:
-    """The page of a batch's summary (rovval.summary/1) and of the records of its runs (rovval.batch/1), new and unchanged."""
+def text(summary: Mapping[str, Any], records: Sequence[Record], trends: Sequence[Trend] = ()) -> str:
+    """The page of a batch's summary (rovval.summary/1), of the records of its runs (rovval.batch/1), new and unchanged, and of the trends of
+    their vehicles."""
     rows, aside = _rows(summary, records), summary["quarantined"]
     refused, failed = ([_aside(q) for q in aside if (q["kind"] in FAILED) == fails] for fails in (False, True))
     beyond = [{"run": r, "said": ["; ".join(r.beyond)]} for r in rows if r.beyond]
@@ -42,6 +44,9 @@ def text(summary: Mapping[str, Any], records: Sequence[Record]) -> str:
         stopped=stopped,
         waiting=[{"log": w["log"], "said": [w["why"]]} for w in summary["waiting"]],
         most=MOST_LISTED,
+        nights=nights.compared(summary),
+        vehicles=sparklines.vehicles(trends),
+        trend_axes=sparklines.axes(trends),
         rows=rows,
         lead=table.lead(rows),
         columns=columns,

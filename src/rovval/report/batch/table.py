@@ -27,6 +27,11 @@ class Column:
     large: float = inf
 
     @property
+    def key(self) -> str:
+        """Its name for the script that orders and filters."""
+        return self.axis or self.name
+
+    @property
     def heading(self) -> str | tuple[str, str]:
         """The title, with the unit under it where there is one."""
         return (self.title, self.unit) if self.unit else self.title
