@@ -29,8 +29,8 @@ def signed_by_command(profile: Profile, series: Mapping[str, Series]) -> tuple[d
     """
     out, done, gone = dict(series), [], []
     for name in series:
-        key = next((k for k in (name, name.partition(":")[0] + ":*") if k in profile.channels), None)
-        family = profile.channels[key].sign_from if key else None
+        source = profile.source_of(name)
+        family = source.sign_from if source else None
         if family is None:
             continue
         command = series.get(f"{family}:{name.partition(':')[2]}")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from fnmatch import fnmatchcase
 from typing import Any
 
 from rovval.core.channels import channel
@@ -64,5 +63,5 @@ def _key(check: Check, name: str) -> str:
 
 def _logged(check: Check, name: str) -> str:
     """The unit that the profile says of a channel."""
-    source = next((s for key, s in check.profile.channels.items() if fnmatchcase(_key(check, name), key)), None)
+    source = check.profile.source_of(_key(check, name))
     return source.unit if source else "?"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 import zoneinfo
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -157,6 +158,10 @@ class Profile(BaseModel):
         if timezone is None or self.time.kind != "datetime":
             return self
         return self.model_copy(update={"time": self.time.model_copy(update={"timezone": timezone})})
+
+    def source_of(self, channel: str) -> Source | None:
+        """The source of a channel of a log: by its name, or by the pattern that it is a member of (``n:T1`` of ``n:T*``)."""
+        return self.channels.get(channel) or next((s for key, s in self.channels.items() if fnmatchcase(channel, key)), None)
 
     def frame_of(self, channel: str) -> str:
         """Body axes that ``channel`` (a key of `channels`) is logged in, or "world"."""
