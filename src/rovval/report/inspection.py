@@ -20,7 +20,7 @@ def page(found: Inspection, fields: bool = True) -> str:
     lines = [f"{found.path}: {found.format}" + "".join(f", {k} {v}" for k, v in found.contents.facts.items())]
     lines += [f"  {finding}" for finding in found.findings]
     for topic in found.contents.topics.values():
-        lines += ["", *_topic(topic, found.stamps if not topic.name else (), fields)]
+        lines += ["", *_topic(topic, found.stamps.get(topic.name), fields)]
     return "\n".join([*lines, "", *_profiles(found)])
 
 
@@ -30,9 +30,11 @@ def document(found: Inspection) -> dict[str, Any]:
         "schema": SCHEMA, "file": str(found.path), "format": found.format, "facts": dict(found.contents.facts),
         "topics": [_topic_document(t) for t in found.contents.topics.values()],
         "stamps": [
-            {"kind": s.kind, "columns": list(s.columns), "unit": s.unit, "since": s.since, "date_order": s.date_order, "sure": s.sure, "why": s.why}
+            {"topic": topic, "kind": s.kind, "columns": list(s.columns),
+             "unit": s.unit, "since": s.since, "date_order": s.date_order, "sure": s.sure, "why": s.why}
             | _rhythm(s.rhythm)
-            for s in found.stamps
+            for topic, several in found.stamps.items()
+            for s in several
         ],
         "profiles": [
             {"name": m.profile, "fits": m.profile in found.fits, "finds": {n: [list(p) for p in at] for n, at in m.found.items()},
@@ -48,18 +50,18 @@ def moment(seconds: float, calendar: bool) -> str:
     return f"{datetime.fromtimestamp(seconds, UTC):%Y-%m-%d %H:%M:%S} UTC" if calendar else f"{seconds:.6g} s"
 
 
-def _topic(topic: TopicSummary, stamps: tuple[Stamps, ...], fields: bool) -> list[str]:
+def _topic(topic: TopicSummary, stamps: tuple[Stamps, ...] | None, fields: bool) -> list[str]:
     what = f"{topic.name} ({topic.kind})" if topic.kind else topic.name or "table"
-    lines = [f"{what}: {topic.rows} {'messages' if topic.name else 'rows'}"]
+    lines = [f"{what}: {topic.rows} {'rows' if stamps is not None else 'messages'}"]
     for name, rhythm in topic.clocks.items():
         lines.append(f"  {name:<7} {_said(rhythm)}")
     if topic.record_minus_header_s is not None:
         lines.append(f"  record minus header: {topic.record_minus_header_s:.4g} s in the median")
-    for s in stamps:
+    for s in stamps or ():
         how = f"{s.kind} {', '.join(s.columns)}" + (f" in {s.unit}" if s.kind in ("elapsed", "epoch") else "") + (f", {s.date_order}" if s.date_order else "")
         lines.append(f"  stamps {'are' if s.sure else 'may be'} {how}: {s.why}")
         lines.append(f"    {_said(s.rhythm)}")
-    if not topic.name and not stamps:
+    if stamps == ():
         lines.append("  no column rises with the rows: which one is time?")
     if fields:
         width = min(WIDEST, max((len(a) for a in topic.fields), default=0))

@@ -25,7 +25,7 @@ def test_a_table_with_a_banner_decimal_commas_and_text(tmp_path):
     depth = table.fields["Tiefe [m]"]
     assert (depth.low, depth.high, depth.present, depth.missing) == (2.5, 3.09, 60, 0)
     assert table.fields["Modus"].examples == ("HOLD", "DEPTH") and table.fields["Kurs [°]"].largest_step == 359.0
-    best = found.stamps[0]
+    best = found.stamps[""][0]
     assert (best.kind, best.columns, best.sure) == ("datetime", ("Datum", "Uhrzeit"), True)
     assert np.isclose(best.rhythm.period_s, 0.1) and np.isclose(best.rhythm.largest_gap_s, 5.1) and np.isclose(best.rhythm.gap_after_s, 2.9)
     assert found.fits == () and "rovval profile propose" in inspection.page(found)
@@ -42,13 +42,13 @@ def test_a_table_with_a_banner_decimal_commas_and_text(tmp_path):
 )
 def test_which_column_may_be_time(header, stamps, kind, unit, since, tmp_path):
     (tmp_path / "a.csv").write_text(f"depth,{header},n\n" + "".join(f"{1.0 - i * 0.1},{t!r},{i}\n" for i, t in enumerate(stamps)))
-    best = inspect(tmp_path / "a.csv").stamps[0]
+    best = inspect(tmp_path / "a.csv").stamps[""][0]
     assert (best.kind, best.columns, best.unit, best.since) == (kind, (header,), unit, since)
 
 
 def test_dates_that_may_be_read_two_ways_are_told_as_two(tmp_path):
     (tmp_path / "a.csv").write_text("when,depth\n" + "".join(f"03/04/2024 02:0{i}:00 PM,{i}\n" for i in range(4)))
-    readings = inspect(tmp_path / "a.csv").stamps
+    readings = inspect(tmp_path / "a.csv").stamps[""]
     assert [s.date_order for s in readings] == ["dmy", "mdy"] and not any(s.sure for s in readings)
 
 

@@ -73,7 +73,7 @@ def test_a_bag_of_standard_messages(tmp_path):
     """The built-in profile for it put aside: what the types define, and the thrusters by their topics."""
     path = write("bag", tmp_path / "a.bag")
     found = inspect(path)
-    alone = type(found)(found.path, found.format, found.contents, (), (), {})
+    alone = type(found)(found.path, found.format, found.contents, {}, (), {})
     text = proposed(alone, "mine")
     profile = parse_profile(tomllib.loads(text), "mine")
     raw, known = (ingest.reader("ros_bag").read(path, p) for p in (profile, ingest.load_profile("ros_odometry")))

@@ -33,5 +33,5 @@ def checked(profile: str, path: Path, timezone: str | None = None) -> Check:
     matched = match(loaded, contents)
     used = {place for places in matched.found.values() for place in places}
     left = [(topic.name, a) for topic in contents.topics.values() for a in topic.fields if (topic.name, a) not in used]
-    left = [(topic, a) for topic, a in left if topic or not any(fits(c, a) for c in loaded.time.columns)]
+    left = [(topic, a) for topic, a in left if not any(fits(c, a) for c in loaded.time.columns)]
     return Check(loaded, raw, contents, matched, tuple(left))

@@ -18,13 +18,14 @@ __all__ = ["Inspection", "inspect"]
 
 @dataclass(frozen=True, slots=True)
 class Inspection:
-    """What is in a log. ``stamps``: of a table, every reading of columns as its stamps, best first. ``matches``: each built-in profile of the
+    """What is in a log. ``stamps``: of each topic without a clock of its own (a table), every
+    reading of its columns as stamps, best first. ``matches``: each built-in profile of the
     format, those that find most first; ``lacking``: its name -> what it requires and the log has not, () where it reads the log as it is."""
 
     path: Path
     format: str
     contents: Contents
-    stamps: tuple[Stamps, ...]
+    stamps: Mapping[str, tuple[Stamps, ...]]
     matches: tuple[Match, ...]
     lacking: Mapping[str, tuple[str, ...]]
 
@@ -54,6 +55,6 @@ def inspect(path: Path) -> Inspection:
         mine = [p for p in profiles if p.format == name]
         matches = sorted((match(p, contents) for p in mine), key=lambda m: (len(m.gone), -len(m.found)))
         lacking = {p.name: ingest.reader(name).missing(path, p) for p in mine}
-        table = contents.topics.get("")
-        return Inspection(path, name, contents, tuple(readings(table)) if table else (), tuple(matches), lacking)
+        stamps = {topic: tuple(readings(t)) for topic, t in contents.topics.items() if t.rows and not t.clocks}
+        return Inspection(path, name, contents, stamps, tuple(matches), lacking)
     raise refused[0]

@@ -69,7 +69,7 @@ def proposed(found: Inspection, name: str) -> str:
         *_clock(found),
         "",
         "[channels]",
-        *(_text(line) for line in lines),
+        *([_text(line) for line in lines] or ["# no name here says a channel: map what is left over by hand"]),
     ]
     left = _left_over(found, lines)
     return "\n".join([*header, "", "# Left over, mapped to nothing:", *(f"#   {one}" for one in left)] if left else header) + "\n"
@@ -82,13 +82,15 @@ def _clock(found: Inspection) -> list[str]:
         kind = "header" if with_header else "record"
         why = f"{with_header} of {len(topics)} topics have stamps of their own" if with_header else "no message has a stamp of its own"
         return [f'kind = "{kind}"  # {why}; {"the others have" if with_header else ""} the recorder\'s'.replace(";  the", "; these are the")]
-    if not found.stamps:
+    several = max(found.stamps.values(), key=len, default=())
+    if not several:
         return ['kind = "elapsed"  # REVIEW: no column rises with the rows', 'columns = ["?"]', 'unit = "s"']
-    return [*_stamp_lines(found.stamps[0]), *(f"# or: {'; '.join(_stamp_lines(s))}" for s in found.stamps[1:3])]
+    where = "" if len(found.stamps) < 2 else f"  # REVIEW: of each of {', '.join(found.stamps)}"
+    return [*_stamp_lines(several[0], where), *(f"# or: {'; '.join(_stamp_lines(s))}" for s in several[1:3])]
 
 
-def _stamp_lines(s: Stamps) -> list[str]:
-    lines = [f'kind = "{s.kind}"  # {"" if s.sure else "REVIEW: "}{s.why}', f"columns = {json.dumps(list(s.columns), ensure_ascii=False)}"]
+def _stamp_lines(s: Stamps, where: str = "") -> list[str]:
+    lines = [f'kind = "{s.kind}"  # {"" if s.sure else "REVIEW: "}{s.why}', f"columns = {json.dumps(list(s.columns), ensure_ascii=False)}{where}"]
     lines += [f'unit = "{s.unit}"'] if s.kind in ("elapsed", "epoch") else []
     lines += [f'since = "{s.since}"'] if s.since != "unix" else []
     lines += [f'date_order = "{s.date_order}"'] if s.date_order else []
@@ -138,7 +140,7 @@ def _complete(lines: dict[str, Line]) -> Iterator[Line]:
 
 
 def _candidates(topic: TopicSummary, found: Inspection) -> Iterator[_Candidate]:
-    stamps = {c for s in found.stamps[:1] for c in s.columns}
+    stamps = {c for s in found.stamps.get(topic.name, ())[:1] for c in s.columns}
     typed = meaning(topic.kind)
     for address, (channel, unit) in typed.items():
         first = f"{address}.w" if channel == "attitude" else address
@@ -155,13 +157,19 @@ def _candidates(topic: TopicSummary, found: Inspection) -> Iterator[_Candidate]:
         if array and f.address.startswith(f"{array[0]}["):
             yield _Candidate(topic, f, Guess(array[1], topic.kind), array[2], f"{topic.kind} defines it", "which thruster")
             continue
-        said = [*words(topic.name), *words(f.address)]
+        said = [*words(topic.name), *words(f.address), *_axis(f.address, topic)]
         stated = unit_said(f.address, f.unit)
         if (guess := channel_guess(said, stated)) is None or (f.constant and not guess.channel.startswith(COMMANDS)):
             continue
         unit, how = (stated, "unit by its name") if stated else _by_values(guess.channel, f)
         if _likely(guess.channel, unit, f):
             yield _Candidate(topic, f, guess, unit, f"named {guess.word!r}; {how}", "channel" if stated else "channel and unit")
+
+
+def _axis(address: str, topic: TopicSummary) -> list[str]:
+    """x, y or z for a member of an array of three (``velocity[0]``)."""
+    found = re.fullmatch(r"(.*)\[([012])\]", address)
+    return ["xyz"[int(found.group(2))]] if found and f"{found.group(1)}[2]" in topic.fields and f"{found.group(1)}[3]" not in topic.fields else []
 
 
 def _by_values(channel: str, f: FieldSummary) -> tuple[str, str]:
@@ -266,7 +274,7 @@ def _left_over(found: Inspection, lines: list[Line]) -> list[str]:
     if keys:
         draft = Profile.model_construct(name="draft", channels=keys, time=Clock(kind="record"))
         used = {place for places in match(draft, found.contents).found.values() for place in places}
-    stamps = {("", c) for s in found.stamps[:1] for c in s.columns}
+    stamps = {(topic, c) for topic, several in found.stamps.items() for s in several[:1] for c in s.columns}
     left = []
     for topic in found.contents.topics.values():
         free = [f for f in topic.fields.values() if (topic.name, f.address) not in used | stamps]
