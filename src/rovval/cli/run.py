@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -27,7 +28,10 @@ def command(
     verify: Annotated[
         bool, typer.Option("--verify", help="Read every log and every result anew: trust no size and no time of change.")
     ] = False,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only say what would be done.")] = False,
+    dry_run: Annotated[bool, typer.Option("--dry-run", "--list", help="Only say what would be done; with the id of each task.")] = False,
+    only: Annotated[
+        str | None, typer.Option("--only", metavar="ID", help="Do this one task of --list, for a scheduler of your own; a run without it closes.")
+    ] = None,
     json_: options.JsonFlag = False,
     quiet: options.QuietOption = False,
 ) -> None:
@@ -35,6 +39,9 @@ def command(
 
     Exit codes: 0 all done, 1 a tolerance of the file is exceeded, 4 a simulation left sane limits, 3 a log stands in quarantine or a source
     has no log at all (of several, the last of these), 2 the file is wrong, the disk is full, or another run of it is at work.
+
+    --list and --only are for schedulers that start each log themselves (Airflow, Prefect, Snakemake): every task of --list --json by --only, any
+    number at once, and then one run as ever, which finds them done and writes catalogue, summary and page.
 
     \b
     Example:
@@ -44,6 +51,8 @@ def command(
     from rovval.pipeline import batch, config
     from rovval.report.batch.terminal import text
 
+    if only is not None:
+        raise typer.Exit(_do_one(pipeline, only, retry, json_, quiet))
     if dry_run:
         _say_plan(batch.dry_run(pipeline, retry, verify), json_)
         return
@@ -57,12 +66,37 @@ def _say_plan(planned: Plan, as_json: bool) -> None:
     """What a run would do with each log, and why."""
     from rovval.pipeline.plan import why
 
+    ids = {str(t.log): t.id for t in planned.todo}
     rows = [("do", str(t.log), why(t)) for t in planned.todo]
     rows += [("unchanged", r["log"], "") for r in planned.done]
     rows += [("quarantined", r["log"], r["reason"].removeprefix(f"{r['log']}: ")) for r in planned.set_aside]
     rows += [("no log", logs, reason) for logs, reason in planned.missing]
     rows += [("waiting", str(log), reason) for log, reason in planned.waiting]
     if as_json:
-        output.result_json({"schema": "rovval.plan/1", "logs": [dict(zip(("state", "log", "why"), row, strict=True)) for row in rows]})
+        output.result_json({"schema": "rovval.plan/1", "logs": [_planned(row, ids) for row in rows]})
     else:
         output.result("\n".join(f"{state:<12} {log}{reason and ': '}{reason}" for state, log, reason in rows))
+
+
+def _planned(row: tuple[str, str, str], ids: Mapping[str, str]) -> dict[str, str]:
+    """One log of the plan; one that is to be done has an id for --only."""
+    named = dict(zip(("state", "log", "why"), row, strict=True))
+    return named | ({"id": ids[row[1]]} if row[0] == "do" else {})
+
+
+def _do_one(pipeline: Path, identity: str, retry: bool, as_json: bool, quiet: bool) -> int:
+    """Do one task; its exit code: 0 done or nothing to do, else that of what set it aside."""
+    from rovval.pipeline import batch
+
+    outcome = batch.run_only(pipeline, identity, retry)
+    if outcome is None:
+        output.say(f"{identity}: nothing to do; `rovval run {pipeline} --list` has what there is", quiet)
+        return 0
+    record = outcome["record"]
+    if as_json:
+        output.result_json({"schema": "rovval.task/1", "id": identity, "status": outcome["status"], "record": record})
+    elif outcome["status"] == "done":
+        output.result(f"done  {record['log']}  {record['run']}")
+    else:
+        output.say(f"rovval: {record['reason']}\n  next: {record['next']}")
+    return 0 if outcome["status"] == "done" else int(record.get("exit_code", 2))

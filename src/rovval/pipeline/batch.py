@@ -114,6 +114,23 @@ def dry_run(path: Path, retry: bool = False, verify: bool = False) -> Plan:
     return plan(pipeline, path.resolve().parent, retry, verify)
 
 
+def run_only(path: Path, identity: str, retry: bool = False) -> Outcome | None:
+    """Do the one task of a pipeline's plan that has this id (see `dry_run`), beside others of the same pipeline: an outer scheduler spreads them.
+    Records and quarantine are the batch's; catalogue, summary and page are made by the `run` that closes the night.
+
+    Returns its outcome; None where nothing is to be done. Raises `UsageProblem` where a `run` of the pipeline is at work, or this task.
+    """
+    pipeline = config.load(path)
+    with lock.held(pipeline.reports, shared=True):
+        todo = plan(pipeline, path.resolve().parent, retry)
+        task = next((task for task in todo.todo if task.id == identity), None)
+        if task is None:
+            return None
+        with lock.held(pipeline.reports / ".locks" / identity):
+            [(_, outcome)] = execute([task], work, died, 1, pipeline.timeout_s)
+    return outcome
+
+
 def died(task: Task, why: str) -> Outcome:
     """A task whose worker did not survive it."""
     return set_aside(

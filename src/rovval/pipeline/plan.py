@@ -52,6 +52,11 @@ class Task:
         return self.keys[-1][1]
 
     @property
+    def id(self) -> str:
+        """Its name for whoever starts tasks one by one."""
+        return self.folder.name
+
+    @property
     def quarantine(self) -> Path:
         """Where its record stands if it is set aside."""
         return self.reports / QUARANTINE / f"{self.folder.name}.json"
