@@ -5,13 +5,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from diagnose_case import NOISE
 from report_cases import make_run, make_sim, motion
+from tumbling import bluerov2, tumbling
 
 from rovval.comparison import compare
 from rovval.comparison.error_growth import error_growth
 from rovval.core.channels import AXES, VELOCITIES
 from rovval.core.data import Reason, Run, SimResult, Trajectory
 from rovval.core.errors import BadInput, SimulationStopped
+from rovval.simulation import simulate
 
 
 def identical(run: Run) -> SimResult:
@@ -175,3 +178,11 @@ def test_rows_that_every_stretch_starts_on_are_no_comparison() -> None:
     alone = replace(sim.free, stretch=np.arange(len(run)))
     with pytest.raises(BadInput, match=r"0\.0 % of its 1200 rows"):
         compare(run, replace(sim, free=alone, windowed=alone))
+
+
+def test_attitude_of_a_vehicle_that_tumbles_is_compared_as_a_turn() -> None:
+    """Roll and heading jump where the pitch passes 90 degrees, in the log and in the simulation at other samples."""
+    run = tumbling()
+    pose = compare(run, simulate(run, bluerov2())).pose
+    assert max(pose[name].rmse for name in ("phi", "theta", "psi")) < 5 * NOISE["phi"]
+    assert min(pose[name].baseline_rmse for name in ("phi", "theta", "psi")) > 0.3

@@ -10,11 +10,14 @@ from scipy.spatial.transform import Rotation
 from rovval.core.frames import (
     ENU_TO_NED,
     FLU_TO_FSD,
+    attitude_difference,
     euler_from_quaternion,
     euler_rates,
     quaternion_from_euler,
     rotation_from_euler,
     skew,
+    smooth_quaternions,
+    tilt_difference,
     wrap,
 )
 
@@ -67,3 +70,44 @@ def test_a_wrapped_angle_is_the_same_direction_within_half_a_turn(angle):
     assert -np.pi < wrapped <= np.pi
     assert abs(np.exp(1j * wrapped) - np.exp(1j * angle)) < 1e-9
     assert float(wrap(-np.pi)) == np.pi
+
+
+ANY = st.tuples(TURN, st.floats(-np.pi / 2, np.pi / 2), TURN)
+
+
+@settings(max_examples=60, deadline=None)
+@given(ANY, ANY)
+def test_a_difference_of_attitudes_is_scipy_s_rotation_vector(a, b):
+    of, to = (Rotation.from_euler("ZYX", x[::-1]) for x in (b, a))
+    got = attitude_difference(np.array(a), np.array(b))
+    assert ((of * Rotation.from_rotvec(got)).inv() * to).magnitude() < 1e-7
+    assert np.linalg.norm(got) <= np.pi + 1e-9
+
+
+@settings(max_examples=60, deadline=None)
+@given(ANY, ANY)
+def test_a_difference_of_tilts_brings_one_vertical_to_the_other_by_the_shortest_way(a, b):
+    of, to = (Rotation.from_euler("ZYX", x[::-1]) for x in (b, a))
+    turn = tilt_difference(np.array(a), np.array(b))
+    down = np.array([0.0, 0.0, 1.0])
+    angle = np.arccos(np.clip(of.inv().apply(down) @ to.inv().apply(down), -1.0, 1.0))
+    if angle < 3.0:  # of opposite verticals every way is the shortest
+        np.testing.assert_allclose((of * Rotation.from_rotvec(turn)).inv().apply(down), to.inv().apply(down), atol=1e-7)
+    assert np.linalg.norm(turn) <= angle + 1e-6
+
+
+def test_differences_of_nearly_level_attitudes_are_those_of_their_angles():
+    b = np.array([0.02, -0.03, 2.0])
+    d = np.array([1e-3, -2e-3, 3e-3])
+    np.testing.assert_allclose(attitude_difference(b + d, b), d, atol=2e-4)
+    np.testing.assert_allclose(tilt_difference(b + d, b), d * [1, 1, 0], atol=2e-4)
+
+
+def test_quaternions_of_a_tumbling_series_have_no_jump():
+    t = np.linspace(0.0, 4.0 * np.pi, 400)
+    turns = Rotation.from_rotvec(np.outer(t, [0.3, 1.0, -0.2]))
+    euler = turns.as_euler("ZYX")[:, ::-1]
+    assert np.abs(np.diff(euler[:, 0])).max() > 1.0
+    q = smooth_quaternions(euler)
+    assert np.abs(np.diff(q, axis=0)).max() < 0.03
+    assert (Rotation.from_quat(q, scalar_first=True).inv() * turns).magnitude().max() < 1e-7

@@ -165,7 +165,8 @@ def test_a_delay_of_one_sensor_leaves_all_else_and_is_a_hypothesis_of_its_own():
             for i in range(12):
                 want = np.interp(late, np.arange(91), whole[:, i]) if i in part else whole[5:85, i]
                 got = np.concatenate([seen.nu[0], seen.eta[0]], axis=1)[5:85, i]
-                assert np.abs(wrap(got - want) if i > 8 else got - want).max() < 1e-12
+                rounding = 1e-4 if i > 8 and i in part else 1e-12  # between samples an attitude turns, and its angles are linear to second order
+                assert np.abs(wrap(got - want) if i > 8 else got - want).max() < rounding
 
 
 def test_sized_parameters_grow_with_the_vehicle():

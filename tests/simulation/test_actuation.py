@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from diagnose_case import bare
+from scipy.spatial.transform import Rotation
 
 from rovval import vehicle
 from rovval.alignment import align
 from rovval.core.data import RawLog, Reason, Run, Series
 from rovval.core.errors import BadInput
 from rovval.simulation import simulate
-from rovval.simulation.actuation import recorded_actuation
+from rovval.simulation.actuation import recorded_actuation, start_states
 
 HEAVY = vehicle.load("bluerov2_heavy")
 assert HEAVY.mixer is not None and HEAVY.pulse_table is not None
@@ -54,3 +56,14 @@ def test_a_pulse_table_needs_no_speeds():
 def test_a_pulse_width_beyond_the_table_is_refused():
     with pytest.raises(BadInput, match="outside the thruster table"):
         recorded_actuation(driven(PULSES, 2000.0), HEAVY)
+
+
+def test_rates_that_were_not_logged_start_as_the_attitude_turns_however_the_vehicle_stands():
+    """A vehicle that turns over and over about its own y at a constant rate, past both poles of the Euler angles by a thousandth of a radian."""
+    rate, t = np.array([0.0, 1.3, 0.0]), np.arange(120) * 0.1
+    euler = (Rotation.from_euler("ZYX", [0.3, 0.1, 0.001]) * Rotation.from_rotvec(np.outer(t, rate))).as_euler("ZYX")
+    assert np.degrees(np.abs(euler[:, 1]).max()) > 88.0
+    run = bare(dict(zip(("psi", "theta", "phi"), euler.T, strict=True)), HEAVY, "over")
+    nu, _, assumptions = start_states(run, np.arange(10, 110))
+    assert any("p was not logged" in said for said in assumptions)
+    np.testing.assert_allclose(nu[:, 3:], np.tile(rate, (100, 1)), atol=1e-6)

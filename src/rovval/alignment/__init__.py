@@ -2,8 +2,9 @@
 
 A log that is on such a grid already (within 20 ms at 10 Hz) comes through bit for bit. Else: a channel with ``mean`` that is
 faster than the grid is averaged over the bin around each grid point, a slower one is interpolated linearly between neighbours;
-``circular`` does the same on the unit circle; ``linear`` interpolates; ``hold`` keeps the previous value, since a command acts
-until the next one. Nothing is bridged beyond a channel's longest gap (`rovval.alignment.series.longest_bridge`) and nothing extrapolated.
+``circular`` does the same on the unit circle, and an attitude that tumbles is one rotation; ``linear`` interpolates; ``hold`` keeps the previous
+value, since a command acts until the next one. Nothing is bridged beyond a channel's longest gap (`rovval.alignment.series.longest_bridge`) and
+nothing extrapolated.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from typing import cast, get_args
 
 import numpy as np
 
+from rovval.alignment.attitude import resampled_attitude, tumbling_attitude
 from rovval.alignment.clock_offset import estimated_offset
 from rovval.alignment.resampling import ON_GRID, resample
 from rovval.alignment.series import bad_samples, longest_bridge
@@ -36,14 +38,20 @@ def align(raw: RawLog, rate_hz: float = RATE_HZ, methods: Mapping[str, str] | No
     chosen = _methods(raw, rate_hz, methods or {})
     dt = 1.0 / rate_hz
     start, n = _grid(raw, dt)
-    values, reasons, resampled = {}, {}, {}
+    values, reasons, resampled, bad = {}, {}, {}, dict[str, Codes]()
     findings = list(raw.findings)
     for name, series in raw.channels.items():
-        method, gap_s, stuck_s = chosen[name]
-        bad, found = bad_samples(name, series, stuck_s)
+        bad[name], found = bad_samples(name, series, chosen[name][2])
         findings += [f for f in found if not any(f.code == k.code and name in k.where.split(", ") for k in raw.findings)]
-        values[name], reasons[name], used = resample(series, bad, start, n, dt, gap_s, method, raw.rules.get(name, Rule()).longest_gap_s)
-        resampled[name] = _report(series, used, gap_s, reasons[name])
+
+    def how(name: str) -> tuple[float, Resampling, float | None]:
+        return chosen[name][1], chosen[name][0], raw.rules.get(name, Rule()).longest_gap_s
+
+    attitude = resampled_attitude(raw, bad, start, n, dt, *how("phi")) if tumbling_attitude(raw, bad) else {}
+    for name, series in raw.channels.items():
+        got = attitude.get(name) or resample(series, bad[name], start, n, dt, *how(name))
+        values[name], reasons[name], used = got
+        resampled[name] = _report(series, used, chosen[name][1], reasons[name])
     if not any((r == Reason.OK).any() for r in reasons.values()):
         raise BadInput(f"{raw.source}: no channel holds a value on the grid", "see its findings with `rovval ingest`")
     t0_ns = None if raw.t0_ns is None else raw.t0_ns + round(start * 1e9)

@@ -12,14 +12,13 @@ from rovval.alignment.thruster_commands import against_commands
 from rovval.core.channels import channel
 from rovval.core.data import Array, Flags, RawLog, Series
 from rovval.core.errors import Finding
-from rovval.core.frames import euler_rates, rotation_from_euler
+from rovval.core.frames import EULER_RANGE, euler_rates, rotation_from_euler
 from rovval.core.units import mistaken_units
 
 STUCK_S = 3.0  # a living sensor does not repeat itself to the last digit for so long, unless the vehicle rests
 SENSORS = ("u", "v", "w", "p", "q", "r", "x", "y", "z", "phi", "theta", "psi", "udot", "vdot", "wdot", "altitude")
 COMMANDS = ("n", "n_cmd", "pwm", "stick")
 EULER = ("phi", "theta", "psi")
-LEVEL_RAD = 1.0  # rad of roll and pitch beyond which Euler rates say little
 KINEMATIC_CORRELATION = 0.5  # correlation of two signals that are one by kinematics, beyond which a sign or a scale may be named
 
 
@@ -141,7 +140,7 @@ def _kinematics(raw: RawLog) -> list[Finding]:
         turn = rotation_from_euler(euler)[k // 2 : k // 2 + len(t) - k]
         room = np.einsum("nji,nj->ni", turn, np.stack([_step(c[n], k) for n in "xyz"], axis=1))
         moved += [(f"{n}, {b}", room[:, i], _way(c[b], t, k)) for i, (n, b) in enumerate(zip("xyz", "uvw", strict=True))]
-    level = _while(np.abs(euler[:, :2]).max(axis=1) < LEVEL_RAD, k) & (t[k:] - t[:-k] < 2.0)
+    level = _while(np.abs(euler[:, :2]).max(axis=1) < EULER_RANGE, k) & (t[k:] - t[:-k] < 2.0)
     found: list[Finding] = []
     for names, way, said in moved:
         known = level & np.isfinite(way) & np.isfinite(said)

@@ -18,12 +18,13 @@ from rovval.comparison import metrics
 from rovval.core.channels import AXES, DRIVING, POSE, VELOCITIES, channel
 from rovval.core.data import Array, ChannelError, Comparison, Flags, Run, SimResult
 from rovval.core.errors import BadInput, SimulationStopped
-from rovval.core.frames import wrap
+from rovval.core.frames import attitude_difference, tilt_difference, tumbles, wrap
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-POSE_COMPARED = ("z", "phi", "theta", "psi")
+ATTITUDE = ("phi", "theta", "psi")
+POSE_COMPARED = ("z", *ATTITUDE)
 LEAST_COVERAGE = 0.1  # of a run's rows, beside those that a stretch starts on: fewer are no comparison of that run
 CORE = ("mean_error", "iae", "mae", "rmse")
 
@@ -147,16 +148,27 @@ def _extra(error: Array, keep: Flags, dt: float, measured: Array) -> Mapping[str
 
 
 def _pose(run: Run, sim: SimResult) -> Mapping[str, ChannelError]:
-    """Depth and attitude of the windows, against the predictor that stays where the window began."""
+    """Depth and attitude of the windows, against the predictor that stays where the window began. Where the run or its simulation tumbles, errors of
+    attitude are turns in body axes."""
     stretch, result = sim.windowed.stretch, {}
+    tumbling = tumbles(run.get("theta")) or tumbles(sim.windowed.eta[:, POSE.index("theta")])
     for name in POSE_COMPARED:
         measured = run.get(name)
         keep = run.ok(name) & sim.windowed.ok & (stretch >= 0)
-        still = measured[_first_kept(stretch, keep)]
-        row = _error(name, sim.windowed.eta[:, POSE.index(name)], measured, keep, still, run.dt)
+        first = _first_kept(stretch, keep)
+        simulated, still = sim.windowed.eta[:, POSE.index(name)], measured[first]
+        if tumbling and name in ATTITUDE:
+            euler, axis = run.stack(ATTITUDE), ATTITUDE.index(name)
+            simulated, still = (measured + _turn(run, x, euler)[:, axis] for x in (sim.windowed.eta[:, 3:], euler[first]))
+        row = _error(name, simulated, measured, keep, still, run.dt)
         if row is not None:
             result[name] = row
     return result
+
+
+def _turn(run: Run, to: Array, euler: Array) -> Array:
+    """Rotation vectors (n, 3) from measured to other Euler angles (n, 3); without the heading's where it was not logged."""
+    return attitude_difference(to, euler) if run.measured("psi") else tilt_difference(to, euler)
 
 
 def _velocities(other: Mapping[str, Array] | Array, n: int, name: str) -> Array:

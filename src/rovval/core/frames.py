@@ -17,6 +17,8 @@ ENU_TO_NED: Array = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]
 for _matrix in (FLU_TO_FSD, ENU_TO_NED):
     _matrix.setflags(write=False)
 
+EULER_RANGE = 1.0  # rad of pitch up to which rates and differences of Euler angles are those of the vehicle to within a factor of two: 1 / cos(1) = 1.9
+
 
 def wrap(angle: Array | float) -> Array:
     """Angle in (-pi, pi]."""
@@ -83,3 +85,59 @@ def euler_rates(euler: Array, omega: Array) -> Array:
     return np.stack(
         [p + np.tan(theta) * turn, np.cos(phi) * q - np.sin(phi) * r, turn / np.cos(theta)], axis=-1
     )
+
+
+def tumbles(theta: Array) -> bool:
+    """Whether a motion of pitch angles ``theta`` (rad; NaN where unknown) leaves the range in which differences of Euler angles mean a turn."""
+    return bool((np.abs(theta) > EULER_RANGE).any())
+
+
+def rotation_vector(q: Array) -> Array:
+    """Axis times angle (rad, at most pi) of a unit quaternion (Sola 2017, equation 105). Shape (..., 4) -> (..., 3)."""
+    w, axis = np.abs(q[..., :1]), q[..., 1:] * np.where(q[..., :1] < 0, -1.0, 1.0)
+    sine = np.linalg.norm(axis, axis=-1, keepdims=True)
+    return np.asarray(axis * np.where(sine > 1e-12, 2.0 * np.arctan2(sine, w) / np.maximum(sine, 1e-12), 2.0))
+
+
+def turned(euler: Array, by: Array) -> Array:
+    """Euler angles (..., 3) of the attitude ``euler`` (..., 3) turned ``by`` a rotation vector (..., 3) in its own body axes: what `attitude_difference`
+    of the two gives back."""
+    p, half = quaternion_from_euler(euler), 0.5 * np.linalg.norm(by, axis=-1, keepdims=True)
+    c, v = np.cos(half), 0.5 * np.sinc(half / np.pi) * by
+    w = p[..., :1] * c - (p[..., 1:] * v).sum(axis=-1, keepdims=True)
+    return euler_from_quaternion(np.concatenate([w, p[..., :1] * v + c * p[..., 1:] + np.cross(p[..., 1:], v)], axis=-1))
+
+
+def attitude_difference(a: Array, b: Array) -> Array:
+    """The turn from attitude ``b`` to ``a``, both Euler angles (..., 3), as a rotation vector (..., 3) in the body axes of ``b``, rad.
+
+    Of a vehicle that is nearly level: the differences of roll, pitch and yaw. It is regular at every pitch.
+    """
+    p, q = quaternion_from_euler(b), quaternion_from_euler(a)
+    w = p[..., :1] * q[..., :1] + (p[..., 1:] * q[..., 1:]).sum(axis=-1, keepdims=True)
+    vector = p[..., :1] * q[..., 1:] - q[..., :1] * p[..., 1:] - np.cross(p[..., 1:], q[..., 1:])
+    return rotation_vector(np.concatenate([w, vector], axis=-1))
+
+
+def tilt_difference(a: Array, b: Array) -> Array:
+    """The shortest turn that brings the vertical of attitude ``b`` to that of ``a``, both Euler angles (..., 3), whatever their headings, as a rotation
+    vector (..., 3) in the body axes of ``b``, rad. Of a vehicle that is nearly level: the differences of roll and pitch, and 0."""
+    down_a, down_b = _down(a), _down(b)
+    axis = np.cross(down_a, down_b)
+    sine, cosine = np.linalg.norm(axis, axis=-1, keepdims=True), (down_a * down_b).sum(axis=-1, keepdims=True)
+    return np.asarray(axis * np.where(sine > 1e-12, np.arctan2(sine, cosine) / np.maximum(sine, 1e-12), 1.0))
+
+
+def _down(euler: Array) -> Array:
+    """Body components (..., 3) of the unit vector that points down (Fossen 2021, 2.31, third row)."""
+    phi, theta = euler[..., 0], euler[..., 1]
+    return np.stack([-np.sin(theta), np.sin(phi) * np.cos(theta), np.cos(phi) * np.cos(theta)], axis=-1)
+
+
+def smooth_quaternions(euler: Array) -> Array:
+    """Unit quaternions (..., n, 4) of series of Euler angles (..., n, 3), of the two signs that mean one attitude the one nearer to the sample before, so
+    that they can be averaged and interpolated. NaN where an angle is."""
+    q = quaternion_from_euler(euler)
+    turned_over = (q[..., 1:, :] * q[..., :-1, :]).sum(axis=-1) < 0.0
+    sign = np.where(np.cumsum(turned_over, axis=-1) % 2, -1.0, 1.0)
+    return np.concatenate([q[..., :1, :], q[..., 1:, :] * sign[..., None]], axis=-2)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from rovval.core.channels import VELOCITIES
 from rovval.core.data import Array, Flags, Run
 from rovval.core.errors import BadInput, Finding
-from rovval.core.frames import rotation_from_euler, wrap
+from rovval.core.frames import attitude_difference, rotation_from_euler
 from rovval.plant import Inputs
 from rovval.vehicle.model import Mixer, PulseTable, Vehicle
 
@@ -177,19 +177,10 @@ def _velocity_from_pose(run: Run, at: NDArray[np.int64]) -> Array:
     rate = (position[after] - position[before]) / seconds
     euler = attitude[at]
     level = np.where(np.isfinite(euler), euler, 0.0)
-    turn = wrap(attitude[after] - attitude[before]) / seconds
     missing_xy = np.isnan(rate[:, :2]).all(axis=1, keepdims=True)
     world = np.where(np.isnan(rate) & np.concatenate([missing_xy, missing_xy, np.zeros_like(missing_xy)], axis=1), 0.0, rate)
     linear = np.einsum("mji,mj->mi", rotation_from_euler(level), world)
-    phi, theta = level[:, 0], level[:, 1]
-    angular = np.stack(
-        [
-            turn[:, 0] - np.sin(theta) * turn[:, 2],
-            np.cos(phi) * turn[:, 1] + np.sin(phi) * np.cos(theta) * turn[:, 2],
-            -np.sin(phi) * turn[:, 1] + np.cos(phi) * np.cos(theta) * turn[:, 2],
-        ],
-        axis=1,
-    )  # inverse of `euler_rates` (Fossen 2021, 2.40)
+    angular = attitude_difference(attitude[after], attitude[before]) / seconds
     return np.concatenate([linear, angular], axis=1)
 
 

@@ -8,17 +8,19 @@ import numpy as np
 import pytest
 from diagnose_case import merlin, own
 from kinematic import spoilt
+from tumbling import bluerov2, tumbling
 
 from rovval.core.data import Array, Reason, Run
 from rovval.diagnose.residuals.parity import ParityResiduals, parity_residuals
 from rovval.diagnose.residuals.sensor_faults import FittedFault, sensor_faults
 from rovval.diagnose.windows.multiple_shooting import cut_run
 from rovval.effects import load
+from rovval.vehicle.model import Vehicle
 
 
-def faults_of(run: Run) -> dict[str, FittedFault]:
+def faults_of(run: Run, of: Vehicle | None = None) -> dict[str, FittedFault]:
     """Every fault of the library that the parity residuals of a log are fitted with, by its parameter."""
-    part = cut_run(run, merlin(), "fossen", 10.0)
+    part = cut_run(run, of or merlin(), "fossen", 10.0)
     sensor = tuple(i for i, s in enumerate(part.plant.slots) if load(s.effect).place == "sensor")
     return {found.fault: found for found in sensor_faults(parity_residuals(part, sensor), part, part.plant.null)}
 
@@ -35,6 +37,16 @@ def test_parity_finds_a_sensor_fault_with_sign_and_size(fault, size):
     found = faults_of(spoilt({fault: size}))[fault]
     assert found.significant
     assert found.value == pytest.approx(size, rel=0.15)
+
+
+@pytest.mark.parametrize(("fault", "size"), [("gyro_bias.p", 0.01), ("gyro_bias.q", -0.02), ("dvl_scale.scale", 0.08)])
+def test_parity_of_a_vehicle_that_tumbles_finds_a_fault_and_none_in_sound_sensors(fault: str, size: float):
+    found = faults_of(tumbling((f"{fault.replace('.', ':')}={size}",)), bluerov2())
+    assert found[fault].significant
+    assert found[fault].value == pytest.approx(size, rel=0.15)
+    sound = faults_of(tumbling(), bluerov2())[fault]
+    assert not sound.significant
+    assert abs(sound.value) < 0.1 * abs(size)
 
 
 def test_no_fault_is_fitted_to_fewer_windows_than_its_scatter_needs():

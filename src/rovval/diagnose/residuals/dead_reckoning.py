@@ -3,10 +3,20 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy import signal
 
 from rovval.core.data import Array, Flags
-from rovval.core.frames import euler_rates, rotation_from_euler, wrap
-from rovval.diagnose.criteria import PARITY_MEASURED_SHARE
+from rovval.core.frames import (
+    attitude_difference,
+    euler_from_quaternion,
+    euler_rates,
+    rotation_from_euler,
+    smooth_quaternions,
+    tumbles,
+    turned,
+    wrap,
+)
+from rovval.diagnose.criteria import PARITY_MEASURED_SHARE, PARITY_SMOOTHING
 from rovval.diagnose.windows.windows import Windows
 
 ROW_EVERY = 10  # samples between the poses that are compared: 1 s apart, their errors are nearly independent
@@ -45,16 +55,29 @@ def fully_measured(windows: Windows) -> Flags:
     return np.asarray(np.all([run.ok(c)[at].mean(axis=1) > PARITY_MEASURED_SHARE for c in needed], axis=0))
 
 
-def pose_drift(nu: Array, eta: Array, dt: float) -> Array:
+def pose_drift(nu: Array, eta: Array, dt: float, tumbling: bool) -> Array:
     """Dead-reckoned less measured pose (m, rows, 6), m and rad, every `ROW_EVERY` samples of ``nu`` and ``eta`` (m, n, 6); the mean over the window taken
-    out. Trapezoidal rule; ``dt`` in seconds."""
+    out. Trapezoidal rule; ``dt`` in seconds. Of a vehicle that is ``tumbling`` the attitude's three are turns in body axes, summed up."""
     world = np.einsum("mnij,mnj->mni", rotation_from_euler(eta[..., 3:]), nu[..., :3])
-    rates = np.concatenate([world, euler_rates(eta[..., 3:], nu[..., 3:])], axis=-1)
+    turn = nu[..., 3:] if tumbling else euler_rates(eta[..., 3:], nu[..., 3:])
+    rates = np.concatenate([world, turn], axis=-1)
     path = np.concatenate([np.zeros_like(rates[:, :1]), np.cumsum(0.5 * dt * (rates[:, 1:] + rates[:, :-1]), axis=1)], axis=1)
-    off = wrap_angles(eta[:, :1] + path - eta)
+    moved = eta - eta[:, :1]
+    if tumbling:
+        moved[:, 1:, 3:] = np.cumsum(attitude_difference(eta[:, 1:, 3:], eta[:, :-1, 3:]), axis=1)
+    off = wrap_angles(path - moved)
     off[..., 3:] = np.unwrap(off[..., 3:], axis=1)
     rows = off[:, ::ROW_EVERY]
     return np.asarray(rows - rows.mean(axis=1, keepdims=True))
+
+
+def smoothed(nu: Array, eta: Array, tumbling: bool) -> tuple[Array, Array]:
+    """Motion (m, n, 6) of windows under a smoothing filter (Savitzky and Golay 1964); of a vehicle that is ``tumbling`` the attitude as quaternions."""
+    smooth, still = (signal.savgol_filter(a, PARITY_SMOOTHING, 2, axis=1) for a in (nu, eta))
+    if tumbling:
+        q = signal.savgol_filter(smooth_quaternions(eta[..., 3:]), PARITY_SMOOTHING, 2, axis=1)
+        still[..., 3:] = euler_from_quaternion(q / np.linalg.norm(q, axis=-1, keepdims=True))
+    return smooth, still
 
 
 def wrap_angles(rows: Array) -> Array:
@@ -70,6 +93,8 @@ def _extended(nu: Array, eta: Array, dt: float) -> tuple[Array, Array]:
     ahead, after = nu[:MARGIN].mean(axis=0), nu[-MARGIN:].mean(axis=0)
     before = eta[0] - steps[::-1] * _rates(ahead, eta[0])
     behind = eta[-1] + steps * _rates(after, eta[-1])
+    if tumbles(eta[:, 4]):
+        before[:, 3:], behind[:, 3:] = turned(eta[0, 3:], -steps[::-1] * ahead[3:]), turned(eta[-1, 3:], steps * after[3:])
     return np.concatenate([np.tile(ahead, (MARGIN, 1)), nu, np.tile(after, (MARGIN, 1))]), np.concatenate([before, eta, behind])
 
 

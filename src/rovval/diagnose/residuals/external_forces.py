@@ -80,7 +80,7 @@ def wrench_sensitivities(windows: Windows, beta: Array, bank: Array) -> Array:
             pushed.actuation.inputs, np.tile(windows.start, len(chosen)), windows.steps, np.tile(windows.nu0, (len(chosen), 1)),
             np.tile(windows.eta0, (len(chosen), 1)), np.tile(beta, (lanes, 1)), np.repeat(chosen, m), np.full(lanes, STEP),
         )  # fmt: skip
-        out = predicted_channels(windows, motion.nu, motion.eta).reshape(len(chosen), *base.shape)
+        out = predicted_channels(windows, np.tile(which, len(chosen)), motion.nu, motion.eta).reshape(len(chosen), *base.shape)
         S[..., chosen] = np.moveaxis(channel_difference(windows, out, base[None]) / STEP, 0, -1)
     return S
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from rovval.core.data import Array, Flags
 from rovval.diagnose.residuals.dead_reckoning import pose_drift, without_margin, wrap_angles
+from rovval.diagnose.windows.attitude import tumbling
 from rovval.diagnose.windows.windows import Windows
 from rovval.effects.log import Log
 from rovval.plant.sensors import observe
@@ -64,17 +65,17 @@ class FaultSignatures:
         beta[list(faults)] += list(faults.values())
         log = Log(self.nu, self.eta, self.windows.run.dt, self.nu[:, 0], self.eta[:, 0])
         seen = observe(plant.vehicle, plant.index, plant.null, np.tile(beta, (len(self.nu), 1)), log)
-        return _drift_of(seen.nu, seen.eta, self.windows.run.dt, self.usable)
+        return _drift_of(self.windows, seen.nu, seen.eta, self.usable)
 
 
 def fault_signatures(windows: Windows, nu: Array, eta: Array, usable: Flags) -> FaultSignatures:
     """Signatures of a smoothed motion ``nu``, ``eta`` (m, margin + n + margin, 6); ``usable`` (m,) are the windows that were measured nearly throughout."""
-    return FaultSignatures(windows, nu, eta, usable, _drift_of(nu, eta, windows.run.dt, usable))
+    return FaultSignatures(windows, nu, eta, usable, _drift_of(windows, nu, eta, usable))
 
 
-def _drift_of(nu: Array, eta: Array, dt: float, usable: Flags) -> Array:
+def _drift_of(windows: Windows, nu: Array, eta: Array, usable: Flags) -> Array:
     """Drift (m, rows, 6) of dead reckoning, zero in windows that are not usable."""
-    rows = pose_drift(without_margin(nu), without_margin(eta), dt)
+    rows = pose_drift(without_margin(nu), without_margin(eta), windows.run.dt, tumbling(windows.run))
     rows[~usable] = 0.0
     return rows
 

@@ -16,7 +16,7 @@ from rovval.diagnose.criteria import (
     SLOPE_START_SD,
     UNLOGGED_START_SD,
 )
-from rovval.diagnose.windows.noise import ANGLES
+from rovval.diagnose.windows.attitude import ANGLES
 from rovval.diagnose.windows.windows import VELOCITY_CHANNELS, Windows
 
 POSE_OF_RATE = {"u": "x", "v": "y", "w": "z", "p": "phi", "q": "theta", "r": "psi"}  # the pose whose slope gives a velocity that was not logged

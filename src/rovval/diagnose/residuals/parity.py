@@ -11,13 +11,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import signal
 
 from rovval.core.data import Array, Flags
-from rovval.diagnose.criteria import DEAD_RECKONED_SHARE, PARITY_LEAST_SD, PARITY_SMOOTHING
-from rovval.diagnose.residuals.dead_reckoning import RELATIONS, fully_measured, measured_motion, pose_drift, without_margin
+from rovval.diagnose.criteria import DEAD_RECKONED_SHARE, PARITY_LEAST_SD
+from rovval.diagnose.residuals.dead_reckoning import (
+    RELATIONS,
+    fully_measured,
+    measured_motion,
+    pose_drift,
+    smoothed,
+    without_margin,
+)
 from rovval.diagnose.residuals.fault_signatures import FaultSignatures, fault_signatures
 from rovval.diagnose.residuals.normal_equations import NormalEquations
+from rovval.diagnose.windows.attitude import tumbling
 from rovval.diagnose.windows.windows import Windows
 from rovval.effects import load
 
@@ -107,9 +114,9 @@ class ParityResiduals:
 def parity_residuals(windows: Windows, columns: tuple[int, ...]) -> ParityResiduals:
     """Parity residuals of every window of a run, with the signature of each sensor parameter among the plant slots ``columns``."""
     nu, eta, checkable = measured_motion(windows)
-    nominal, usable = pose_drift(without_margin(nu), without_margin(eta), windows.run.dt), fully_measured(windows)
-    nu, eta = (signal.savgol_filter(a, PARITY_SMOOTHING, 2, axis=1) for a in (nu, eta))
-    motion = fault_signatures(windows, nu, eta, usable)
+    over = tumbling(windows.run)
+    nominal, usable = pose_drift(without_margin(nu), without_margin(eta), windows.run.dt, over), fully_measured(windows)
+    motion = fault_signatures(windows, *smoothed(nu, eta, over), usable)
     signatures = np.zeros((*nominal.shape, len(columns)))
     for i, column in enumerate(columns):
         if load(windows.plant.slots[column].effect).place == "sensor":

@@ -13,6 +13,7 @@ from rovval.core.data import Array
 from rovval.diagnose.residuals.normal_equations import Linearisation
 from rovval.diagnose.residuals.nuisances import drifting_channels, initial_states
 from rovval.diagnose.residuals.perturbations import DisplacedColumn, Perturbation, forward_differences, perturbations
+from rovval.diagnose.windows.attitude import tilted, tumbling
 from rovval.diagnose.windows.windows import Windows, channel_difference, predicted_channels
 
 AT_ONCE = 60  # windows that are simulated before their differences are taken: ten minutes of log, some 0.3 GB
@@ -31,7 +32,7 @@ def simulate_windows(windows: Windows, beta: Array, nu0: Array, eta0: Array, whi
         motion = windows.plant.simulate(
             windows.actuation.inputs, windows.start[which[block]], windows.steps, nu0[block], eta0[block], beta[block]
         )
-        predicted_channels(windows, motion.nu, motion.eta, out[block])
+        predicted_channels(windows, which[block], motion.nu, motion.eta, out[block])
         fine[block] = motion.stopped < 0
     return out, fine
 
@@ -82,9 +83,16 @@ def _simulated(windows: Windows, lanes: Sequence[Perturbation], which: np.ndarra
     """Every perturbation of the windows ``which``: predicted channels (lanes, windows, n, c), and which ran to their end (lanes, windows)."""
     b = np.repeat(np.stack([lane.beta for lane in lanes]), len(which), axis=0)
     nu = np.concatenate([windows.nu0[which] + lane.nu for lane in lanes])
-    eta = np.concatenate([windows.eta0[which] + lane.eta for lane in lanes])
+    eta = np.concatenate([_displaced(windows, windows.eta0[which], lane.eta) for lane in lanes])
     out, fine = simulate_windows(windows, b, nu, eta, np.tile(which, len(lanes)))
     return out.reshape(len(lanes), len(which), *out.shape[1:]), fine.reshape(len(lanes), len(which))
+
+
+def _displaced(windows: Windows, eta: Array, by: Array) -> Array:
+    """Initial poses (m, 6) displaced ``by`` (6,), m and rad: where a run tumbles roll and pitch stand for a tilt about two level axes."""
+    if not (by[3:5].any() and tumbling(windows.run)):
+        return np.asarray(eta + by)
+    return np.asarray(tilted(eta, by[3], by[4]) + np.concatenate([by[:3], np.zeros(2), by[5:]]))
 
 
 def residual(windows: Windows, beta: Array) -> tuple[Array, np.ndarray]:

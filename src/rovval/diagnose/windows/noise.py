@@ -16,17 +16,20 @@ from rovval.diagnose.criteria import (
     QUANTISED_REPEATS,
     QUANTISED_ROUNDING,
 )
-
-ANGLES = ("phi", "theta", "psi")
+from rovval.diagnose.windows.attitude import ANGLES, tumbling, turned_through
 
 
 def clean_channels(run: Run, channels: Sequence[str]) -> tuple[Array, Flags, Array, Flags]:
     """Channels of a run without outliers: (values, good, noise, outlier).
 
-    Values (n, c) are zero where they are not ``good`` (n, c): not measured, drawn between two samples, or an outlier. ``noise`` (c,) is the standard
-    deviation of white noise, at least that of rounding. ``outlier`` (n,) are samples at which no window may begin.
+    Values (n, c), of the attitude of a run that tumbles the turns summed up (`attitude.turned_through`), are zero where they are not ``good`` (n, c): not
+    measured, drawn between two samples, or an outlier. ``noise`` (c,) is the standard deviation of white noise, at least that of rounding. ``outlier`` (n,)
+    are samples at which no window may begin.
     """
-    values = run.stack(tuple(channels))
+    values = run.stack(tuple(channels)).copy()
+    if tumbling(run):
+        turned, angles = turned_through(run, channels), [i for i, c in enumerate(channels) if c in ANGLES]
+        values[:, angles] = turned[:, [ANGLES.index(channels[i]) for i in angles]]
     good = np.isfinite(values)
     noise, outliers = np.zeros(len(channels)), np.zeros(len(run), dtype=bool)
     for i, (name, stride) in enumerate(zip(channels, sample_strides(run, channels), strict=True)):

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from rovval.core.channels import AXES
 from rovval.core.data import Array, Flags, Run
 from rovval.core.frames import wrap
-from rovval.diagnose.windows.noise import ANGLES
+from rovval.diagnose.windows.attitude import ANGLES, attitude_error, measured_attitude, tumbling
 from rovval.plant import Plant
 from rovval.simulation.actuation import Actuation
 
@@ -32,7 +32,7 @@ class Windows:
         start: first sample of each window on the run's grid (m,).
         steps: sampling intervals of a window.
         nu0, eta0: measured initial velocities and poses (m, 6).
-        y: measured channels (m, n, c).
+        y: measured channels (m, n, c); of the attitude of a run that tumbles the turns summed up (`attitude.turned_through`).
         ok: where they hold a measurement (m, n, c).
         noise: standard deviation of the white noise of each channel (c,).
         outliers: samples that were set aside as such.
@@ -80,17 +80,25 @@ def residual_channels(run: Run) -> tuple[str, ...]:
     return tuple(c for c in chosen if run.measured(c))
 
 
-def predicted_channels(windows: Windows, nu: Array, eta: Array, out: Array | None = None) -> Array:
-    """Residual channels (b, n, c) of simulated velocities ``nu`` and poses ``eta`` (b, n, 6); written to ``out`` where it is given."""
+def predicted_channels(windows: Windows, which: NDArray[np.int64], nu: Array, eta: Array, out: Array | None = None) -> Array:
+    """Residual channels (b, n, c) of simulated velocities ``nu`` and poses ``eta`` (b, n, 6) of the windows ``which`` (b,); written to ``out`` where it is
+    given."""
     names = (*VELOCITY_CHANNELS, "x", "y", "z", "phi", "theta", "psi")
     at = [names.index(channel) for channel in windows.channels]
     begins = [i for i in range(len(at)) if i == 0 or at[i] != at[i - 1] + 1 or at[i] == 6]  # neighbours are copied at once
     blocks = [(at[i], j - i) for i, j in zip(begins, [*begins[1:], len(at)], strict=True)]
-    return np.concatenate([(nu, eta)[first // 6][..., first % 6 : first % 6 + size] for first, size in blocks], axis=-1, out=out)
+    predicted = np.concatenate([(nu, eta)[first // 6][..., first % 6 : first % 6 + size] for first, size in blocks], axis=-1, out=out)
+    if tumbling(windows.run):
+        samples = windows.start[which][:, None] + np.arange(windows.steps + 1)
+        error = attitude_error(eta[..., 3:], measured_attitude(windows.run)[samples], windows.channels)
+        for i, name in enumerate(windows.channels):
+            if name in ANGLES:
+                predicted[..., i] = windows.y[which, :, i] + error[..., ANGLES.index(name)]
+    return predicted
 
 
 def channel_difference(windows: Windows, a: Array, b: Array) -> Array:
-    """a - b (..., c) by channel, angles wrapped to (-pi, pi]."""
+    """a - b (..., c) by channel, angles wrapped to (-pi, pi]; rotation vectors are no longer than that."""
     out = a - b
     for i, name in enumerate(windows.channels):
         if name in ANGLES and (np.abs(out[..., i]) > np.pi).any():

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rovval.core.frames import wrap
+from rovval.core.frames import euler_from_quaternion, smooth_quaternions
 from rovval.effects.delay import delayed
 from rovval.effects.effect import Effect, Parameter, Tolerance
 from rovval.effects.lanes import Array, Lanes
@@ -51,7 +51,8 @@ EFFECT = Effect(
     stage="delay",
 )
 FULL_KERNEL = True
-# Parameters by whose sum a sensor is late, and what it writes of u v w p q r x y z phi theta psi (`plant.sensor_delay`).
+ANGLES = (9, 10, 11)  # phi theta psi among u v w p q r x y z phi theta psi
+# Parameters by whose sum a sensor is late, and what it writes of these (`plant.sensor_delay`).
 LATE = {("delay[velocity]",): (0, 1, 2), ("delay[attitude]",): (3, 4, 5, 9, 10, 11), ("delay[depth]",): (8,)}
 
 
@@ -64,10 +65,12 @@ def observe(log: Log, p: Mapping[str, Array]) -> Log:
     """Velocities of the velocity log, attitude and rates of the attitude sensor, and depth, of their ``delay`` ago."""
     for (parameter,), columns in LATE.items():
         if p[parameter].any():
-            state = np.concatenate([log.nu, log.eta], axis=-1)
-            state[..., 9:] = np.unwrap(state[..., 9:], axis=1)
-            state[..., columns] = delayed(state[..., columns], p[parameter] / log.dt)
-            log = replace(log, nu=state[..., :6], eta=np.concatenate([state[..., 6:9], wrap(state[..., 9:])], axis=-1))
+            late, state = p[parameter] / log.dt, np.concatenate([log.nu, log.eta], axis=-1)
+            state[..., columns] = delayed(state[..., columns], late)
+            if set(columns) & set(ANGLES):
+                q = delayed(smooth_quaternions(log.eta[..., 3:]), late)
+                state[..., ANGLES] = euler_from_quaternion(q / np.linalg.norm(q, axis=-1, keepdims=True))
+            log = replace(log, nu=state[..., :6], eta=state[..., 6:])
     return log
 
 
