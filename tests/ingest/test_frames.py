@@ -102,3 +102,10 @@ def test_axes_of_a_channel_that_has_none_are_refused(tmp_path):
     with pytest.raises(UsageProblem) as refused:
         read(tmp_path, flight("fsd", "ned")[0], wrong, frame="fsd", world="ned")
     assert "'r': has no world axes" in str(refused.value) and "x, y: in different world axes" in str(refused.value)
+
+
+def test_one_horizontal_position_of_an_east_north_up_world(tmp_path):
+    """East alone is y; it ended in an internal error."""
+    only = {"x": {"column": "x", "unit": "m"}}
+    c = read(tmp_path, flight("flu", "enu")[0], only, frame="flu", world="enu")
+    assert list(c) == ["y"] and np.allclose(c["y"].values, NED[:, 1])

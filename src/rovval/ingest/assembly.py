@@ -82,7 +82,7 @@ def build(
 def _in_order(profile: Profile, series: Mapping[str, Series]) -> list[str]:
     """Channels in the order of the profile, members of a pattern in the order of the log."""
     families = [k.partition(":")[0] for k in profile.channels]
-    families = [n for f in families for n in (EULER if f == ATTITUDE else (f,))]
+    families = [*(n for f in families for n in (EULER if f == ATTITUDE else (f,))), "x", "y"]  # east alone is y, under whatever name
     return sorted(series, key=lambda n: families.index(n.partition(":")[0]))
 
 

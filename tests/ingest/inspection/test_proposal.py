@@ -33,6 +33,7 @@ def table(path):
         ("HFP_rpm_cmd", "n_cmd", "rpm"), ("servo3_raw", "pwm", None), ("joystick_surge", "stick:surge", None), ("Latitude", "x", None),
         ("batt_volt", "voltage", "V"),
         ("gyro_x", "p", None), ("Drehzahl BB [1/min]", "n", "rpm"), ("speed_ahead", "u", None), ("w_mps", "w", "m/s"), ("pos_x_m", "x", "m"),
+        ("AngVelX", "p", None), ("HFP_PV", "n", None), ("HFP_SP", "n_cmd", None),
         ("theta_dot", "q", None),
     ],
 )  # fmt: skip
@@ -56,6 +57,16 @@ def test_a_german_table(tmp_path):
     assert np.isclose(raw.channels["u"].values[0], 0.5 * 1852 / 3600) and np.isclose(raw.channels["n:BB"].values[0], -1250.5 / 60)
     assert profile.draft and next(f.code for f in raw.findings) == "draft_profile"
     assert "Modus: text" in text.split("Left over")[1]
+
+
+def test_angles_that_do_not_say_their_unit_are_as_their_neighbours(tmp_path):
+    """Roll within 3 is degrees where the heading beside it goes to 350, and may be radians where it is alone; either way it is for review."""
+    rows = [(i / 10, 350 - i, 2.6 - i / 10, i % 3) for i in range(50)]
+    for columns, unit in ((("t", "Heading", "Roll", "RollRate"), "deg"), (("t", "Modus", "Roll", "RollRate"), "rad")):
+        (tmp_path / "a.csv").write_text("\n".join([",".join(columns), *(",".join(map(repr, row)) for row in rows)]) + "\n")
+        text, profile = table(tmp_path / "a.csv")
+        assert (profile.channels["phi"].unit, profile.channels["p"].unit) == (unit, f"{unit}/s")
+        assert all("REVIEW channel and unit" in line for line in text.splitlines() if line.startswith(("phi =", "p =")))
 
 
 def test_every_line_that_the_log_does_not_say_itself_is_marked(tmp_path):

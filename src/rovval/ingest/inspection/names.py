@@ -12,7 +12,7 @@ from rovval.ingest.text_table import stated_unit
 
 COMMAND = {"cmd", "command", "commanded", "setpoint", "sp", "set", "desired", "target", "demand", "ref", "reference", "soll"}
 SPEED = {"vel", "velocity", "speed", "linvel", "geschwindigkeit", "fahrt"}
-TURNING = {"rate", "rates", "angvel", "angular", "gyro", "gyr", "omega", "dot", "drehrate"} | SPEED
+TURNING = {"ang", "rate", "rates", "angvel", "angular", "gyro", "gyr", "omega", "dot", "drehrate"} | SPEED
 SHAFT = {"rpm", "drehzahl", "revs", "rps", "erpm", "umdrehungen"}
 THRUSTER = {"thruster", "thrusters", "motor", "motors", "esc", "prop", "propeller", "thr", "antrieb"}
 PULSE = {"pwm", "servo", "rcout", "pulse"}
@@ -43,12 +43,14 @@ SUFFIXES = {
 
 @dataclass(frozen=True, slots=True)
 class Guess:
-    """A channel that a name makes one think of, by which word; ``world``: along the world's axes; ``against``: the name says the other direction."""
+    """A channel that a name makes one think of, by which word; ``world``: along the world's axes; ``against``: the name says the other direction;
+    ``up``: it counts upwards."""
 
     channel: str
     word: str
     world: bool = False
     against: bool = False
+    up: bool = False
 
 
 def words(name: str) -> list[str]:
@@ -146,6 +148,11 @@ def _place(w: set[str], said: list[str], unit: str | None) -> Guess | None:
 def _other(w: set[str], said: list[str], unit: str | None) -> Guess | None:
     if w & {"voltage", "volt", "spannung"} or unit in ("V", "mV"):
         return Guess("voltage", _first(w, {"voltage", "volt", "spannung"}) or str(unit))
+    if {"rel", "alt"} <= w:
+        return Guess("z", "rel_alt", up=True)
+    for word, family in (("pv", "n"), ("sp", "n_cmd")):  # process value and set-point, as controllers of drives call them
+        if word in w and len(said) > 1:
+            return Guess(family, word)
     if w & {"tether", "cable"} and w & {"length", "out", "laenge"}:
         return Guess("tether_length", "tether")
     bare = [s for s in said if s not in SUFFIXES and s not in {"m", "s"}]

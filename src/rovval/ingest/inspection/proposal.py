@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from rovval.ingest.inspection.inspect import Inspection
@@ -113,7 +113,7 @@ def _as_built_in(found: Inspection) -> list[Line]:
 
 
 def _from_names(found: Inspection) -> list[Line]:
-    candidates = [c for topic in found.contents.topics.values() for c in _candidates(topic, found)]
+    candidates = [c for topic in found.contents.topics.values() for c in _alike(list(_candidates(topic, found)))]
     lines: dict[str, Line] = {}
     families: dict[tuple[str, str], list[_Candidate]] = {}
     for c in candidates:
@@ -142,9 +142,13 @@ def _complete(lines: dict[str, Line]) -> Iterator[Line]:
 def _candidates(topic: TopicSummary, found: Inspection) -> Iterator[_Candidate]:
     stamps = {c for s in found.stamps.get(topic.name, ())[:1] for c in s.columns}
     typed = meaning(topic.kind)
+    angles = set(words(topic.name)) & {"angle", "angles", "euler", "rpy"}
     for address, (channel, unit) in typed.items():
         first = f"{address}.w" if channel == "attitude" else address
-        if first in topic.fields:
+        if first in topic.fields and angles and channel in "pqr" and not topic.fields[first].constant:
+            channel, (unit, how) = dict(zip("pqr", ("phi", "theta", "psi"), strict=True))[channel], _by_values("phi", topic.fields[first])
+            yield _Candidate(topic, topic.fields[first], Guess(channel, topic.name), unit, f"angles by the topic's name; {how}", "channel and unit")
+        elif first in topic.fields and _filled(topic, first):
             review = "" if "Odometry" in topic.kind else "axes"
             yield _Candidate(topic, topic.fields[first], Guess(channel, topic.kind), unit, f"{topic.kind} defines it", review)
     array = ARRAYS.get(topic.kind.replace("/msg/", "/"))
@@ -166,10 +170,26 @@ def _candidates(topic: TopicSummary, found: Inspection) -> Iterator[_Candidate]:
             yield _Candidate(topic, f, guess, unit, f"named {guess.word!r}; {how}", "channel" if stated else "channel and unit")
 
 
+def _filled(topic: TopicSummary, address: str) -> bool:
+    """Whether a vector of a message holds anything but zeros: many sources leave what they do not measure at zero."""
+    vector = [f for a, f in topic.fields.items() if a.rpartition(".")[0] == address.rpartition(".")[0]]
+    return any(f.low != 0.0 or f.high != 0.0 for f in vector)
+
+
 def _axis(address: str, topic: TopicSummary) -> list[str]:
     """x, y or z for a member of an array of three (``velocity[0]``)."""
     found = re.fullmatch(r"(.*)\[([012])\]", address)
     return ["xyz"[int(found.group(2))]] if found and f"{found.group(1)}[2]" in topic.fields and f"{found.group(1)}[3]" not in topic.fields else []
+
+
+def _alike(candidates: list[_Candidate]) -> list[_Candidate]:
+    """Angles and rates of one topic in one unit: where one is surely degrees by its size or name, so are those that do not say theirs."""
+    degrees = any(c.unit == "deg" for c in candidates)
+    in_degrees = {"rad": "deg", "rad/s": "deg/s"}
+    return [
+        replace(c, unit=in_degrees[c.unit], why=f"{c.why}; taken as its neighbours are") if degrees and "may be" in c.why and c.unit in in_degrees else c
+        for c in candidates
+    ]
 
 
 def _by_values(channel: str, f: FieldSummary) -> tuple[str, str]:
@@ -218,8 +238,8 @@ def _line(channel: str, c: _Candidate) -> Line:
         keys["frame"] = "world"
     if c.guess.against:
         keys["sign"] = -1
-    if channel == "z" and "position" not in c.field.address and c.topic.name:
-        keys["world"] = "ned"
+    if channel == "z" and (c.guess.up or ("position" not in c.field.address and c.topic.name)):
+        keys["world"] = "enu" if c.guess.up else "ned"
     review = f"{c.review}, and its sign" if c.guess.against else c.review
     return Line(channel, keys, c.why, review)
 
