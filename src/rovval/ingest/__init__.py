@@ -19,6 +19,8 @@ from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, RovvalError, UsageProblem
 from rovval.ingest import compression, formats
 from rovval.ingest.compression import is_compressed
+from rovval.ingest.dive import read_dive
+from rovval.ingest.dive_file import is_dive
 from rovval.ingest.files import refuse_unusable
 from rovval.ingest.inspection.block import Block
 from rovval.ingest.profile import Profile, load_profile, profiles
@@ -75,13 +77,15 @@ def formats_of(path: Path) -> tuple[str, ...]:
 def read(path: Path, profile: str | None = None, timezone: str | None = None) -> RawLog:
     """The log of ``path`` in SI, forward-starboard-down and north-east-down, each channel at its own stamps.
 
-    ``profile`` is a built-in name or a path to a TOML file; without it the one built-in profile is taken whose required columns
-    or topics the log has. ``timezone`` (``Europe/Berlin``, ``+02:00``) is that of stamps that are date and time without a zone of their own;
-    it goes before the profile's. Raises `BadInput` for a log that cannot be used or that fits none or several profiles, `UsageProblem`
-    for a profile that does not exist or is wrong.
+    A dive file (``dive.toml``) is one log of all that it names. ``profile`` is a built-in name or a path to a TOML file; without it the one
+    built-in profile is taken whose required columns or topics the log has. ``timezone`` (``Europe/Berlin``, ``+02:00``) is that of stamps that
+    are date and time without a zone of their own; it goes before the profile's. Raises `BadInput` for a log that cannot be used or that fits
+    none or several profiles, `UsageProblem` for a profile that does not exist or is wrong.
     """
     path = Path(path)
     refuse_unusable(path)
+    if is_dive(path):
+        return read_dive(path, read, profile, timezone)
     chosen = (load_profile(profile) if profile is not None else _the_one_that_fits(path)).in_zone(timezone)
     able = [name for name in readers() if _able(name, path)]
     chosen_reader = reader(next(iter(_of_profile(chosen, able)), chosen.format))

@@ -7,10 +7,13 @@ import os
 from pathlib import Path
 
 from rovval.core.errors import BadInput
+from rovval.ingest.dive_file import files_of_dive, is_dive
 
 
 def files_of(path: Path) -> tuple[Path, ...]:
-    """The files that make up a log: itself, or what a folder (a ROS 2 bag) holds, in order of name."""
+    """The files that make up a log: itself, what a folder (a ROS 2 bag) holds, in order of name, or what a dive file names."""
+    if is_dive(path) and path.is_file():
+        return tuple(f for part in files_of_dive(path) for f in ((part,) if part == path else files_of(part)))
     return tuple(sorted(p for p in path.rglob("*") if p.is_file())) if path.is_dir() else (path,)
 
 
@@ -38,6 +41,8 @@ def sha256(path: Path) -> str:
     for part in files_of(path):
         if path.is_dir():
             digest.update(os.fsencode(part.relative_to(path).as_posix()) + b"\0")
+        elif part != path:  # a file of a dive
+            digest.update(os.fsencode(part.name) + b"\0")
         with part.open("rb") as file:
             while block := file.read(1 << 20):
                 digest.update(block)

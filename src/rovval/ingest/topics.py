@@ -135,6 +135,8 @@ def _facts(profile: Profile, parts: Sequence[Part], known: Sequence[tuple[Part, 
         facts["topics"] = names
     if profile.time.kind == "time_of_day":
         facts["time_of_day_s_at_start"] = f"{start % DAY_S:.3f}"
+    if profile.time.kind == "elapsed" or all(c.epoch_ns is None and c.stamp != "row" for _, c in known):
+        facts["stamp_s_at_start"] = repr(start)
     if profile.time.kind == "datetime":
         facts["timezone"] = profile.time.timezone or "UTC where the stamps do not say theirs"
     for part in (p for p in parts if p.table):

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from rovval.core.errors import BadInput, all_at_once
 from rovval.ingest.compression import suffix
+from rovval.ingest.dive_file import files_of_dive, is_dive
 
 SUFFIXES = (
     ".csv", ".tsv", ".txt", ".xlsx", ".xls", ".xlsm", ".xlsb", ".ods", ".parquet", ".pq", ".mat", ".h5", ".hdf5", ".hdf", ".he5",
@@ -20,7 +21,8 @@ WILD = "*?["
 
 
 def logs_in(sources: Sequence[str]) -> list[Path]:
-    """Files as named; of a folder every file that looks like a log, readable or not, and every ROS 2 bag folder as one log.
+    """Files as named; of a folder every file that looks like a log, readable or not, every ROS 2 bag folder as one log, and every dive file as one, in place of
+    the files that it names.
 
     Raises:
         BadInput: a source does not exist, or there is no log in all of them.
@@ -81,9 +83,12 @@ def is_bag(path: Path) -> bool:
 def _inside(folder: Path) -> list[Path]:
     if is_bag(folder):
         return [folder]
-    logs = []
-    for entry in sorted(folder.iterdir()):
-        if entry.name.startswith("."):
+    entries = sorted(folder.iterdir())
+    dives = [entry for entry in entries if is_dive(entry)]
+    within = {part.resolve() for dive in dives for part in files_of_dive(dive)}  # logs of a dive are no logs of their own
+    logs = list(dives)
+    for entry in entries:
+        if entry.name.startswith(".") or entry.resolve() in within:
             continue
         if entry.is_dir():
             logs += _inside(entry)

@@ -93,7 +93,8 @@ def read(path: Path, profile: Profile) -> RawLog:
             signals[name] = Signal(t, column[rows], stamp, source)
     t0_ns = round(t0 * 1e9) if t0 > 1e9 else None  # smaller: seconds since the autopilot started
     signals, told = turned(profile, signals, parameters)
-    return build(profile, signals, path, sha256(path), t0_ns, [*findings, *told], {"messages": ", ".join(k for k, _ in logged)})
+    facts = {"messages": ", ".join(k for k, _ in logged), **({"stamp_s_at_start": repr(t0)} if t0_ns is None else {})}
+    return build(profile, signals, path, sha256(path), t0_ns, [*findings, *told], facts)
 
 
 def contents(path: Path) -> Iterator[Block]:

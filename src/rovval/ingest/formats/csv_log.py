@@ -62,6 +62,8 @@ def read(path: Path, profile: Profile) -> RawLog:
     logged, t0_ns = stamps(path, profile, text, values)
     rows, t, clock_found = increasing_stamps(logged, lines, str(path))
     start = {"time_of_day_s_at_start": f"{float(t[0]) % DAY_S:.3f}"} if profile.time.kind == "time_of_day" else {}
+    if profile.time.kind == "elapsed":
+        start = {"stamp_s_at_start": repr(float(t[0]))}
     if profile.time.kind == "datetime":
         start = {"timezone": profile.time.timezone or "UTC where the stamps do not say theirs"}
     since = np.asarray(t - t[0])

@@ -52,7 +52,7 @@ def inspect(path: Path) -> Inspection:
             refused.append(error)
             continue
         profiles = [ingest.load_profile(p) for p in ingest.profiles()]
-        mine = [p for p in profiles if p.format == name]
+        mine = [p for p in profiles if p.format in (name, *ingest.reader(name).ALSO)]
         matches = sorted((match(p, contents) for p in mine), key=lambda m: (len(m.gone), -len(m.found)))
         lacking = {p.name: ingest.reader(name).missing(path, p) for p in mine}
         stamps = {topic: tuple(readings(t)) for topic, t in contents.topics.items() if t.rows and not t.clocks}
