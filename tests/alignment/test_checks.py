@@ -150,3 +150,14 @@ def test_a_heading_that_wraps_at_two_pi_degrees_is_in_radians():
     (finding,) = check(log(psi=(t, np.radians(heading))))
     assert finding.code == "unit" and "it is in radians" in finding.detail
     assert check(log(psi=(t, wrap(heading)))) == ()
+
+
+@pytest.mark.parametrize(("channel", "times", "said"), [("w", 1852 / 3600, "z, w"), ("r", np.pi / 180, "psi, r")])
+def test_units_of_a_log_without_roll_and_pitch(channel, times, said):
+    """A vehicle that is level: depth and heading alone tell that w is in knots, or r in degrees a second."""
+    t = np.arange(1200) * 0.1
+    w, r = 0.3 * np.sin(0.5 * t), 0.2 * np.cos(0.3 * t)
+    series = {"w": w, "r": r, "z": 5.0 - 0.6 * np.cos(0.5 * t), "psi": np.asarray(wrap(1.0 + 0.2 / 0.3 * np.sin(0.3 * t)))}
+    assert check(log(**{n: (t, v) for n, v in series.items()})) == ()
+    [found] = check(log(**{n: (t, v / times if n == channel else v) for n, v in series.items()}))
+    assert (found.code, found.where) == ("scale", said) and "the ratio of" in found.detail and "not logged" in found.detail

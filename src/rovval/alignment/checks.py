@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -31,7 +32,7 @@ def check(raw: RawLog) -> tuple[Finding, ...]:
         found += bad_samples(name, series, None)[1]
         found += _rate(name, series)
         found += _commands_absent(raw, name, series)
-    return (*_merged(found), *_kinematics(raw), *attitude_in_radians(raw), *against_commands(raw))
+    return (*_merged(found), *_kinematics(raw), *_kinematics_when_level(raw), *attitude_in_radians(raw), *against_commands(raw))
 
 
 def _merged(found: list[Finding]) -> list[Finding]:
@@ -146,6 +147,23 @@ def _kinematics(raw: RawLog) -> list[Finding]:
         known = level & np.isfinite(way) & np.isfinite(said)
         if known.sum() >= 50 and not any(f.where == names for f in found):
             found += _agree(names, way[known], said[known])
+    return found
+
+
+def _kinematics_when_level(raw: RawLog) -> list[Finding]:
+    """Heading against r and depth against w, of a log that holds neither roll nor pitch: a vehicle that is level, or nearly."""
+    found: list[Finding] = []
+    for pose, rate in (("psi", "r"), ("z", "w")):
+        if "phi" in raw.channels or "theta" in raw.channels or pose not in raw.channels or rate not in raw.channels:
+            continue
+        series, velocity = raw.channels[pose], raw.channels[rate]
+        t, x = series.t, np.unwrap(series.values) if pose == "psi" else series.values
+        k = max(1, round(1.0 / float(np.median(np.diff(t)))))
+        moved, said = _step(x, k), _way(np.interp(t, velocity.t, velocity.values, np.nan, np.nan), t, k)
+        known = np.isfinite(said) & (t[k:] - t[:-k] < 2.0)
+        if known.sum() >= 50:
+            agree = _agree(f"{pose}, {rate}", moved[known], said[known])
+            found += [replace(f, detail=f"{f.detail}; roll and pitch are not logged, taken as none") for f in agree]
     return found
 
 
