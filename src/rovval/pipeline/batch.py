@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from rovval.core.errors import Unwritable, UsageProblem
-from rovval.pipeline import catalogue, cluster, config, lock, summary
+from rovval.pipeline import catalogue, cluster, config, lock, retention, summary
 from rovval.pipeline.config import Pipeline
 from rovval.pipeline.plan import Plan, Task, plan
 from rovval.pipeline.processes import execute
@@ -58,13 +58,15 @@ def run(
                 progress(f"{number} of {len(todo.todo)} logs, {task.log.name}", number / len(todo.todo))
         except UsageProblem as problem:
             stop = problem
-        records = [*finished, *todo.done, *todo.kept]
+        records = [*finished, *todo.done, *todo.kept, *todo.postponed]
         damaged, unusual, unwritten = _entered(pipeline, records, finished)
         before = read_json(pipeline.reports / SUMMARY)
         stop, seconds = stop or unwritten, time.monotonic() - began
         document = summary.summarise(
             pipeline.name, finished, todo.done, aside, todo.waiting, pipeline.tolerances, seconds, why, todo.missing, stop, unusual, damaged
         )
+        document["counts"]["postponed"] = len(todo.postponed)
+        document["removed"] = [] if stop else retention.sweep(pipeline, todo.folders)
         document["night_before"] = summary.night_before(before)
         _publish(pipeline, document, records)
     if stop:

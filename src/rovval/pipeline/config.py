@@ -33,7 +33,12 @@ class Source(Strict):
 
 
 class Pipeline(Strict):
-    """The file. Folders are relative to it, so that it works from any working directory (cron has its own)."""
+    """The file. Folders are relative to it, so that it works from any working directory (cron has its own).
+
+    ``recordings``: whether the report of a comparison has a recording for the viewer, two thirds of its bytes; `rovval view` makes one of any run.
+    ``most_redone``: how many logs that older code of rovval has judged are judged anew a night, the newest first. ``keep_replaced_days``: how
+    long the reports on a log's former content stay after it changed; None is for ever.
+    """
 
     name: str
     source: Annotated[tuple[Source, ...], Field(min_length=1)]
@@ -48,6 +53,9 @@ class Pipeline(Strict):
     timeout_s: Annotated[float, Field(gt=0)] | None = None
     settle_s: Annotated[float, Field(ge=0)] = 0.0
     tolerances: tuple[str, ...] = ()
+    recordings: bool = False
+    most_redone: Annotated[int, Field(ge=0)] | None = None
+    keep_replaced_days: Annotated[float, Field(ge=0)] | None = None
 
     @field_validator("tolerances")
     @classmethod

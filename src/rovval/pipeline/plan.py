@@ -6,7 +6,7 @@ import hashlib
 import json
 import time
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -45,6 +45,7 @@ class Task:
     folder: Path
     code: str
     method: str
+    recordings: bool = False
 
     @property
     def key(self) -> str:
@@ -66,7 +67,8 @@ class Task:
 class Plan:
     """Tasks to do, records of what is done, records of what stays in quarantine or cannot be read, and logs left for later with the reason.
 
-    ``missing`` are sources of which no log is there, with the reason; ``kept`` the records of the logs that they had.
+    ``missing`` are sources of which no log is there, with the reason; ``kept`` the records of the logs that they had. ``postponed`` are the records
+    of logs that older code of rovval has judged and that a later night judges anew; ``folders`` are those of the reports of every log.
     """
 
     todo: tuple[Task, ...]
@@ -75,6 +77,8 @@ class Plan:
     waiting: tuple[tuple[Path, str], ...]
     missing: tuple[tuple[str, str], ...] = ()
     kept: tuple[Mapping[str, Any], ...] = ()
+    postponed: tuple[Mapping[str, Any], ...] = ()
+    folders: Mapping[str, frozenset[Path]] = field(default_factory=dict)
 
     @property
     def why(self) -> Mapping[str, int]:
@@ -96,6 +100,7 @@ class _Sorting:
     missing: list[tuple[str, str]] = field(default_factory=list)
     kept: list[Mapping[str, Any]] = field(default_factory=list)
     seen: dict[str, Path] = field(default_factory=dict)
+    folders: dict[str, frozenset[Path]] = field(default_factory=dict)
 
     def log(self, log: Path, source: Source, content: tuple[str, str, str]) -> None:
         """Put one log where it belongs."""
@@ -103,6 +108,7 @@ class _Sorting:
             self.waiting.append((log, f"changed less than {self.pipeline.settle_s:g} s ago (settle_s): a later run takes it"))
             return
         task = _task(self.pipeline, source, log, self.hashes.of(log), content)
+        self.folders[str(log)] = self.folders.get(str(log), frozenset()) | {task.folder}
         if (twin := self.seen.setdefault(task.key, log)) != log:
             self.waiting.append((log, f"same content as {twin}"))
         elif record := _finished(task, self.hashes.afresh):
@@ -147,9 +153,26 @@ def plan(pipeline: Pipeline, base: Path, retry: bool = False, verify: bool = Fal
     _refuse_unknown_folders(pipeline, base, sorting)
     with suppress(Unwritable):  # it only saves reading; whoever writes a result on that disk is stopped, and says why
         sorting.hashes.save()
+    todo, postponed = _in_a_night(sorting.todo, pipeline.most_redone)
     return Plan(
-        tuple(sorting.todo), tuple(sorting.done), tuple(sorting.aside), tuple(sorting.waiting), tuple(sorting.missing), tuple(sorting.kept)
-    )
+        tuple(todo), tuple(sorting.done), tuple(sorting.aside), tuple(sorting.waiting), tuple(sorting.missing), tuple(sorting.kept),
+        tuple(postponed), sorting.folders,
+    )  # fmt: skip
+
+
+def _in_a_night(todo: Sequence[Task], most: int | None) -> tuple[list[Task], list[Mapping[str, Any]]]:
+    """What of ``todo`` is done this night: all that is new, and of the logs that other code of rovval has judged the ``most`` newest; and the records
+    of the rest, which stand as they are until then."""
+    if most is None:
+        return list(todo), []
+    records = {task: read_record(task.folder) for task in todo}
+    judged = {task: record for task, record in records.items() if record and "began" in record and _codes(record) - {task.code}}
+    newest = sorted(judged, key=lambda task: str(judged[task]["began"]), reverse=True)
+    return [task for task in todo if task not in judged] + newest[:most], [judged[task] for task in newest[most:]]
+
+
+def _codes(record: Mapping[str, Any]) -> set[str]:
+    return {step.get("code", "older") for step in record["steps"].values()}
 
 
 def _refuse_unknown_folders(pipeline: Pipeline, base: Path, sorting: _Sorting) -> None:
@@ -180,7 +203,7 @@ def _task(pipeline: Pipeline, source: Source, log: Path, sha: str, content: tupl
     options: dict[str, tuple[Any, ...]] = {
         "ingest": (),
         "simulate": (vehicle, pipeline.model, pipeline.effects, pipeline.window_s),
-        "compare": (vehicle, pipeline.model, pipeline.effects, pipeline.window_s),
+        "compare": (vehicle, pipeline.model, pipeline.effects, pipeline.window_s, pipeline.recordings),
         "diagnose": (vehicle, pipeline.model, pipeline.window_s, pipeline.calibration_slop),
     }
     for step in pipeline.steps:
@@ -201,6 +224,7 @@ def _task(pipeline: Pipeline, source: Source, log: Path, sha: str, content: tupl
         folder=pipeline.reports / f"{shortened(log.stem)}-{_hash(sha, source.profile, source.vehicle)[:8]}",
         code=made_by,
         method=_hash(made_by, profile, [(step, *options[step]) for step in pipeline.steps])[:12],
+        recordings=pipeline.recordings,
     )
 
 

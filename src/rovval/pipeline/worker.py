@@ -174,7 +174,7 @@ class _Bench:
         from rovval.report.comparison.json import document
 
         comparison = compare(checked_against(self.run, self.vehicle), self.sim)
-        files = report.write(comparison, self.task.folder / "comparison", self.vehicle)
+        files = report.write(comparison, self.task.folder / "comparison", self.vehicle, recorded=self.task.recordings)
         return {"comparison": document(comparison)}, list(files.values())
 
     def diagnose(self) -> tuple[dict[str, Any], list[Path]]:

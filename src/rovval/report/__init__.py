@@ -12,24 +12,23 @@ if TYPE_CHECKING:
     from rovval.vehicle.model import Vehicle
 
 
-def write(comparison: Comparison, folder: Path, vehicle: Vehicle, corrected: SimResult | None = None) -> Mapping[str, Path]:
-    """Write report.json, report.md, report.html and run.rrd into ``folder``, whole or not at all; name -> path.
+def write(comparison: Comparison, folder: Path, vehicle: Vehicle, corrected: SimResult | None = None, recorded: bool = True) -> Mapping[str, Path]:
+    """Write report.json, report.md, report.html and, where it is to be ``recorded``, run.rrd into ``folder``, whole or not at all; name -> path.
 
     ``corrected`` is a simulation of the same run with the effects of a diagnosis in it: the recording's third trace.
     """
-    from rovval.report.common.files import write_all
+    from rovval.report.common.files import Writer, write_all
     from rovval.report.comparison import html, json, markdown
     from rovval.report.recording import write as recording
 
-    return write_all(
-        Path(folder),
-        {
-            "report.json": json.text(json.document(comparison)),
-            "report.md": markdown.text(comparison),
-            "report.html": html.text(comparison),
-            "run.rrd": lambda path: recording.write(comparison, path, vehicle, corrected),
-        },
-    )
+    files: dict[str, str | Writer] = {
+        "report.json": json.text(json.document(comparison)),
+        "report.md": markdown.text(comparison),
+        "report.html": html.text(comparison),
+    }
+    if recorded:
+        files["run.rrd"] = lambda path: recording.write(comparison, path, vehicle, corrected)
+    return write_all(Path(folder), files)
 
 
 def write_diagnosis(

@@ -1,0 +1,38 @@
+"""How long reports on a log's former content stay: ``keep_replaced_days`` after the log changed, for ever without it.
+
+The runs of the archive and the rows of the catalogue stay in any case, and so does every report on a log that is gone.
+"""
+
+from __future__ import annotations
+
+import shutil
+import time
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+
+from rovval.ingest.files import files_of
+from rovval.pipeline.config import Pipeline
+from rovval.pipeline.records import RECORD, read_record
+
+DAY_S = 86400.0
+
+
+def sweep(pipeline: Pipeline, folders: Mapping[str, frozenset[Path]]) -> list[str]:
+    """Remove the report folders of the pipeline that are about a log of ``folders`` and none of its own (its content, or its vehicle or profile, was
+    another) and whose time is over; hold the lock of the reports. Returns their names, for the summary."""
+    if pipeline.keep_replaced_days is None:
+        return []
+    over = [folder for folder in (path.parent for path in pipeline.reports.glob(f"*/{RECORD}")) if _is_over(folder, folders, pipeline.keep_replaced_days)]
+    for folder in over:
+        shutil.rmtree(folder, ignore_errors=True)
+    return sorted(folder.name for folder in over if not folder.exists())
+
+
+def _is_over(folder: Path, folders: Mapping[str, frozenset[Path]], days: float) -> bool:
+    record = read_record(folder)
+    if record is None or folder in folders.get(record["log"], {folder}):
+        return False
+    with suppress(OSError):  # a log that cannot be looked at tells nothing
+        return time.time() - max(part.stat().st_mtime for part in files_of(Path(record["log"]))) > days * DAY_S
+    return False
