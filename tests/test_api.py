@@ -69,3 +69,13 @@ def test_what_has_no_page_is_refused():
 def test_a_vehicle_that_does_not_exist_is_refused_by_name():
     with pytest.raises(UsageProblem, match="no vehicle named 'merlim'"):
         rovval.simulate(sample(), "merlim")
+
+
+def test_a_mission_is_flown_and_its_run_is_one_like_any_other():
+    from rovval.fly.mission import parse
+
+    flight = rovval.fly(parse({"name": "brief", "vehicle": "merlin", "leg": [{"kind": "hold", "for_s": 3.0, "depth_m": 20.5}]}))
+    assert rovval.compare(flight.run(), "merlin").free["heave"].rmse < 1e-3
+    assert rovval.plot(flight).html.startswith("<!doctype html>")
+    with pytest.raises(UsageProblem, match="no such mission"):
+        rovval.fly("no_such_mission")

@@ -1,6 +1,6 @@
 """rovval: where a simulator of a remotely operated vehicle and the real vehicle disagree, why, and by how much less once mended.
 
-The functions of this file are the API for scripts and notebooks: `load`, `simulate`, `compare`, `diagnose`, `fit`, and `plot` for what
+The functions of this file are the API for scripts and notebooks: `load`, `simulate`, `compare`, `diagnose`, `fit`, `fly`, and `plot` for what
 each returns. They do what the commands of the same names do, without files: results are frozen objects, nothing is printed or
 written, and every refusal is a `rovval.core.errors.RovvalError`. Libraries are imported by the first call that needs them.
 """
@@ -20,12 +20,14 @@ if TYPE_CHECKING:
     from rovval.core.data import Comparison, Run, SimResult
     from rovval.diagnose import Diagnosis
     from rovval.fit import FitResult
+    from rovval.fly.flight import Flight
+    from rovval.fly.mission import Mission
     from rovval.report.notebook import Page
     from rovval.vehicle.model import Vehicle
 
     AnyVehicle = Vehicle | str | Path | None
 
-__all__ = ["__version__", "compare", "diagnose", "fit", "load", "plot", "simulate"]
+__all__ = ["__version__", "compare", "diagnose", "fit", "fly", "load", "plot", "simulate"]
 
 
 def load(
@@ -147,8 +149,48 @@ def fit(
     return fit(logs, _vehicle(logs[0], vehicle), parameters, model=model, window_s=window_s, progress=progress)
 
 
-def plot(result: Run | SimResult | Comparison | Diagnosis | FitResult) -> Page:
-    """What `load`, `simulate`, `compare`, `diagnose` or `fit` returned, as a page: a notebook shows it, ``.save(path)`` writes one file."""
+def fly(
+    mission: Mission | str | Path,
+    vehicle: AnyVehicle = None,
+    *,
+    model: str = "fossen",
+    effects: Sequence[str] = (),
+    noise: float = 1.0,
+    draws: int = 0,
+    seed: int = 0,
+    calibration_slop: float = 0.05,
+    progress: Callable[[str, float], None] | None = None,
+) -> Flight:
+    """A mission flown: planned thruster speeds, the movement protocol, or controllers and way points in the loop (docs/missions.md).
+
+    The result's ``run()`` is a run that every other function of this file takes.
+
+    Args:
+        mission: a mission, one of those that come with rovval (``"survey"``) or a TOML file.
+        vehicle: as `simulate` takes it; None is the vehicle that the mission names.
+        effects: settings such as ``"current_constant:north=0.3"`` beside the mission's own.
+        noise: factor on noise and bias of the mission's sensors; 0 closes the loop on the true state.
+        draws: so many vehicles within the file's tolerances beside the one of the file.
+        calibration_slop: relative standard deviation that a healthy simulator's coefficients may have, for the draws.
+
+    Raises:
+        UsageProblem: no such mission, vehicle, model or effect, or something of the mission that cannot be flown.
+    """
+    from rovval.core.errors import UsageProblem
+    from rovval.fly import fly
+    from rovval.fly.mission import Mission, load
+    from rovval.vehicle import load as load_vehicle
+    from rovval.vehicle.model import Vehicle
+
+    plan = mission if isinstance(mission, Mission) else load(mission)
+    if vehicle is None and not plan.vehicle:
+        raise UsageProblem(f"mission {plan.name} names no vehicle", "give one")
+    nominal = vehicle if isinstance(vehicle, Vehicle) else load_vehicle(str(vehicle or plan.vehicle))
+    return fly(plan, nominal, model, effects, noise=noise, draws=draws, seed=seed, calibration_slop=calibration_slop, progress=progress)
+
+
+def plot(result: Run | SimResult | Comparison | Diagnosis | FitResult | Flight) -> Page:
+    """What `load`, `simulate`, `compare`, `diagnose`, `fit` or `fly` returned, as a page: a notebook shows it, ``.save(path)`` writes one file."""
     from rovval.report.notebook import page_of
 
     return page_of(result)

@@ -36,6 +36,11 @@ def profiles(incomplete: str) -> list[str]:
     return _starting(known("profile"), incomplete) + _paths(incomplete, ".toml")
 
 
+def missions(incomplete: str) -> list[str]:
+    """Missions that come with rovval, and TOML files."""
+    return _starting(sorted(p.stem for p in (PACKAGE / "fly/missions").glob("*.toml")), incomplete) + _paths(incomplete, ".toml")
+
+
 def yaml_files(incomplete: str) -> list[str]:
     """YAML files."""
     return sorted(_paths(incomplete, ".yaml") + _paths(incomplete, ".yml"))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rovval.core.data import Comparison, SimResult
     from rovval.diagnose.result.diagnosis import Diagnosis
+    from rovval.fly.flight import Flight
     from rovval.vehicle.model import Vehicle
 
 
@@ -60,3 +61,12 @@ def write_diagnosis(
     if comparison is not None and vehicle is not None:
         files["run.rrd"] = lambda path: recording.write(comparison, path, vehicle, corrected)
     return write_all(Path(folder), files)
+
+
+def write_flight(flight: Flight, folder: Path) -> Mapping[str, Path]:
+    """Write flight.json and flight.html into ``folder``, both or neither; name -> path."""
+    from rovval.report.common.files import write_all
+    from rovval.report.flight import html, json
+    from rovval.storage.atomic import json_text
+
+    return write_all(Path(folder), {"flight.json": json_text(json.document(flight)), "flight.html": html.text(flight)})

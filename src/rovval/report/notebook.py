@@ -40,12 +40,14 @@ class Page:
 
 
 def page_of(result: object) -> Page:
-    """The page of a `Run`, `SimResult`, `Comparison`, `Diagnosis` or `FitResult`; raises `TypeError` for anything else."""
+    """The page of a `Run`, `SimResult`, `Comparison`, `Diagnosis`, `FitResult` or `Flight`; raises `TypeError` for anything else."""
     from rovval.diagnose import Diagnosis
     from rovval.fit import FitResult
+    from rovval.fly.flight import Flight
     from rovval.report.comparison import html as comparison_html
     from rovval.report.diagnosis import html as diagnosis_html
     from rovval.report.diagnosis.json import worded
+    from rovval.report.flight import html as flight_html
 
     match result:
         case Comparison():
@@ -56,10 +58,12 @@ def page_of(result: object) -> Page:
             return Page(_fit(result.document))
         case SimResult():
             return Page(_simulation(result))
+        case Flight():
+            return Page(flight_html.text(result))
         case Run():
             return Page(_run(result))
         case _:
-            raise TypeError(f"no page of a {type(result).__name__}: give what load, simulate, compare, diagnose or fit returned")
+            raise TypeError(f"no page of a {type(result).__name__}: give what load, simulate, compare, diagnose, fit or fly returned")
 
 
 def _run(run: Run) -> str:

@@ -1,0 +1,1 @@
+"""The closed loop: instruments and their filter, guidance, controllers, allocation."""
