@@ -14,10 +14,12 @@ from typer.testing import CliRunner
 
 from rovval import ingest
 from rovval.cli.app import app
+from rovval.core.errors import BadInput
 from rovval.ingest.inspection.inspect import inspect
 from rovval.ingest.inspection.names import channel_guess, unit_said, words
 from rovval.ingest.inspection.proposal import proposed
 from rovval.ingest.profile import parse_profile
+from rovval.report.inspection import document, page
 
 
 def table(path):
@@ -115,3 +117,37 @@ def test_check_shows_rows_in_si_and_what_is_left(tmp_path):
 def test_check_refuses_a_log_that_the_profile_does_not_read(tmp_path):
     done = CliRunner().invoke(app, ["profile", "check", "merlin", str(german(tmp_path / "dive.csv"))])
     assert done.exit_code != 0 and "AngVelX" in str(done.exception)
+
+
+def test_a_damaged_header_makes_no_damaged_profile(tmp_path):
+    """Control characters would end the TOML's comment; dates that are none are no stamps."""
+    head, *rows = german(tmp_path / "dive.csv").read_text(encoding="utf-8").splitlines()[1:]
+    spoilt = [head.replace("Tiefe", "Tie\x0ffe\x7f"), *(row.replace("03.05.2024", "43.05.2024") for row in rows)]
+    (tmp_path / "spoilt.csv").write_text("\n".join(spoilt) + "\n", encoding="utf-8")
+    text, profile = table(tmp_path / "spoilt.csv")
+    assert "u" in profile.channels and "no column rises" in text
+
+
+@pytest.mark.slow
+def test_a_mutated_table_is_inspected_or_refused(tmp_path):
+    """Bytes changed, lost, doubled and cut, 300 times: a page and a profile that TOML reads, or a refusal."""
+    rng = np.random.default_rng(7)
+    whole = german(tmp_path / "dive.csv").read_bytes()
+    read = 0
+    for _ in range(300):
+        spoilt = bytearray(whole)
+        for _ in range(rng.integers(1, 20)):
+            at = int(rng.integers(len(spoilt)))
+            kind = rng.integers(4)
+            other = [bytes(rng.integers(0, 256, 3, dtype=np.uint8)), b";;\n\n", b"", spoilt[at:] * 2][kind]
+            spoilt[at : at + (0 if kind == 1 else int(rng.integers(1, 30)))] = other
+            spoilt = spoilt[:20_000]
+        (tmp_path / "spoilt.csv").write_bytes(spoilt)
+        try:
+            found = inspect(tmp_path / "spoilt.csv")
+        except BadInput:
+            continue
+        json.dumps(document(found), allow_nan=False)
+        assert page(found) and tomllib.loads(proposed(found, "mine"))
+        read += 1
+    assert read > 30

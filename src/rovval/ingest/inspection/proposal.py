@@ -58,7 +58,7 @@ def proposed(found: Inspection, name: str) -> str:
         f"# Proposed by rovval from the names, units and values of {Path(found.path).name}. Lines with REVIEW are guesses:",
         f"# confirm or mend each, then `rovval profile check {name}.toml {Path(found.path).name}`, and delete the line `draft`.",
         f"name = {json.dumps(name)}",
-        f"description = {json.dumps(f'Logs such as {Path(found.path).name}', ensure_ascii=False)}",
+        f"description = {_quoted(f'Logs such as {Path(found.path).name}')}",
         f"format = {json.dumps(found.format)}",
         'vehicle = ""  # REVIEW: a name of `rovval list vehicle`, or a file',
         f'frame = "{"flu" if bag else "fsd"}"  # REVIEW: {"REP-103 of ROS" if bag else "as most vehicles log"}; the log does not say it',
@@ -72,7 +72,7 @@ def proposed(found: Inspection, name: str) -> str:
         *([_text(line) for line in lines] or ["# no name here says a channel: map what is left over by hand"]),
     ]
     left = _left_over(found, lines)
-    return "\n".join([*header, "", "# Left over, mapped to nothing:", *(f"#   {one}" for one in left)] if left else header) + "\n"
+    return "\n".join([*header, "", "# Left over, mapped to nothing:", *(f"#   {_printable(one)}" for one in left)] if left else header) + "\n"
 
 
 def _clock(found: Inspection) -> list[str]:
@@ -90,7 +90,7 @@ def _clock(found: Inspection) -> list[str]:
 
 
 def _stamp_lines(s: Stamps, where: str = "") -> list[str]:
-    lines = [f'kind = "{s.kind}"  # {"" if s.sure else "REVIEW: "}{s.why}', f"columns = {json.dumps(list(s.columns), ensure_ascii=False)}{where}"]
+    lines = [f'kind = "{s.kind}"  # {"" if s.sure else "REVIEW: "}{s.why}', f"columns = {_quoted(list(s.columns))}{where}"]
     lines += [f'unit = "{s.unit}"'] if s.kind in ("elapsed", "epoch") else []
     lines += [f'since = "{s.since}"'] if s.since != "unix" else []
     lines += [f'date_order = "{s.date_order}"'] if s.date_order else []
@@ -281,10 +281,20 @@ def _shared(names: list[str]) -> str:
 
 
 def _text(line: Line) -> str:
-    key = line.channel if re.fullmatch(r"\w+", line.channel) else json.dumps(line.channel)
+    key = line.channel if re.fullmatch(r"\w+", line.channel) else _quoted(line.channel)
     known = sorted(line.source, key=(*ADDRESS, *Source.model_fields).index)
-    values = ", ".join(f"{k} = {json.dumps(line.source[k], ensure_ascii=False)}" for k in known)
-    return f"{key} = {{ {values} }}  # {f'REVIEW {line.review}: ' if line.review else ''}{line.why}"
+    values = ", ".join(f"{k} = {_quoted(line.source[k])}" for k in known)
+    return f"{key} = {{ {values} }}  # {f'REVIEW {line.review}: ' if line.review else ''}{_printable(line.why)}"
+
+
+def _quoted(value: object) -> str:
+    """A value as TOML writes it: as JSON, but for one character."""
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _printable(text: str) -> str:
+    """Text that may stand in a comment: a damaged header can hold anything."""
+    return "".join(c if c.isprintable() else "?" for c in text)
 
 
 def _left_over(found: Inspection, lines: list[Line]) -> list[str]:

@@ -69,19 +69,24 @@ def _of_text(field: FieldSummary, fields: Mapping[str, FieldSummary]) -> list[St
 
 
 def _dated(texts: pl.Series, columns: tuple[str, ...]) -> list[Stamps]:
-    out, orders = [], date_orders(texts)
-    for order in orders:
-        try:
-            ns = nanoseconds(texts, order, "UTC")
-            nanoseconds(texts, None, "UTC")
-            itself = True
-        except BadInput:
-            itself = False
-        r = rhythm(np.array(ns.cast(pl.Float64).fill_null(np.nan).to_numpy()) * 1e-9)
-        shown = "a day above 12 shows it" if len(orders) == 1 else "nothing in the log shows whether"
-        how = "date and time as text" + ("" if itself else f", read {order}: {shown}")
-        out += [Stamps("datetime", columns, r, how, len(orders) == 1, date_order=None if itself else order)] if r else []
-    return out
+    orders = date_orders(texts)
+    return [s for order in orders if (s := _in_order(texts, columns, order, len(orders) == 1)) is not None]
+
+
+def _in_order(texts: pl.Series, columns: tuple[str, ...], order: str, sure: bool) -> Stamps | None:
+    """Stamps read in one order of year, month and day; None where most are no dates in it."""
+    try:
+        ns = nanoseconds(texts, order, "UTC")
+    except BadInput:
+        return None
+    try:
+        nanoseconds(texts, None, "UTC")
+        stated, how = None, "date and time as text"
+    except BadInput:
+        shown = "a day above 12 shows it" if sure else "nothing in the log shows whether"
+        stated, how = order, f"date and time as text, read {order}: {shown}"
+    r = rhythm(np.array(ns.cast(pl.Float64).fill_null(np.nan).to_numpy()) * 1e-9)
+    return Stamps("datetime", columns, r, how, sure, date_order=stated) if r else None
 
 
 def _of_number(field: FieldSummary) -> list[Stamps]:

@@ -122,6 +122,15 @@ class _Field:
     kept: list[Array] | None = None
     texts: list[str] = field(default_factory=list)
 
+    def reach(self, rows: int) -> None:
+        """Missing in the rows up to here: blocks of one topic may differ in their fields, and a column in what its cells are."""
+        absent = rows - self.rows
+        if self.kept is not None and absent > 0:
+            self.kept.append(np.full(absent, np.nan))
+        self.rows = max(self.rows, rows)
+        if self.texts:
+            self.texts += [""] * (self.rows - len(self.texts))
+
     def numbers(self, values: Array, keep: bool) -> None:
         known = values[np.isfinite(values)]
         if self.rows == 0 and keep:
@@ -138,6 +147,9 @@ class _Field:
 
     def words(self, texts: Iterable[str]) -> None:
         written = list(texts)
+        self.texts += [""] * (self.rows - len(self.texts))
+        if self.kept is not None:
+            self.kept.append(np.full(len(written), np.nan))
         self.rows += len(written)
         self.present += sum(bool(t) for t in written)
         self.texts += written
@@ -169,12 +181,20 @@ class _Topic:
             self.clocks.setdefault(name, []).append(np.asarray(stamps, dtype=float))
         for address, values in block.numbers.items():
             known = values[np.isfinite(values)]
-            held = self.fields.setdefault(address, _Field(True, block.units.get(address, "")))
+            held = self._held(address, True, block.units.get(address, ""))
             held.numbers(np.asarray(values, dtype=float), keep=table and len(known) > 1 and (_clock_name(address) or bool((np.diff(known) >= 0).all())))
         for address, texts in block.texts.items():
-            self.fields.setdefault(address, _Field(False, "")).words(texts)
+            self._held(address, False, "").words(texts)
         self.left_out |= block.left_out
         self.rows += block.rows
+        for held in self.fields.values():
+            held.reach(self.rows)
+
+    def _held(self, address: str, number: bool, unit: str) -> _Field:
+        held = self.fields.setdefault(address, _Field(number, unit))
+        held.number |= number
+        held.reach(self.rows)
+        return held
 
     def summary(self, name: str, kind: str) -> TopicSummary:
         clocks = {n: np.concatenate(parts) for n, parts in self.clocks.items()}
