@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rovval.alignment import align
-from rovval.core.data import Array, RawLog, Reason, Run, Series
+from rovval.core.data import RawLog, Reason, Run, Series
 
 RATE = np.array([0.0, 1.3, 0.0])  # rad/s in body axes: over and over in 4.8 s
 EULER = ("phi", "theta", "psi")
@@ -20,10 +20,10 @@ def attitude(t: np.ndarray) -> Rotation:
 
 
 def logged(hz: float, seconds: float = 40.0, phase: float = 0.013) -> RawLog:
-    t: Array = phase + np.arange(round(seconds * hz)) / hz
+    t = phase + np.arange(round(seconds * hz)) / hz
     angles = attitude(t).as_euler("ZYX")[:, ::-1]
     channels = {name: Series(t, angles[:, i], "row") for i, name in enumerate(EULER)}
-    grid: Array = np.arange(round(seconds * 10)) * 0.1
+    grid = (np.arange(round(seconds * 10)) * 0.1).astype(np.float64)
     return RawLog("tumbling.csv", "ab" * 32, "test", "", None, channels | {"n:A": Series(grid, np.sin(grid), "row")})
 
 

@@ -123,7 +123,7 @@ PIECES: dict[str, tuple[Callable[[Vehicle], Vehicle], Callable[[Path], Run], tup
 def questions(run: str) -> tuple[Question, ...]:
     whole = calibrated(run)
     return tuple(
-        Question(piece, (tank(run),), to_toml(change(whole)), right, read, fitted=True) for piece, (change, read, right) in PIECES.items()
+        Question(piece, (tank(run),), to_toml(change(whole)), right, read, to_toml(whole)) for piece, (change, read, right) in PIECES.items()
     )
 
 

@@ -11,14 +11,14 @@ from pathlib import Path
 from typing import Any
 
 from rovval import vehicle
+from rovval.comparison import compare
 from rovval.core.data import Run
-from rovval.core.errors import RovvalError
 from rovval.diagnose import diagnose
-from rovval.fit import fit
+from rovval.simulation import simulate
 from rovval.storage.archive import open_run
 
 PROCESSES = 2
-TENTH = 0.1  # of the squared gap: what a fit of the removed piece itself does not close is not asked for
+TENTH = 0.1  # of the squared gap: a piece that closes less when it is put back is not asked for
 BINS = ((0.9, 1.01), (0.5, 0.9), (0.0, 0.5))  # of printed probabilities
 
 
@@ -26,14 +26,14 @@ BINS = ((0.9, 1.01), (0.5, 0.9), (0.0, 0.5))  # of printed probabilities
 class Question:
     """What was done (``piece``) to ``logs`` or to a ``vehicle`` (TOML); a first cause among ``right`` is right, with none of these any cause is wrong.
 
-    ``read`` reads a log and damages it; ``fitted``: whether to ask what a fit of ``right`` itself closes."""
+    ``read`` reads a log and damages it; ``whole`` is the vehicle (TOML) before, where it is known."""
 
     piece: str
     logs: tuple[Path, ...]
     vehicle: str
     right: tuple[str, ...]
     read: Callable[[Path], Run] = open_run
-    fitted: bool = False
+    whole: str = ""
 
     @property
     def log(self) -> str:
@@ -42,8 +42,8 @@ class Question:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What `diagnose` named: ``causes`` and their printed probabilities, the ``document``, and the share of the squared gap that a fit of what is
-    right ``closed`` on windows left out of it (None: not asked)."""
+    """What `diagnose` named: ``causes`` and their printed probabilities, the ``document``, and the share of the squared gap that is ``closed`` when what
+    was done is undone (None: the vehicle before is not known)."""
 
     question: Question
     causes: tuple[tuple[str, float], ...]
@@ -63,7 +63,7 @@ class Answer:
 
     @property
     def asked(self) -> bool:
-        """Whether something is to be named that a fit of itself closes a tenth of the gap with."""
+        """Whether something is to be named that closes a tenth of the gap when it is put back."""
         return bool(self.question.right) and (self.closed is None or self.closed >= TENTH)
 
     def __str__(self) -> str:
@@ -82,18 +82,23 @@ def ask(questions: tuple[Question, ...]) -> tuple[Answer, ...]:
 def _answer(question: Question) -> Answer:
     runs, asked = [question.read(path) for path in question.logs], vehicle.parse(question.vehicle, question.piece)
     document = diagnose(runs, asked).document()
-    closed = None
-    if question.fitted and question.right:
-        try:
-            closed = float(fit(runs, asked, question.right).document["shrinkage"]["total"])
-        except RovvalError:  # what cannot be fitted cannot close anything
-            closed = 0.0
     causes = tuple((cause["effect"], float(cause["probability"])) for cause in document["causes"])
-    return Answer(question, causes, document, closed)
+    return Answer(question, causes, document, _closed(question, document) if question.whole and question.right else None)
+
+
+def _closed(question: Question, document: Mapping[str, Any]) -> float:
+    """Share of the squared gap that goes when what was done is undone, axes weighted as the diagnosis weights them."""
+    [path] = question.logs
+    after, before = (
+        compare(run, simulate(run, vehicle.parse(toml, "gap"), window_s=document["window_s"])).windowed
+        for run, toml in ((question.read(path), question.vehicle), (open_run(path), question.whole))
+    )
+    axes = {axis: gap["share"] for axis, gap in document["gap"]["axes"].items() if axis in after}
+    return float(sum(share * (1.0 - (before[axis].rmse / after[axis].rmse) ** 2) for axis, share in axes.items()) / sum(axes.values()))
 
 
 def table(answers: Sequence[Answer]) -> str:
-    """Markdown: a row a piece, a column a log; how each was marked, what was named with its probability, and what a fit of the piece closes."""
+    """Markdown: a row a piece, a column a log; how each was marked, what was named with its probability, and what the piece closes when put back."""
     logs = tuple(dict.fromkeys(one.question.log for one in answers))
     cells = {(one.question.piece, one.question.log): str(one) for one in answers}
     lines = ["| piece | " + " | ".join(logs) + " |", "|---" * (len(logs) + 1) + "|"]

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from diagnose_case import bare, diagnosed, foreign, merlin, own
 from diagnosis_schema import check_document
+from tumbling import bluerov2, tumbling
 
 from rovval import demo
 from rovval.comparison import compare
@@ -173,3 +174,26 @@ def test_the_independent_plant(tmp_path):
     document = diagnose([run], merlin()).document()
     check_schema(document)
     assert any(name.endswith("[HFP]") for name in document["causes"][0]["group"])
+
+
+TUMBLED = [
+    ("buoyancy_error:force=-6", "force", -6.0),
+    ("gyro_bias:q=0.02", "q", 0.02),
+    ("thruster_degraded[T5]:loss=0.4", "loss", 0.4),
+]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("planted", "parameter", "value"), TUMBLED)
+def test_a_vehicle_that_tumbles_is_diagnosed(planted: str, parameter: str, value: float):
+    """Through pitch of +-80 degrees and more, and upside down for a good part of the log."""
+    causes = diagnose([tumbling((planted,), seconds=80.0)], bluerov2()).causes
+    assert [cause.effect for cause in causes] == [planted.partition(":")[0]]
+    found = causes[0].parameters[parameter]
+    assert found.low < value < found.high
+    assert found.value == pytest.approx(value, rel=0.15)
+
+
+@pytest.mark.slow
+def test_nothing_is_named_of_a_healthy_vehicle_that_tumbles():
+    assert diagnose([tumbling(seconds=80.0)], bluerov2()).verdict == "no_gap"

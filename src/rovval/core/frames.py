@@ -93,7 +93,7 @@ def tumbles(theta: Array) -> bool:
 
 
 def rotation_vector(q: Array) -> Array:
-    """Axis times angle (rad, at most pi) of a unit quaternion (Sola 2017, equation 105). Shape (..., 4) -> (..., 3)."""
+    """Axis times angle (rad, at most pi) of a unit quaternion (Sola 2017). Shape (..., 4) -> (..., 3)."""
     w, axis = np.abs(q[..., :1]), q[..., 1:] * np.where(q[..., :1] < 0, -1.0, 1.0)
     sine = np.linalg.norm(axis, axis=-1, keepdims=True)
     return np.asarray(axis * np.where(sine > 1e-12, 2.0 * np.arctan2(sine, w) / np.maximum(sine, 1e-12), 2.0))
