@@ -18,6 +18,7 @@ Row = Mapping[str, Any]
 Of = Literal["gap", "cause"]
 UNITS = dict(zip(AXES, ("m/s",) * 3 + ("rad/s",) * 3, strict=True))
 SAME_GAP = 0.01  # two gaps that differ by less are one: by so much they differ with the water's density or the digits of a log
+FEWEST = 4  # dives on which a cause is named before its size is followed: level, scatter and a change of it leave one to judge by
 SAME_SIZE = 1e-3  # the same for a cause's size where no interval is told, as a share of it
 
 
@@ -76,7 +77,8 @@ def _of_one(rows: Sequence[Row]) -> list[Series]:
         "stopped": sum(row["method"] == method and bool(row["stops"]) for row in rows),
     }  # fmt: skip
     gaps = [_series("gap", axis, UNITS[axis], [(row, row[axis]) for row in usable if row[axis]], SAME_GAP, facts) for axis in AXES]
-    return [series for series in gaps if series.runs] + [_cause(name, found, facts) for name, found in _sizes(usable).items()]
+    sizes = {name: found for name, found in _sizes(usable).items() if len(found) >= FEWEST}
+    return [series for series in gaps if series.runs] + [_cause(name, found, facts) for name, found in sizes.items()]
 
 
 def _sizes(rows: Sequence[Row]) -> dict[str, list[tuple[Row, Mapping[str, Any]]]]:

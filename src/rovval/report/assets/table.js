@@ -2,7 +2,7 @@
 // The table of runs: search, filters, order, columns. What is chosen stands in the address, so that a view can be kept or sent on.
 (() => {
   const table = document.querySelector("table.runs"), body = table.tBodies[0], heads = [...table.tHead.rows[0].cells];
-  const rows = [...body.rows].map((tr) => ({ tr, text: tr.textContent.toLowerCase(), cells: tr.cells }));
+  const rows = [...body.rows].map((tr) => ({ tr, text: null, cells: tr.cells }));
   const $ = (id) => document.getElementById(id), collator = new Intl.Collator(undefined, { numeric: true });
   const title = (th) => th.dataset.title;
   const state = { q: "", vehicle: "", verdict: "", state: "", sort: "", hide: "" };
@@ -14,8 +14,9 @@
     const words = state.q.toLowerCase().split(/\s+/).filter(Boolean), wanted = ["vehicle", "verdict", "state"].filter((k) => state[k]).map((k) => [column(k), state[k]]);
     let shown = 0;
     for (const row of rows) {
+      if (words.length) row.text ??= row.tr.textContent.toLowerCase();
       const fits = words.every((w) => row.text.includes(w)) && wanted.every(([c, v]) => said(row, c).split("\n")[0].includes(v));
-      row.tr.hidden = !fits;
+      if (row.tr.hidden === fits) row.tr.hidden = !fits;
       shown += fits;
     }
     $("shown").textContent = shown === rows.length ? `${shown} runs` : `${shown} of ${rows.length} runs`;
@@ -32,7 +33,7 @@
   };
   const columns = () => {
     const hidden = new Set(state.hide.split(",").filter(Boolean));
-    heads.forEach((th, i) => table.classList.toggle(`no${i}`, hidden.has(title(th))));
+    style.textContent = heads.map((th, i) => (hidden.has(title(th)) ? `table.runs tr > :nth-child(${i + 1}) { display: none }` : "")).join("");
     document.querySelectorAll("#columns input").forEach((box) => { box.checked = !hidden.has(box.value); });
   };
   const keep = () => history.replaceState(null, "", "#" + new URLSearchParams(keys.filter((k) => state[k]).map((k) => [k, state[k]])));
@@ -44,7 +45,6 @@
     select.parentNode.hidden = !found.length;
   };
   const style = document.createElement("style");
-  style.textContent = heads.map((th, i) => `table.runs.no${i} tr > :nth-child(${i + 1}) { display: none }`).join("\n");
   document.head.append(style);
   new URLSearchParams(location.hash.slice(1)).forEach((v, k) => { if (keys.includes(k)) state[k] = v; });
   ["vehicle", "verdict", "state"].forEach((k) => {
