@@ -50,6 +50,7 @@ def test_an_update_is_taken_up_over_several_nights_the_newest_dives_first(site):
             step["key"], step["code"] = "of other code", "other"
         records.write_record(folder, record)
     batch_case.write_log(site / "logs" / "new.csv", seed=70)
+    assert len(batch.dry_run(path).postponed) == 2
     first = batch.run(path, workers=1)
     assert counts(first) == {"done": 2, "postponed": 2}
     assert [row["log"].rpartition("/")[2] for row in first["done"]] == ["new.csv", "b.csv"]

@@ -69,6 +69,7 @@ def _say_plan(planned: Plan, as_json: bool) -> None:
     ids = {str(t.log): t.id for t in planned.todo}
     rows = [("do", str(t.log), why(t)) for t in planned.todo]
     rows += [("unchanged", r["log"], "") for r in planned.done]
+    rows += [("later", r["log"], "judged by other code of rovval, after the newest (most_redone)") for r in planned.postponed]
     rows += [("quarantined", r["log"], r["reason"].removeprefix(f"{r['log']}: ")) for r in planned.set_aside]
     rows += [("no log", logs, reason) for logs, reason in planned.missing]
     rows += [("waiting", str(log), reason) for log, reason in planned.waiting]

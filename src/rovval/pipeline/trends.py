@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from rovval.core.errors import Unwritable
+from rovval.core.errors import BadInput, Unwritable
 from rovval.pipeline.catalogue import rows_of
 from rovval.pipeline.config import Pipeline
 from rovval.storage.atomic import read_json, write_json
@@ -28,7 +28,10 @@ def trends(pipeline: Pipeline) -> list[Trend]:
 
     place = pipeline.reports / KNOWN
     known, found, kept = read_json(place) or {}, [], {}
-    followed = all_series(rows_of(pipeline))
+    try:
+        followed = all_series(rows_of(pipeline))
+    except BadInput:  # damaged, and the disk so full that it could not be set aside: what stopped the batch says so
+        return []
     odds = prior_odds(len(followed))
     for series in followed:
         key = _digest(series, odds)
