@@ -38,6 +38,17 @@ def test_ingest_then_use_the_id(here):
     assert not Path("reports").exists(), "--json without --out writes nothing"
 
 
+def test_a_stretch_is_kept_as_a_run_of_its_own(here):
+    name = run("ingest", "dive.csv", "--from", "3", "--to", "9").stdout.strip()
+    assert name.endswith("-from3to9s") and run_ids(Path("archive")) == (name,)
+    assert json.loads(run("show", "run", name, "--json").stdout)["seconds"] == pytest.approx(6.0)
+    shown = json.loads(run("show", "run", "dive.csv", "--from", "3", "--to", "5", "--json").stdout)
+    assert shown["seconds"] == pytest.approx(2.0) and any("from 3 to 5 s" in finding for finding in shown["findings"])
+    with pytest.raises(UsageProblem, match="cut a run"):
+        run("show", "vehicle", "merlin", "--from", "3")
+    assert "beyond the log" in run("ingest", "dive.csv", "--from", "3000", code=3).stderr
+
+
 def test_ingest_of_a_folder_names_the_logs_that_it_cannot_read(here):
     """Damaged HDF5, Matlab and PX4 logs beside a CSV: none is passed over at exit 0 without a word."""
     Path("logs").mkdir()

@@ -106,6 +106,17 @@ def test_a_split_recording_is_put_together(folder):
     assert split.channels["n:T1"].t == pytest.approx(whole.channels["n:T1"].t)
 
 
+def test_a_stretch_of_the_dive(folder):
+    whole = read(dive(folder, THRUSTERS, f"{NAV}\noffset_s = 93.0"))
+    part = read(dive(folder, THRUSTERS, f"{NAV}\noffset_s = 93.0", head="from_s = 10.0\nto_s = 30.0\n"))
+    kept = (whole.channels["u"].t > 9.99) & (whole.channels["u"].t < 30.01)
+    assert np.array_equal(part.channels["u"].values, whole.channels["u"].values[kept])
+    assert part.channels["u"].t == pytest.approx(whole.channels["u"].t[kept] - 10.0) and part.channels["n:T1"].t[[0, -1]] == pytest.approx([0.0, 20.0])
+    for head, refusal in (("from_s = 30.0\nto_s = 10.0\n", UsageProblem), ("from_s = 80.0\n", BadInput), ("to_s = 80.0\n", BadInput)):
+        with pytest.raises(refusal, match="to_s"):
+            read(dive(folder, THRUSTERS, f"{NAV}\noffset_s = 93.0", head=head))
+
+
 def test_a_channel_in_two_logs_is_taken_from_the_one_that_is_said(folder):
     table(folder / "other.csv", "u", 100.0 + np.arange(0, 60, 0.1), np.zeros(600))
     logs = (THRUSTERS, f"{NAV}\noffset_s = 93.0", 'file = "other.csv"\nprofile = "nav.toml"\noffset_s = 0.0')

@@ -20,19 +20,24 @@ def command(
     ],
     profile: options.ProfileOption = None,
     timezone: options.TimezoneOption = None,
+    start_s: options.FromOption = None,
+    end_s: options.ToOption = None,
     archive: options.ArchiveOption = Path("archive"),
     json_: options.JsonFlag = False,
     quiet: options.QuietOption = False,
 ) -> None:
     """Read logs, bring them to 10 Hz, and keep them as runs in the archive; prints the runs' ids.
 
-    A log that cannot be used is named with its reason, the others go on, and the exit code is then 3.
+    A log that cannot be used is named with its reason, the others go on, and the exit code is then 3. With --from and --to the same stretch
+    of each log is kept, as a run of its own; a stretch that lasts stands in the dive file (docs/formats.md).
 
     \b
     Example:
       rovval ingest dive.csv --profile merlin
       rovval ingest bags/ --archive /data/archive
+      rovval ingest dive.toml --from 60 --to 660
     """
+    from rovval.alignment.stretch import stretch_of
     from rovval.pipeline.discover import logs_in
     from rovval.storage.archive import open_run, save_run
 
@@ -43,7 +48,7 @@ def command(
     for number, log in enumerate(files):
         show(f"ingest {log.name}", number / len(files))
         try:
-            run = open_run(str(log), profile, archive, timezone)
+            run = stretch_of(open_run(str(log), profile, archive, timezone), start_s, end_s)
             save_run(run, archive)
         except RovvalError as error:
             worst = max(worst, error.exit_code)

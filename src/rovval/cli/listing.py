@@ -84,19 +84,25 @@ def show_command(
     name: Annotated[
         str, typer.Argument(help="Its name, or a path to a TOML file of one's own.", autocompletion=_names_of_kind)
     ],
+    start_s: options.FromOption = None,
+    end_s: options.ToOption = None,
     archive: options.ArchiveOption = Path("archive"),
     json_: options.JsonFlag = False,
 ) -> None:
-    """Show one vehicle, platform, effect, profile, metric or run. A vehicle or profile is printed as TOML, to copy and to change.
+    """Show one vehicle, platform, effect, profile, metric or run. A vehicle or profile is printed as TOML, to copy and to change; --from and
+    --to are a run's.
 
     \b
     Example:
       rovval show vehicle merlin > my_vehicle.toml
       rovval show effect inflow_loss
       rovval show run RUN --json
+      rovval show run RUN --from 60 --to 120
     """
+    if kind is not Kind.run and not (start_s is None and end_s is None):
+        raise UsageProblem(f"--from and --to cut a run, not a {kind.value}", "write `rovval show run RUN --from S --to S`")
     shown = {Kind.vehicle: _vehicle, Kind.platform: _platform, Kind.effect: _effect, Kind.profile: _profile, Kind.metric: _metric}
-    text, document = _run(name, archive) if kind is Kind.run else shown[kind](name)
+    text, document = _run(name, archive, start_s, end_s) if kind is Kind.run else shown[kind](name)
     output.result_json(document()) if json_ else output.result(text.rstrip("\n"))
 
 
@@ -190,10 +196,11 @@ def _metric(name: str) -> Shown:
     return text, lambda: {"name": metric.name, "title": metric.title, "unit": metric.unit, "meaning": metric.meaning}
 
 
-def _run(name: str, archive: Path) -> Shown:
+def _run(name: str, archive: Path, start_s: float | None, end_s: float | None) -> Shown:
+    from rovval.alignment.stretch import stretch_of
     from rovval.storage.archive import open_run
 
-    run = open_run(name, None, archive)
+    run = stretch_of(open_run(name, None, archive), start_s, end_s)
     document: dict[str, Any] = {
         "id": run.id,
         "source": run.source,

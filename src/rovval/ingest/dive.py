@@ -16,7 +16,7 @@ import numpy as np
 
 from rovval.core.data import RawLog, Series
 from rovval.core.errors import BadInput, UsageProblem, all_at_once
-from rovval.ingest.dive_file import DiveLog, load_dive, parts_of
+from rovval.ingest.dive_file import Dive, DiveLog, load_dive, parts_of
 from rovval.ingest.files import sha256
 from rovval.ingest.profile import FOLDER
 
@@ -60,10 +60,12 @@ def read_dive(path: Path, read: Reading, profile: str | None = None, timezone: s
     logs = _on_one_clock(path, logs)
     _refuse_apart(path, logs)
     zero = min(p.first_s for p in logs)
-    channels = _joined(path, logs, zero)
+    channels, zero = _stretch(path, dive, _joined(path, logs, zero), zero)
     known = logs[0].clock == "UTC"
     shas = "".join(p.log.properties.get("profile_sha256", "") for p in logs)
     facts: dict[str, str] = {}
+    if dive.from_s is not None or dive.to_s is not None:
+        facts["stretch"] = f"from {dive.from_s or 0.0:g} s to {'the end' if dive.to_s is None else f'{dive.to_s:g} s'} of the dive"
     for p in logs:
         facts = {**p.log.properties, **facts, f"log {p.name}": f"{p.log.profile}, begins at {p.start_s - zero:.3f} s"}
     return RawLog(
@@ -136,6 +138,20 @@ def _joined(path: Path, logs: Sequence[Placed], zero: float) -> Mapping[str, Ser
         told = [f"{files} both have {', '.join(names)}" for files, names in twice.items()]
         raise BadInput(all_at_once(told, f"{path}: channels in two logs at one time"), "say with channels = [...] which log each is taken from")
     return out
+
+
+def _stretch(path: Path, dive: Dive, channels: Mapping[str, Series], zero: float) -> tuple[Mapping[str, Series], float]:
+    """What the dive file takes of the dive, from there on counted. Raises `BadInput` where that is beyond it."""
+    start, end = dive.from_s or 0.0, np.inf if dive.to_s is None else dive.to_s
+    last = max(float(s.t[-1]) for s in channels.values())
+    if start >= last or (np.isfinite(end) and end > last + 1.0):
+        raise BadInput(f"{path}: from_s = {start:g} to to_s = {end:g} is beyond the dive, which lasts {last:.1f} s", "choose times within it")
+    out = {}
+    for name, s in channels.items():
+        within = (s.t >= start - 1e-9) & (s.t <= end + 1e-9)
+        if within.any():
+            out[name] = Series(s.t[within] - start, s.values[within], s.stamp)
+    return (out, zero + start) if start or np.isfinite(end) else (channels, zero)
 
 
 def _vehicle(path: Path, stated: str, logs: Sequence[Placed]) -> str:

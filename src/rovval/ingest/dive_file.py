@@ -40,6 +40,9 @@ class Dive(BaseModel):
     """`[[log]]`, once a file."""
     vehicle: str = ""
     """The vehicle, where the profiles name none or several."""
+    from_s: float | None = Field(default=None, ge=0.0)
+    to_s: float | None = Field(default=None, gt=0.0)
+    """The stretch that is taken of the dive, s since its first sample: what --from and --to are to a command, for every use of it."""
 
 
 def is_dive(path: Path) -> bool:
@@ -58,6 +61,8 @@ def load_dive(path: Path) -> Dive:
     except ValidationError as error:
         problems = [f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors()]
         raise UsageProblem(all_at_once(problems, f"dive file {path}"), _HINT) from None
+    if dive.from_s is not None and dive.to_s is not None and dive.to_s <= dive.from_s:
+        raise UsageProblem(f"dive file {path}: to_s = {dive.to_s:g} is not after from_s = {dive.from_s:g}", "give both in s since the dive's start")
     if plain := [log.file for log in dive.log if log.begins is not None and log.begins.tzinfo is None]:
         raise UsageProblem(f"dive file {path}: begins of {', '.join(plain)} states no offset from UTC", "write Z or +02:00 behind it")
     return dive
