@@ -11,6 +11,7 @@ from rovval.core.data import Array, Flags, Reason, Run, SimResult, Trajectory
 from rovval.core.errors import SimulationStopped, UsageProblem
 from rovval.plant import Plant, parse_settings
 from rovval.simulation.actuation import Actuation, recorded_actuation, start_states, startable
+from rovval.simulation.boundaries import beyond_the_water
 from rovval.simulation.sanity_limits import first_beyond
 from rovval.simulation.step import steps_a_sample
 from rovval.vehicle.model import Vehicle
@@ -58,7 +59,7 @@ def simulate(
         windowed=windowed,
         thruster_speed=driven.inputs.speed,
         thrust=plant.thrust(driven.inputs.speed),
-        assumptions=(*driven.assumptions, *assumed),
+        assumptions=(*driven.assumptions, *assumed, *beyond_the_water(run, vehicle, free.eta)),
         stops=stops,
     )
 

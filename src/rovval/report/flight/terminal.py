@@ -31,12 +31,12 @@ def text(flight: Flight) -> str:
     """Sentences, then a line for each set-point and way point; with draws the 5 % and 95 % quantiles of its error over them."""
     lines = sentences(flight)
     if flight.held:
-        lines += ["", f"{'leg':<14}{'set-point':<10}{'asked':>12}{'step':>12}{'error at end':>14}{'overshoot':>12}{'settled':>9}" + _head(flight)]
+        lines += ["", f"{'leg':<14}{'set-point':<10}{'asked':>12}{'step':>14}{'error at end':>15}{'overshoot':>15}{'settled':>9}" + _head(flight)]
     for h in flight.held:
         settled = "-" if h.settled_s is None or abs(h.step) < 1e-3 else f"{h.settled_s:.1f} s"
         values = (quantity(h.set_point, h.unit), quantity(h.step, h.unit, 2), quantity(h.error, h.unit, 2), quantity(h.overshoot, h.unit, 2))
         asked, step, error, over = values
-        lines.append(f"{h.leg:<14}{h.quantity:<10}{asked:>12}{step:>12}{error:>14}{over:>12}{settled:>9}" + _draws(h.draws, h.unit))
+        lines.append(f"{h.leg:<14}{h.quantity:<10}{asked:>12}{step:>14}{error:>15}{over:>15}{settled:>9}" + _draws(h.draws, h.unit))
     if flight.passed:
         lines += ["", f"{'leg':<14}{'way point (north, east, depth)':<34}{'passed within':>14}{'at':>10}" + _head(flight)]
     for p in flight.passed:
