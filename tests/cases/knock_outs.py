@@ -97,7 +97,7 @@ def velocity_late(path: Path) -> Run:
 
 def velocity_turned(path: Path) -> Run:
     """The velocity sensor's frame turned to starboard, in the log as it is written: what alignment makes of it is a part of the question."""
-    log = pl.read_csv(path)
+    log = pl.read_csv(path, infer_schema_length=None)
     u, v = log["u_mps"].to_numpy(), log["v_mps"].to_numpy()
     c, s = math.cos(TURNED), math.sin(TURNED)
     with tempfile.TemporaryDirectory() as folder:
