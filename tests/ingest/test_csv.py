@@ -95,3 +95,13 @@ def test_every_missing_column_is_named_at_once_with_near_ones(tmp_path):
     assert all(name in text for name in ("'LinVelX'", "'LinVelocityX'", "'Depth'", "'AngVelZ'", "3 problems"))
     with pytest.raises(BadInput, match="merlin misses 3"):
         read(path)
+
+
+def test_lines_of_separators_alone_lose_nothing(tmp_path):
+    """A spreadsheet writes them below the last row: "dropped" was told of rows that hold nothing."""
+    path = merlin_case.write(tmp_path)
+    blank = "," * path.read_text().splitlines()[0].count(",")
+    lines = path.read_text().splitlines()
+    path.write_text("\n".join([*lines[:100], blank, *lines[100:], blank, blank, ""]))
+    log = read(path)
+    assert log.findings == () and len(log.channels["u"].values) == 300

@@ -79,7 +79,7 @@ class TextRows:
         lines: list[int] = []
         separator, again = self.separator, header.decode()
         for line_number, line in enumerate(block.decode()[:-1].split("\n"), number + 1):
-            if not line.strip() or line.startswith("#") or line == again:
+            if not line.strip(f"{separator} \t") or line.startswith("#") or line == again:  # a line of separators alone is a blank one
                 continue
             count = line.count(separator) + 1 if '"' not in line else len(cells(line, separator))
             if (over := count - self.width) > 0 and line.endswith(separator * over):
@@ -102,7 +102,7 @@ class TextRows:
         if len(marks) != self.width * block.count(b"\n") or not (content[ends] == newline).all():
             return False
         firsts = content[np.concatenate(([0], ends[:-1] + 1))]
-        return not (np.isin(firsts, (ord("#"), newline)).any() or ((firsts == header[0]).any() and header in block))
+        return not (np.isin(firsts, (ord("#"), newline, ord(self.separator))).any() or ((firsts == header[0]).any() and header in block))
 
 
 class Tally:

@@ -56,7 +56,8 @@ def recording(path: Path, scratch: Path, found: list[Finding]) -> Recording:
     files = [path / Path(str(name)).name for name in about.get("relative_file_paths", [])] or inside(path)
     if not about and len(files) != 1:
         names = ", ".join(p.name for p in files) or "none"
-        raise BadInput(f"{path}: a folder without metadata.yaml and with {len(files)} bag files ({names})", "give one of the files")
+        hint = "give one of the files, or name those of one recording in a dive.toml (docs/formats.md)"
+        raise BadInput(f"{path}: a folder without metadata.yaml and with {len(files)} bag files ({names})", hint)
     if gone := [file.name for file in files if not file.is_file()]:
         found.append(Finding("missing_part", path.name, f"metadata.yaml names {', '.join(gone)}, which the folder does not hold"))
     there = [_plain(file, scratch) for file in files if file.is_file()]
