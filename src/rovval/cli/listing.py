@@ -163,7 +163,8 @@ def _effect(name: str) -> Shown:
         f"{p.sized and f' on a BlueROV2, in proportion to {GROWS[p.sized]} on another vehicle'} ({p.source})"
         for p in effect.parameters
     ]
-    target = {"axis": effect.axes or AXES, "thruster": ("THRUSTER",), "": ()}[effect.per]
+    target = {"axis": (*(effect.axes or AXES), *effect.groups), "thruster": ("THRUSTER",), "": ()}[effect.per]
+    lines += [f"  [{group}]: {', '.join(members)} as one" for group, members in effect.groups.items()]
     first = {p.target or next(iter(target), ""): p.name for p in reversed(effect.parameters)}  # one use a hypothesis
     uses = [f"--effect '{effect.name}{on and f'[{on}]'}:{first[on]}=VALUE'" for on in reversed(first)]
     lines += [

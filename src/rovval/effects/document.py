@@ -52,7 +52,7 @@ def _contents(every: list[Effect]) -> list[str]:
 
 def _section(effect: Effect) -> str:
     """One effect."""
-    per = {"": "", "axis": f" One for each axis ({', '.join(effect.axes)}).", "thruster": " One for each thruster."}[effect.per]
+    per = {"": "", "axis": f" One for each axis ({', '.join(effect.axes)}){_together(effect)}.", "thruster": " One for each thruster."}[effect.per]
     named = "" if effect.competes else " A tolerance of healthy vehicles: it is taken into account and never named as a cause."
     needs = f" Needs {', '.join(f'`{c}`' for c in effect.needs)} in the log." if effect.needs else ""
     parts = [
@@ -66,6 +66,11 @@ def _section(effect: Effect) -> str:
         "*Literature*: " + "; ".join(effect.literature) + ".",
     ]
     return "\n\n".join(parts)
+
+
+def _together(effect: Effect) -> str:
+    """Its groups of axes."""
+    return "".join(f", and `{group}` for {', '.join(members)} as one" for group, members in effect.groups.items())
 
 
 def _wrapped(words: str, width: int = 120) -> str:

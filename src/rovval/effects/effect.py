@@ -14,10 +14,11 @@ from rovval.vehicle.model import Vehicle
 
 Place = Literal["vehicle", "input", "water", "wrench", "sensor"]
 Growth = Literal["", "weight", "drag", "speed"]
-Role = Literal["size", "amplitude", "onset", "period", "phase", "direction", "datum", "extent", "anchor", "lever"]
+Role = Literal["size", "amplitude", "onset", "period", "further period", "phase", "direction", "datum", "level", "bottom", "extent", "anchor", "lever"]
 Error = Literal["additive", "factor", "delay"]
 Stage = Literal["", "position", "mounting", "scale", "bias", "filter", "delay"]
 Family = Literal["", "drag", "thrust", "allocation", "mass", "trim"]
+TOGETHER = {"translation": ("surge", "sway", "heave"), "rotation": ("roll", "pitch", "yaw")}  # axes that one wrong estimate of a hull has off alike
 GROWS = {"weight": "the weight", "drag": "the drag at 1 m/s ahead", "speed": "the thrusters' speed at 1 m/s ahead"}  # what sized parameters go by
 STAGES: tuple[str, ...] = get_args(Stage)
 FAMILIES: tuple[str, ...] = get_args(Family)[1:]
@@ -63,9 +64,11 @@ class Parameter:
     - ``needs``: the channel without which it does nothing and is refused.
     - ``role``: what it says of the effect. ``size``: how strong it is; ``amplitude``: the size of a swing, which below zero is the same swing half a
       period later; ``onset``: when it begins (s since the run's start); ``period`` (s), ``phase`` (rad) and ``direction`` (rad from north) of a
-      swing; ``datum``: the depth (m) at which what changes with depth is zero; ``extent``: how far it reaches or how long it takes; ``anchor``: a
-      coordinate of a point that it is tied to; ``lever``: a coordinate, body axes, of the point where its force acts.
+      swing, and ``further period`` (s) of another one that comes with it; ``datum``: the depth (m) at which what changes with depth is zero;
+      ``level``: a depth (m) from which another place is counted; ``bottom``: the depth (m) of the seabed; ``extent``: how far it reaches or how long
+      it takes; ``anchor``: a coordinate of a point that it is tied to; ``lever``: a coordinate, body axes, of the point where its force acts.
     - ``starts``: values from which the search begins, for what a linearisation at the null value cannot see.
+    - ``instead_of``: the channel in whose place it stands: free only where a log does not hold that, and without the one or the other the effect is refused.
     - ``channel``: of an anchor, the channel that holds the vehicle's own coordinate; the search begins where the vehicle was.
     - ``tolerance``: how far off it is in a healthy vehicle or log; None: not at all.
     - ``vanishes_at``: the bound at which nothing is left of what it scales (a coefficient, a thruster's thrust): an answer that rests there is one,
@@ -85,6 +88,7 @@ class Parameter:
     sized: Growth = ""
     target: str = ""
     needs: str = ""
+    instead_of: str = ""
     role: Role = "size"
     starts: tuple[float, ...] = ()
     channel: str = ""
@@ -116,6 +120,8 @@ class Effect:
     What the engine asks:
 
     - ``per``: its parameters belong to each axis of ``axes``, to each thruster, or to the vehicle (empty).
+    - ``groups``: names of several of its ``axes`` that may well depart as one, each a hypothesis of its own (``added_mass[translation]``) beside the axes
+      by themselves; their parameters are relative departures, and 1 + departure multiplies.
     - ``needs``: channels without which it cannot be tested; ``within``: what a channel has to come below, in its unit, for it to act at all.
     - ``separable``: each parameter may well be at work without the others, as an offset along one of three axes, and is tried by itself, too.
     - ``refines``: parameters that only refine the others, which are tried without them as well; of an effect that is also ``separable`` they say of
@@ -142,6 +148,7 @@ class Effect:
     literature: tuple[str, ...] = ()
     per: Literal["", "axis", "thruster"] = ""
     axes: tuple[str, ...] = ()
+    groups: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     needs: tuple[str, ...] = ()
     within: Mapping[str, float] = field(default_factory=dict)
     separable: bool = False
@@ -157,6 +164,7 @@ class Effect:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "symbols", MappingProxyType(dict(self.symbols)))
+        object.__setattr__(self, "groups", MappingProxyType(dict(self.groups)))
         object.__setattr__(self, "within", MappingProxyType(dict(self.within)))
 
     def has(self, role: Role) -> bool:

@@ -41,8 +41,12 @@ def chosen(plant: Plant, parameters: Sequence[str]) -> tuple[int, ...]:
 
 
 def _meant(plant: Plant, one: str) -> list[int]:
+    """Slots of a name or pattern; of a group of axes only where it is named as such, since its axes are there one by one."""
     pattern = re.compile(".*".join(re.escape(part) for part in one.split("*")))
-    return [i for i, s in enumerate(plant.slots) if any(pattern.fullmatch(name) for name in (s.key, s.hypothesis, s.effect))]
+    found = (i for i, s in enumerate(plant.slots) if any(pattern.fullmatch(name) for name in (s.key, s.hypothesis, s.effect)))
+    named = (s.key for s in plant.slots), (s.hypothesis for s in plant.slots)
+    by_name = any(one in names for names in named)
+    return [i for i in found if by_name or plant.slots[i].target not in effects.load(plant.slots[i].effect).groups]
 
 
 def _near(plant: Plant, asked: str) -> str:

@@ -49,8 +49,8 @@ def sizes(vehicle: Vehicle) -> Mapping[str, float]:
 
 
 def targets(effect: effects.Effect, vehicle: Vehicle) -> tuple[str, ...]:
-    """Axes or thrusters that the effect's parameters belong to; one empty name for an effect that has neither."""
-    return {"": ("",), "axis": effect.axes, "thruster": vehicle.thrusters}[effect.per]
+    """Axes, groups of axes, or thrusters that the effect's parameters belong to; one empty name for an effect that has neither."""
+    return {"": ("",), "axis": (*effect.axes, *effect.groups), "thruster": vehicle.thrusters}[effect.per]
 
 
 def slots(vehicle: Vehicle, model: str) -> tuple[Slot, ...]:
@@ -65,6 +65,8 @@ def slots(vehicle: Vehicle, model: str) -> tuple[Slot, ...]:
                 sized = replace(parameter, low=parameter.low * f, high=parameter.high * f, null=parameter.null * f, typical=parameter.typical * f)
                 if model in effect.absent_in:
                     sized = replace(sized, low=0.0)  # there is nothing to take away
+                if target in effect.groups:
+                    sized = replace(sized, tolerance=None)  # it is the axes' own, one by one
                 found.append(Slot(f"{hypothesis}.{parameter.name}", hypothesis, name, target or parameter.target, sized))
     return tuple(found)
 
@@ -87,6 +89,9 @@ def gather(vehicle: Vehicle, index: Mapping[str, int], name: str, beta: Array) -
             full = np.full((len(beta), 6), parameter.null)
             for axis in effect.axes:
                 full[:, AXES.index(axis)] = beta[:, index[f"{name}[{axis}].{parameter.name}"]]
+            for group, members in effect.groups.items():
+                at, more = [AXES.index(axis) for axis in members], beta[:, [index[f"{name}[{group}].{parameter.name}"]]]
+                full[:, at] += more + full[:, at] * more
             values[parameter.name] = full
     return values
 

@@ -111,7 +111,7 @@ def generic_better(case: Case) -> bool:
 
 def without_benefit(case: Case) -> bool:
     """Do they not surely reduce the gap, harm an axis, or act where the simulator does not follow the vehicle?"""
-    own = [n.hypothesis.target for n in case.causes if n.hypothesis.effect.per == "axis"]
+    own = [axis for n in case.causes for axis in n.hypothesis.axes]
     return not beneficial(case.benefits, case.sensors or not case.many, own)
 
 

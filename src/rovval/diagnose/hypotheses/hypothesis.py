@@ -56,6 +56,12 @@ class Hypothesis:
         return self.of.strip("[]")
 
     @property
+    def axes(self) -> tuple[str, ...]:
+        """The axes that it belongs to: one, or those of a group; none for what is of no axis."""
+        effect = self.effect
+        return effect.groups.get(self.target, (self.target,)) if effect.per == "axis" else ()
+
+    @property
     def from_full_size(self) -> bool:
         """Whether its fit begins with all of the effect at once, away from no effect, where no slope shows it."""
         return any(d.slot == START_SCALE for d in self.displaced)
@@ -64,7 +70,7 @@ class Hypothesis:
 def columns_of(library: Sequence[Hypothesis]) -> Columns:
     """What a linearisation has to hold for every hypothesis of a library."""
     plain = {c for h in library if not h.displaced for c in h.columns}
-    return Columns(tuple(sorted(plain)), tuple(d for h in library for d in h.displaced))
+    return Columns(tuple(sorted(plain)), tuple(dict.fromkeys(d for h in library for d in h.displaced)))
 
 
 def from_nothing(plant: Plant, name: str, label: str, slots: tuple[int, ...]) -> Hypothesis:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from rovval.core.channels import AXES
-from rovval.effects.effect import Effect, Parameter, Tolerance
+from rovval.effects.effect import TOGETHER, Effect, Parameter, Tolerance
 from rovval.effects.lanes import Array, Lanes, reference_added_mass
 
 CALIBRATION = Tolerance(1.0, "the declared calibration tolerance itself", loop_gain=1.0)
@@ -33,6 +33,7 @@ EFFECT = Effect(
     ),
     per="axis",
     axes=AXES,
+    groups=TOGETHER,
     signature="transients only: the answer to a step of thrust comes too fast or too slow; yaw moment in oblique motion (Munk)",
     confused_with=("thrust_lag", "time_offset", "velocity_filter_lag", "payload_change", "inertia_error"),
     separates="steps at two or more frequencies: amplitude and phase together; an accelerometer beside the velocity sensor",

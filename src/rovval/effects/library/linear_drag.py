@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from rovval.core.channels import AXES
-from rovval.effects.effect import Effect, Parameter, Tolerance
+from rovval.effects.effect import TOGETHER, Effect, Parameter, Tolerance
 from rovval.effects.lanes import Array, Lanes, reference_drag
 from rovval.vehicle.model import Vehicle, as_matrix
 
@@ -42,6 +42,7 @@ EFFECT = Effect(
     ),
     per="axis",
     axes=AXES,
+    groups=TOGETHER,
     signature="acts at low speed; changes the exponential tail of a coast-down",
     confused_with=("quadratic_drag", "current_constant", "tether_drag", "rpm_scale"),
     separates="coast-down with thrust off, from several speeds",

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from rovval.core.channels import AXES
-from rovval.effects.effect import Effect, Parameter, Tolerance
+from rovval.effects.effect import TOGETHER, Effect, Parameter, Tolerance
 from rovval.effects.lanes import Array, Lanes, reference_drag
 
 EFFECT = Effect(
@@ -29,6 +29,7 @@ EFFECT = Effect(
     ),
     per="axis",
     axes=AXES,
+    groups=TOGETHER,
     signature="acts at top speed; changes the steady speed of long legs",
     confused_with=("linear_drag", "inflow_loss", "rpm_scale", "tether_drag"),
     separates="three speeds or more, both directions; the same speed at two thrusts (accelerating and steady)",
