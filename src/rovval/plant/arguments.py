@@ -39,6 +39,7 @@ def checked(
     moved = [found[int(c)] for c in np.flatnonzero((beta != null).any(axis=0))]
     missing = [f"{n} needs {c}" for n in sorted({s.effect for s in moved}) for c in effects.load(n).needs if c in ABSENT and _absent(inputs, c)]
     missing += [f"{s.key} needs {s.parameter.needs}" for s in moved if s.parameter.needs in ABSENT and _absent(inputs, s.parameter.needs)]
+    missing += _nothing_instead(found, null, beta, inputs)
     if missing:
         raise UsageProblem(all_at_once(missing, "channels that the log does not hold"))
     return start, nu0, eta0, beta, which, gain
@@ -60,6 +61,16 @@ def _misfits(given: Mapping[str, Array | Indices], parameters: int, thrusters: i
         problems.append("a first state is not finite")
     if not size:
         problems.append("no lane at all")
+    return problems
+
+
+def _nothing_instead(found: Sequence[slots.Slot], null: Array, beta: Array, inputs: Inputs) -> list[str]:
+    """Effects at work in a lane that has neither a channel nor the parameter which stands in its place."""
+    away, problems = beta != null, list[str]()
+    for c, slot in enumerate(found):
+        if (channel := slot.parameter.instead_of) and _absent(inputs, channel):
+            own = [i for i, other in enumerate(found) if other.hypothesis == slot.hypothesis]
+            problems += [f"{slot.hypothesis} needs {channel}, or {slot.key}"] if (away[:, own].any(axis=1) & ~away[:, c]).any() else []
     return problems
 
 

@@ -35,7 +35,7 @@ def test_waves_of_the_independent_plant_are_found(tmp_path: Path):
 def test_a_pull_may_begin_ahead_or_astern():
     p, library = posed()
     x, reach = slot(p, "tether_tension.x"), LEVER_SHARE * max(float(np.linalg.norm(t.position)) for t in merlin().thruster)
-    starts = [dict(h.at)[x] for h in library if h.name == "tether_tension" and h.at]
+    starts = [dict(h.at)[x] for h in library if h.name == "tether_tension" and x in dict(h.at)]
     assert starts == pytest.approx([-min(reach, 2.0), min(reach, 2.0)])
     document = diagnose([own(("tether_tension:north=250,east=120,x=-1.4",), 5, 200.0)], merlin()).document()
     assert document["causes"][0]["effect"] == "tether_tension", document["sentence"]

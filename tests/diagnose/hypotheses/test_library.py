@@ -45,3 +45,24 @@ def test_a_tolerance_is_no_diagnosis():
     names = {h.name.partition("[")[0] for h in hypotheses(parts)[0]}
     assert "thruster_astern" not in names and "thruster_degraded" in names
     assert any(parts[0].plant.slots[s].effect == "thruster_astern" for s in tolerance_prior(parts[0].plant, 0.05).sd)
+
+
+@pytest.mark.parametrize("logged", [True, False])
+def test_a_seabed_is_searched_for_below_the_log_where_no_altitude_says_where_it_is(logged: bool):
+    run = own((), 5, 120.0)
+    altitude = {"altitude": 1.0 + np.linspace(4.0, 0.0, len(run))} if logged else {}
+    reasons = {"altitude": run.reasons["psi"]} if logged else {}
+    parts, _ = cut([replace(run, values={**run.values, **altitude}, reasons={**run.reasons, **reasons})], merlin(), "fossen", 10.0)
+    seabed = parts[0].plant.index["ground_effect.seabed"]
+    found = [h for h in hypotheses(parts)[0] if h.name == "ground_effect"]
+    assert found and all((seabed in h.slots) != logged for h in found)
+    if not logged:
+        deepest = float(run.get("z").max())
+        assert all(deepest < dict(h.at)[seabed] < deepest + 2.0 for h in found)
+
+
+def test_where_neither_altitude_nor_depth_is_logged_there_is_no_bottom():
+    parts, _ = cut([without(own((), 5, 120.0), "z")], merlin(), "fossen", 10.0)
+    library, untestable = hypotheses(parts)
+    assert "ground_effect" not in {h.name for h in library}
+    assert untestable["ground_effect"] == "needs altitude or z, and this log holds neither"

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
+from diagnose_case import merlin, own
 
 from rovval import vehicle
-from rovval.diagnose.problem.prior import loosened_by_closed_loop, tolerance_prior
+from rovval.diagnose.problem.prior import loosened_by_closed_loop, prior_mean, tolerance_prior
+from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.plant import Plant
 
 
@@ -22,3 +25,15 @@ def test_only_what_turns_about_a_steadied_axis_is_loosened():
     by_key = {plant.slots[s].key: loose.sd[s] / tight.sd[s] for s in tight.sd}
     assert by_key["cg_offset.z"] == pytest.approx(4.0) and by_key["cg_offset.x"] == by_key["cg_offset.y"] == pytest.approx(2.0)
     assert replace(tight).sd == tolerance_prior(plant, 0.05).sd, "nothing was changed in place"
+
+
+def test_a_depth_is_expected_where_the_log_was_and_a_bottom_below_it():
+    """All else is expected to be as the file has it."""
+    run = own((), 5, 100.0)
+    parts, _ = cut([run], merlin(), "fossen", 10.0)
+    mean = {s.key: prior_mean(s.parameter, parts, s.parameter.null) for s in parts[0].plant.slots}
+    z = run.get("z")
+    assert mean["density_gradient.depth"] == mean["tether_tension.depth"] == pytest.approx(float(np.median(z)))
+    assert 0.5 < mean["ground_effect.seabed"] - z.max() < 2.0
+    others = [s for s in parts[0].plant.slots if s.parameter.role not in ("datum", "level", "bottom")]
+    assert all(mean[s.key] == s.parameter.null for s in others)

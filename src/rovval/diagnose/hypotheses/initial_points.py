@@ -7,7 +7,7 @@ parameters enters once for each of a few initial points (multi-start); which one
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
@@ -20,10 +20,12 @@ from rovval.diagnose.criteria import (
     MOST_STARTS,
     ONSET_STARTS,
     PERIOD_STARTS,
+    TRAIN_START,
     WHOLE_STARTS,
 )
 from rovval.diagnose.hypotheses.hypothesis import START_SCALE, Hypothesis, displaced, from_nothing
 from rovval.diagnose.hypotheses.snag import from_springs, mid_log_spring
+from rovval.diagnose.problem.prior import prior_mean
 from rovval.diagnose.windows.windows import Windows
 from rovval.plant import Plant
 
@@ -62,33 +64,51 @@ def initial_points(target: Target, windows: Sequence[Windows], hints: Hints, nex
     """One hypothesis, or one for each initial point of the parameters that a linearisation at no effect cannot see; their columns are numbered from
     ``next_id`` on."""
     plant, name, effect, slots = target.plant, target.name, target.effect, target.slots
+    placed = _placed(target, windows)
     if effect.has("anchor"):
         return from_springs(plant, name, slots, hints.springs or [mid_log_spring(windows, plant, slots)], next_id)
     grids = _grids(target, windows, hints)
     if not grids:
         far = _away_from_no_effect(target, next_id)
-        return [*_from_no_effect(target), *_one_at_a_time(target), *far, *_with_levers(target, next_id + len(far))]
-    by_role: dict[str, int] = {target.parameter(s).role: s for s in slots}
-    free = tuple(s for s in slots if s not in grids and target.parameter(s).name not in effect.refines) or (START_SCALE,)
+        plain = [replace(h, at=tuple(placed.items())) for h in (*_from_no_effect(target, placed), *_one_at_a_time(target))]
+        return [*plain, *far, *_with_levers(target, placed, next_id + len(far))]
+    free = tuple(s for s in slots if s not in grids and s not in placed and target.parameter(s).name not in effect.refines) or (START_SCALE,)
     points = [dict(zip(grids, point, strict=True)) for point in product(*grids.values())]
     most = WHOLE_STARTS if free == (START_SCALE,) else MOST_STARTS
     chosen = points if len(points) <= most else [points[i] for i in np.linspace(0, len(points) - 1, most).astype(int)]
-    chosen = [point | _wave_period(by_role, point, hints.periods) for point in chosen]
-    return [displaced(plant, f"{name}@{i}", slots, free, tuple(at.items()), next_id + i * len(free)) for i, at in enumerate(chosen)]
+    return [h for i, point in enumerate(chosen) for h in _begun(target, f"{name}@{i}", free, placed | point, hints, next_id + i * len(free))]
 
 
-def _wave_period(by_role: Mapping[str, int], point: Mapping[int, float], periods: Mapping[float | None, Sequence[float]]) -> dict[int, float]:
-    """The period of the waves that run in the direction of an initial point: a vehicle under way sees them at their period of encounter, which is another."""
-    of_waves = periods.get(point.get(by_role.get("direction", -1)), ()) if "period" in by_role and "direction" in by_role else ()
-    return {by_role["period"]: of_waves[0]} if of_waves else {}
+def _begun(target: Target, label: str, free: tuple[int, ...], at: Mapping[int, float], hints: Hints, next_id: int) -> list[Hypothesis]:
+    """The hypothesis that begins ``at`` some point. Waves begin at the period of those that run in its direction, since a vehicle under way sees them at
+    their period of encounter, which is another; and a second time with their further periods, in the same columns, where there are any: each with some
+    size (`TRAIN_START`), since a train of none has no period that a fit could hold."""
+    by_role = {target.parameter(s).role: s for s in target.slots}
+    trains = [s for s in target.slots if target.parameter(s).role == "further period"]
+    lines = hints.periods.get(at.get(by_role.get("direction", -1)), ()) if {"period", "direction"} <= set(by_role) else ()
+    first = {**at, **({by_role["period"]: lines[0]} if lines else {})}
+    alone = tuple(s for s in target.slots if not trains or target.parameter(s).name not in target.effect.refines)
+    found = [displaced(target.plant, label, alone, free, tuple(first.items()), next_id)]
+    if trains and len(lines) > len(trains):
+        sizes = {s: TRAIN_START * target.parameter(s).typical for s in target.slots if s not in alone and s not in trains}
+        further = (*found[0].at, *sizes.items(), *zip(trains, lines[1:], strict=False))
+        found.append(replace(found[0], label=f"{label} further", slots=target.slots, at=further))
+    return found
 
 
-def _from_no_effect(target: Target) -> list[Hypothesis]:
+def _placed(target: Target, windows: Sequence[Windows]) -> dict[int, float]:
+    """Depths that an effect is placed at wherever its search begins, by slot: what the logs say of them (`prior_mean`)."""
+    parameters = ((s, target.parameter(s)) for s in target.slots)
+    return {s: prior_mean(p, windows, p.null) for s, p in parameters if p.role in ("level", "bottom")}
+
+
+def _from_no_effect(target: Target, placed: Mapping[int, float]) -> list[Hypothesis]:
     """All parameters from no effect; where some only refine the others, these without them first, and not with them where each of them is tried
     alone: an axis on which nothing moves would fit whatever is left."""
     plain = tuple(s for s in target.slots if target.parameter(s).name not in target.effect.refines)
     sets = {target.name: plain} | ({f"{target.name}@fine": target.slots} if len(plain) < len(target.slots) and not target.effect.separable else {})
-    return [from_nothing(target.plant, target.name, label, slots) for label, slots in sets.items()]
+    free = {label: tuple(s for s in slots if s not in placed) for label, slots in sets.items()}
+    return [replace(from_nothing(target.plant, target.name, label, free[label]), slots=slots) for label, slots in sets.items()]
 
 
 def _one_at_a_time(target: Target) -> list[Hypothesis]:
@@ -110,15 +130,15 @@ def _away_from_no_effect(target: Target, next_id: int) -> list[Hypothesis]:
     return found
 
 
-def _with_levers(target: Target, next_id: int) -> list[Hypothesis]:
+def _with_levers(target: Target, placed: Mapping[int, float], next_id: int) -> list[Hypothesis]:
     """Initial points with the force well away from the origin, ahead and astern by `LEVER_SHARE` of the thrusters' reach: a force that is not there
     yet has no moment, wherever it would act; once it is there its other levers have a slope."""
     levers = [s for s in target.slots if target.parameter(s).role == "lever"]
     if not levers:
         return []
-    free, p = tuple(s for s in target.slots if s not in levers), target.parameter(levers[0])
+    free, p = tuple(s for s in target.slots if s not in levers and s not in placed), target.parameter(levers[0])
     reach = LEVER_SHARE * max(float(np.linalg.norm(t.position)) for t in target.plant.vehicle.thruster)
-    ends = [((levers[0], float(np.clip(x, p.low, p.high))),) for x in (-reach, reach)]
+    ends = [((levers[0], float(np.clip(x, p.low, p.high))), *placed.items()) for x in (-reach, reach)]
     return [displaced(target.plant, f"{target.name}@lever{i}", target.slots, free, at, next_id + i * len(free)) for i, at in enumerate(ends)]
 
 

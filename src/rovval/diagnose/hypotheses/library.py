@@ -9,7 +9,7 @@ import numpy as np
 from rovval import effects
 from rovval.core.channels import channel
 from rovval.diagnose.hypotheses.change_points import gap_change_points
-from rovval.diagnose.hypotheses.hypothesis import Hypothesis
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of
 from rovval.diagnose.hypotheses.initial_points import Hints, Target, initial_points
 from rovval.diagnose.hypotheses.snag import springs
 from rovval.diagnose.hypotheses.spectrum import spectral_lines, wave_periods
@@ -36,12 +36,13 @@ def hypotheses(windows: Sequence[Windows], without: Sequence[str] = (), hints: H
         if why := _untestable(effect, windows):
             untestable[name] = why
             continue
+        needless = [plant.slots[s].key for s in slots if (c := plant.slots[s].parameter.instead_of) and _logged(windows, c)]
         for slot in (plant.slots[s] for s in slots):
-            if (c := slot.parameter.needs) and not _logged(windows, c):
+            if slot.key not in needless and (c := slot.parameter.needs) and not _logged(windows, c):
                 untestable[slot.key] = f"needs {c}, which this log does not hold"
-        own = tuple(s for s in slots if plant.slots[s].key not in untestable)
+        own = tuple(s for s in slots if plant.slots[s].key not in (*untestable, *needless))
         if own:
-            next_id = len(plant.slots) + sum(len(h.displaced) for h in found)
+            next_id = len(plant.slots) + len(columns_of(found).displaced)
             found.extend(initial_points(Target(plant, name, effect, own), windows, hints, next_id))
     return found, untestable
 
@@ -50,7 +51,10 @@ def _untestable(effect: effects.Effect, windows: Sequence[Windows]) -> str:
     """Why the logs cannot test an effect: a channel that it needs is missing, or never near enough; "" where they can."""
     if missing := [c for c in effect.needs if not _logged(windows, c)]:
         return f"needs {', '.join(missing)}, which this log does not hold"
-    far = [f"no {c} below {reach:g} {channel(c).unit}" for c, reach in effect.within.items() if _lowest(windows, c) >= reach]
+    for p in (p for p in effect.parameters if p.instead_of):
+        if not any(_logged(windows, c) for c in (p.instead_of, p.needs) if c):
+            return f"needs {p.instead_of} or {p.needs}, and this log holds neither"
+    far = [f"no {c} below {reach:g} {channel(c).unit}" for c, reach in effect.within.items() if _logged(windows, c) and _lowest(windows, c) >= reach]
     return f"{', '.join(far)} in this log" if far else ""
 
 

@@ -6,9 +6,14 @@ tolerances of their own; each effect states its own (`effects.Tolerance`): what 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
+import numpy as np
+
+from rovval.diagnose.criteria import PRIOR_WIDTH
 from rovval.diagnose.residuals.ridge import Prior
+from rovval.diagnose.windows.windows import Windows
+from rovval.effects import Parameter
 from rovval.plant import Plant
 
 
@@ -21,6 +26,16 @@ def tolerance_prior(plant: Plant, relative: float) -> Prior:
         return Prior({})
     stated = ((i, slot, slot.parameter.tolerance) for i, slot in enumerate(plant.slots))
     return Prior({i: t.of(slot.parameter, plant.vehicle, slot.target, relative) for i, slot, t in stated if t is not None})
+
+
+def prior_mean(parameter: Parameter, runs: Sequence[Windows], otherwise: float) -> float:
+    """Mean of the prior of a parameter: of a depth what the logs say of it, the middle of where the vehicle was, or a bottom that lies as far below the
+    deepest of it as the prior is wide (`PRIOR_WIDTH`); of all others what is there ``otherwise``."""
+    if parameter.role not in ("datum", "level", "bottom"):
+        return otherwise
+    z = np.concatenate([part.depths() for part in runs])
+    mean = float(z.max()) + PRIOR_WIDTH * parameter.typical if parameter.role == "bottom" else float(np.median(z))
+    return min(max(mean, parameter.low), parameter.high)
 
 
 def loosened_by_closed_loop(prior: Prior, plant: Plant, gain: Mapping[str, float]) -> Prior:

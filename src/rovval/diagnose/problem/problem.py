@@ -18,7 +18,7 @@ from rovval.diagnose.criteria import FEWEST_WINDOWS
 from rovval.diagnose.problem.cross_validation import Fold, make_folds
 from rovval.diagnose.problem.disturbance import Disturbance
 from rovval.diagnose.problem.noise_model import equations_of_runs, fit_noise_model
-from rovval.diagnose.problem.prior import loosened_by_closed_loop, tolerance_prior
+from rovval.diagnose.problem.prior import loosened_by_closed_loop, prior_mean, tolerance_prior
 from rovval.diagnose.residuals.normal_equations import (
     Linearisation,
     NormalEquations,
@@ -60,6 +60,7 @@ class Problem:
     Attributes:
         runs: the windows of each run.
         origin: parameters (k,) of the nominal vehicle: all null but for the effects that its file carries.
+        prior_mean: mean (k,) of every parameter's prior: the origin, but for depths that only the logs say something of.
         tolerance: prior of the coefficients and sensors of a healthy vehicle.
         nominal: residuals and nuisances of each run at the nominal vehicle; no parameter columns, which are the bulk of a linearisation.
         likelihood: metric in which models are fitted and compared.
@@ -73,6 +74,7 @@ class Problem:
 
     runs: tuple[Windows, ...]
     origin: Array
+    prior_mean: Array
     tolerance: Prior
     nominal: tuple[Linearisation, ...]
     likelihood: Metric
@@ -104,6 +106,7 @@ def pose(runs: tuple[Windows, ...], asked: Columns, tolerance: float) -> Problem
     """
     plant = runs[0].plant
     origin = parse_settings(plant, carried_effects(plant.vehicle))
+    means = np.array([prior_mean(slot.parameter, runs, float(origin[i])) for i, slot in enumerate(plant.slots)])
     gain = loop_gains(runs)
     prior = loosened_by_closed_loop(tolerance_prior(plant, tolerance), plant, gain)
     columns = tuple(sorted({*asked.slots, *prior.sd}))
@@ -117,7 +120,7 @@ def pose(runs: tuple[Windows, ...], asked: Columns, tolerance: float) -> Problem
     checks = tuple(parity_residuals(windows, columns) for windows in runs)
     parity = concatenated([check.normal_equations(origin, likelihood.columns, noise.design_effect) for check in checks])
     return Problem(
-        runs=noise.runs, origin=origin, tolerance=prior,
+        runs=noise.runs, origin=origin, prior_mean=means, tolerance=prior,
         nominal=tuple(replace(one, S=one.S[..., :0].copy(), columns=()) for one in noise.linear),
         likelihood=Metric(noise.white_variance, likelihood, likelihood + parity), gap=Metric(noise.total_variance, gap, gap + parity),
         parity=checks, folds=folds, design_effect=noise.design_effect, run_of_window=run_of_window, disturbance=noise.disturbance,

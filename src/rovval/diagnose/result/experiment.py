@@ -92,8 +92,8 @@ def _misfit(problem: Problem, beta: Array, members: tuple[str, ...], manoeuvre: 
         return None
     plant = problem.plant
     stretches = cut_run(run, plant.vehicle, plant.model, EXPERIMENT_WINDOW_S)
-    base = plant.null.copy()
     free = {name: plant.hypotheses[name] for name in members}
+    base = np.where([slot.hypothesis in free and slot.parameter.places for slot in plant.slots], problem.prior_mean, plant.null)
     columns = tuple(sorted({s for slots in free.values() for s in slots}))
     keep = [problem.runs[0].channels.index(c) for c in stretches.channels if c in problem.runs[0].channels]
     if len(keep) != len(stretches.channels) or stretches.steps + 1 > len(problem.gap.variance):

@@ -7,7 +7,7 @@ import numpy as np
 from rovval.core.data import Array
 from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.inference.gap import ANGULAR
-from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, only_places
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.coherence import coherence
 from rovval.diagnose.residuals.sensitivities import residual
@@ -69,8 +69,9 @@ def coherence_matrix(problem: Problem, selection: Selection, decision: Decision)
     """First canonical correlation between the projected sensitivities of the causes, their groups and the best-ranked effects."""
     columns = set(problem.likelihood.total.columns)
     wanted = [name for n in decision.causes for name, _ in decision.groups[n.hypothesis.name]] + [name for name, _ in selection.ranking]
-    names = [n for n in dict.fromkeys(wanted) if set(problem.plant.hypotheses[n]) <= columns][:COHERENCE_EFFECTS]
-    slots = [problem.plant.hypotheses[n] for n in names]
+    own = {n: tuple(s for s in problem.plant.hypotheses[n] if not only_places(problem, s)) for n in dict.fromkeys(wanted)}
+    names = [n for n in own if set(own[n]) <= columns][:COHERENCE_EFFECTS]
+    slots = [own[n] for n in names]
     matrix = [[coherence(problem.likelihood.total, a, b) if a != b else 1.0 for b in slots] for a in slots]
     return Coherence(effects=tuple(names), matrix=_rows(np.array(matrix), 3) if names else ())
 

@@ -67,6 +67,10 @@ class Windows:
         """Axis that each channel belongs to."""
         return tuple(AXIS_OF[c] for c in self.channels)
 
+    def depths(self) -> Array:
+        """Depths (m, down) that the run went through where they were measured, else those that its windows begin at."""
+        return self.run.get("z")[self.run.ok("z")] if self.run.measured("z") else self.eta0[:, 2]
+
     def time(self) -> Array:
         """Seconds since the run's start of every sample (m, steps + 1)."""
         return np.asarray((self.start[:, None] + np.arange(self.steps + 1)[None, :]) * self.run.dt)

@@ -1,22 +1,33 @@
-"""Close to the bottom the vehicle's own jets and wake push it off (or hold it down)."""
+"""Close to the bottom the vehicle's own jets and wake push it off, or hold it down."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rovval.effects.arithmetic import Number, exp
+import numpy as np
+
+from rovval.effects.arithmetic import Number, clip, exp
 from rovval.effects.effect import Effect, Parameter
 from rovval.effects.lanes import Array, Lanes
+
+FARTHEST = 12000.0  # m: deeper than any sea, so that what is logged of the altitude is all that counts
 
 EFFECT = Effect(
     name="ground_effect",
     title="Ground effect near the bottom",
     place="wrench",
-    equation="F = -gain exp(-altitude / height) down, at the origin.",
+    equation="F = -gain exp(-h / height) down, at the origin; Z = -drag exp(-h / height) (d_w w_r + q_w |w_r| w_r); h = min(altitude, seabed - z).",
     symbols={
         "F": "force, down in the north-east-down frame; N",
         "gain": "force at the bottom, upwards; N",
+        "Z": "force, down in body axes; N",
+        "drag": "share by which the drag in heave is greater at the bottom; 1",
+        "d_w, q_w": "linear and quadratic drag coefficient in heave of the vehicle's file; N s/m, N s2/m2",
+        "w_r": "velocity down relative to the water, body axes; m/s",
+        "h": "height above the bottom; m",
         "altitude": "measured height above the bottom; m",
+        "seabed": "depth of a flat seabed, where no altitude is measured; m",
+        "z": "the vehicle's depth, down; m",
         "height": "height over which it falls off; m",
     },
     parameters=(
@@ -24,23 +35,35 @@ EFFECT = Effect(
         Parameter(
             "height", "m", 0.05, 5.0, 0.5, 0.3, "two to three propeller diameters (Bhattacharyya 2016) to 1 m (chosen)", role="extent", starts=(0.2, 0.5, 1.5),
         ),
+        Parameter("drag", "1", -0.9, 30.0, 0.0, 1.0, "drag of a body that sinks onto a wall, some times that in open water (JMSE 2025)"),
+        Parameter(
+            "seabed", "m", -10.0, FARTHEST, FARTHEST, 0.25, "of a flat bottom under the deepest point of the log: a metre below it, and as much off (chosen)",
+            role="bottom", needs="z", instead_of="altitude",
+        ),
     ),
     signature="a vertical force that is there below a metre or two of altitude only",
     confused_with=("buoyancy_error", "current_shear", "density_gradient"),
     separates="steps of altitude over the same spot",
-    literature=("Bhattacharyya 2016: a small underwater vehicle in hydrodynamic ground effect",),
-    needs=("altitude",),
+    literature=(
+        "Bhattacharyya 2016: a small underwater vehicle in hydrodynamic ground effect",
+        "JMSE 2025: an underwater vehicle near a wall, force by distance and speed",
+    ),
     within={"altitude": 3.0},  # m, chosen: three times the largest reach above, where a twentieth is left
 )
-ROWS = ("gain", "inverse")
+ROWS = ("gain", "inverse", "seabed", "linear", "quadratic")
 
 
 def rows(lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
-    """Force at the bottom, N, and inverse height, 1/m."""
-    return {"gain": p["gain"], "inverse": 1.0 / p["height"]}
+    """Force at the bottom, N; inverse height, 1/m; depth of the bottom, m; drag in heave that it adds, N s/m and N s2/m2."""
+    linear, quadratic = (np.asarray(p["drag"] * matrix[:, 2, 2]) for matrix in (lanes.linear_drag, lanes.quadratic_drag))
+    return {"gain": p["gain"], "inverse": 1.0 / p["height"], "seabed": p["seabed"], "linear": linear, "quadratic": quadratic}
 
 
-def wrench(gain: Number, inverse: Number, altitude: Number, r31: Number, r32: Number, r33: Number) -> tuple[Number, ...]:
-    """Upward force in the body frame."""
-    up = -gain * exp(-altitude * inverse)
-    return up * r31, up * r32, up * r33, 0.0, 0.0, 0.0
+def wrench(
+    gain: Number, inverse: Number, seabed: Number, linear: Number, quadratic: Number, altitude: Number, z: Number, wr: Number,
+    r31: Number, r32: Number, r33: Number,
+) -> tuple[Number, ...]:  # fmt: skip
+    """Upward force and drag in heave, in the body frame."""
+    near = exp(-clip(altitude, -FARTHEST, seabed - z) * inverse)
+    up = -gain * near
+    return up * r31, up * r32, up * r33 - near * (linear + quadratic * abs(wr)) * wr, 0.0, 0.0, 0.0

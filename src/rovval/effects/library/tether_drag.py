@@ -8,17 +8,22 @@ from rovval.effects.arithmetic import Number, sqrt
 from rovval.effects.effect import Effect, Parameter
 from rovval.effects.lanes import Array, Lanes
 
+PULL = "as of `tether_tension`"
+
 EFFECT = Effect(
     name="tether_drag",
     title="Drag of the tether",
     place="wrench",
-    equation="F = -(coefficient + per_length L) |v| v at the attachment (x, 0, z); coefficient ~ 1/2 rho C_n d L, of which the vehicle carries about half.",
+    equation="F = -(coefficient + per_length L) |v| v + R^T (north, east, down) at the attachment (x, 0, z); coefficient ~ 1/2 rho C_n d L, of which the "
+    "vehicle carries about half; north, east, down: the tether's own weight and pull, which come with its drag.",
     symbols={
         "F": "force, body axes; N",
         "v": "velocity of the attachment relative to the water, the vehicle's turning included, body axes; m/s",
         "L": "logged length of tether paid out; m",
         "rho": "density of the water; kg/m3",
         "C_n, d": "coefficient of normal drag (1) and diameter (m) of the tether",
+        "R": "rotation from body axes to the north-east-down frame",
+        "north, east, down": "steady pull of the same tether; N",
         "x, z": "attachment ahead of and below the origin, body axes; m",
     },
     parameters=(
@@ -26,6 +31,9 @@ EFFECT = Effect(
             "coefficient", "N s2/m2", 0.0, 1500.0, 0.0, 40.0, "0.5 m/s with 100 m of 7.6 mm: 115 N at C_n 1.2 (Hoerner 1965) to 190 N at 2.0 (in use)", "drag",
         ),
         Parameter("per_length", "N s2/m3", 0.0, 20.0, 0.0, 2.0, "1/2 rho C_n d with half carried by the vehicle: 7.6 mm, C_n 1.2: 2.3; needs tether_length"),
+        Parameter("north", "N", -100.0, 100.0, 0.0, 6.0, PULL, "weight"),
+        Parameter("east", "N", -100.0, 100.0, 0.0, 6.0, PULL, "weight"),
+        Parameter("down", "N", -100.0, 100.0, 0.0, 4.0, PULL, "weight"),
         Parameter("x", "m", -2.0, 2.0, 0.0, 0.3, "attachment, ahead of the origin", role="lever"),
         Parameter("z", "m", -2.0, 2.0, 0.0, 0.2, "attachment, below the origin", role="lever"),
     ),
@@ -37,21 +45,25 @@ EFFECT = Effect(
         "Driscoll 2000: dynamics of an ROV's tether",
         "Feng and Allen 2004: a cable's drag on an underwater vehicle",
     ),
+    refines=("north", "east", "down"),
 )
-ROWS = ("coefficient", "per_length", "ax", "az")
+ROWS = ("coefficient", "per_length", "north", "east", "down", "ax", "az")
 
 
 def rows(lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
-    """Coefficients and attachment."""
-    return {"coefficient": p["coefficient"], "per_length": p["per_length"], "ax": p["x"], "az": p["z"]}
+    """Coefficients, pull and attachment."""
+    return {name: p[name] for name in ROWS[:5]} | {"ax": p["x"], "az": p["z"]}
 
 
 def wrench(
-    coefficient: Number, per_length: Number, ax: Number, az: Number, tether_length: Number,
+    coefficient: Number, per_length: Number, north: Number, east: Number, down: Number, ax: Number, az: Number, tether_length: Number,
     ur: Number, vr: Number, wr: Number, p: Number, q: Number, r: Number,
+    r11: Number, r12: Number, r13: Number, r21: Number, r22: Number, r23: Number, r31: Number, r32: Number, r33: Number,
 ) -> tuple[Number, ...]:  # fmt: skip
-    """Force against the attachment's velocity relative to the water (its length is the same in both frames) and its moment."""
+    """Force against the attachment's velocity relative to the water (its length is the same in both frames), the pull in the body frame, and their moment."""
     ua, va, wa = ur + q * az, vr + r * ax - p * az, wr - q * ax
     pull = -(coefficient + per_length * tether_length) * sqrt(ua * ua + va * va + wa * wa)
-    fx, fy, fz = pull * ua, pull * va, pull * wa
+    fx = pull * ua + r11 * north + r21 * east + r31 * down
+    fy = pull * va + r12 * north + r22 * east + r32 * down
+    fz = pull * wa + r13 * north + r23 * east + r33 * down
     return fx, fy, fz, -az * fy, az * fx - ax * fz, ax * fy

@@ -1,0 +1,45 @@
+"""Ground effect by a measured altitude, or over a flat seabed of some depth."""
+
+from __future__ import annotations
+
+import numpy as np
+import plant_cases as cases
+import pytest
+
+from rovval.core.data import Array
+from rovval.core.errors import UsageProblem
+from rovval.plant import Inputs, Motion, Plant, parse_settings
+
+STEPS = 40
+
+
+def sunk(setting: str, altitude: Array | None) -> Motion:
+    """A Merlin that sinks from 20 m at 0.3 m/s with its thrusters off."""
+    plant, nu, eta = Plant(cases.merlin()), np.zeros((1, 6)), np.zeros((1, 6))
+    nu[0, 2], eta[0, 2] = 0.3, 20.0
+    inputs = Inputs(0.1, np.zeros((STEPS + 1, 7)), False, altitude=altitude)
+    return plant.simulate(inputs, np.array([0]), STEPS, nu, eta, parse_settings(plant, [setting])[None])
+
+
+def test_a_seabed_is_as_good_as_the_altitude_above_it():
+    """What is measured and what follows from the depth differ by how linear the depth is between samples."""
+    free = sunk("ground_effect:gain=400,height=0.7,drag=3,seabed=21.5", None)
+    measured = sunk("ground_effect:gain=400,height=0.7,drag=3", 21.5 - free.eta[0, :, 2])
+    assert np.abs(measured.nu - free.nu).max() < 1e-5 < np.abs(free.nu - sunk("ground_effect:gain=1e-9,seabed=21.5", None).nu).max()
+
+
+def test_the_nearer_of_the_two_counts():
+    altitude = np.full(STEPS + 1, 1.0)
+    alone = sunk("ground_effect:gain=400", altitude)
+    assert np.array_equal(sunk("ground_effect:gain=400,seabed=40", altitude).nu, alone.nu)
+    assert np.array_equal(sunk("ground_effect:gain=400,seabed=40", np.full(STEPS + 1, 30.0)).nu, sunk("ground_effect:gain=400,seabed=40", None).nu)
+
+
+def test_near_the_bottom_drag_in_heave_brakes_and_a_gain_lifts():
+    w = {setting: sunk(f"ground_effect:{setting},seabed=20.8", None).nu[0, 5, 2] for setting in ("gain=1e-9", "gain=300", "drag=5", "gain=-300")}
+    assert w["gain=300"] < w["gain=1e-9"] < w["gain=-300"] and 0.0 < w["drag=5"] < w["gain=1e-9"]
+
+
+def test_without_altitude_and_seabed_it_is_refused():
+    with pytest.raises(UsageProblem, match=r"ground_effect needs altitude, or ground_effect\.seabed"):
+        sunk("ground_effect:gain=100", None)

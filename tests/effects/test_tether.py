@@ -1,0 +1,36 @@
+"""The pull of a tether: towards a point, from any depth, and as part of a tether that is dragged along."""
+
+from __future__ import annotations
+
+import numpy as np
+import plant_cases as cases
+import pytest
+
+from rovval.core.data import Array
+from rovval.plant import Inputs, Plant, parse_settings
+
+
+def begun(setting: str, place: tuple[float, float, float]) -> Array:
+    """Velocity (6,) of a Merlin after a tenth of a second from rest, heading north at ``place``, less that of one without the effect."""
+    plant, zero, eta = Plant(cases.merlin()), np.zeros((2, 6)), np.zeros((2, 6))
+    eta[:, :3] = place
+    beta = np.array([parse_settings(plant, settings) for settings in ([setting], [])])
+    out = plant.simulate(Inputs(0.1, np.zeros((2, 7)), False), np.zeros(2, dtype=int), 1, zero, eta, beta)
+    return np.asarray(out.nu[0, 1] - out.nu[1, 1])
+
+
+def test_a_pull_leads_to_its_point_from_any_depth():
+    """The point is 20 m north of the log's origin at a depth of 250 m: from 20 m east of it the pull leads north and west alike, and no way up or down."""
+    here = begun("tether_tension:north=300,nearness=0.05,depth=250", (0.0, 0.0, 250.0))
+    assert here[0] > 0 and np.abs(here[1:3]).max() < 1e-3 * here[0]
+    aside = begun("tether_tension:north=300,nearness=0.05,depth=250", (10.0, 10.0, 250.0))
+    assert aside[1] < 0 < aside[0] and abs(aside[2]) < 1e-3 * aside[0]
+    alike = begun("tether_tension:north=300,east=-300", (0.0, 0.0, 250.0)) / np.sqrt(2.0)
+    np.testing.assert_allclose(aside[:3], alike[:3], atol=1e-6)
+
+
+def test_the_pull_of_a_tether_that_is_dragged_is_a_steady_pull_at_its_attachment():
+    pull = "north=200,east=-80,down=60,x=-0.7,z=-0.4"
+    at_rest = begun(f"tether_drag:{pull}", (3.0, 4.0, 30.0))
+    np.testing.assert_allclose(at_rest, begun(f"tether_tension:{pull}", (3.0, 4.0, 30.0)), rtol=0, atol=1e-9)
+    assert begun(f"tether_drag:coefficient=800,{pull}", (3.0, 4.0, 30.0))[0] == pytest.approx(at_rest[0], rel=0.02)
