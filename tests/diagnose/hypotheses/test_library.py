@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from diagnose_case import merlin, own, without
 
+from rovval.diagnose.hypotheses.initial_points import Hints
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.problem.prior import tolerance_prior
 from rovval.diagnose.windows.multiple_shooting import cut
@@ -66,3 +67,16 @@ def test_where_neither_altitude_nor_depth_is_logged_there_is_no_bottom():
     library, untestable = hypotheses(parts)
     assert "ground_effect" not in {h.name for h in library}
     assert untestable["ground_effect"] == "needs altitude or z, and this log holds neither"
+
+
+def test_waves_that_come_in_several_trains_share_the_columns_of_a_single_one():
+    """A swell begins at the lines that the log shows, a single wave at the first of them; where it shows no more there is nothing to begin from."""
+    parts, _ = cut([own((), 5, 120.0)], merlin(), "fossen", 10.0)
+    index = parts[0].plant.index
+    lines: dict[float | None, tuple[float, ...]] = dict.fromkeys((-0.75 * np.pi, -0.25 * np.pi, 0.25 * np.pi, 0.75 * np.pi), (9.0, 10.0, 8.0))
+    several = [h for h in hypotheses(parts, hints=Hints(lines))[0] if h.name == "waves"]
+    assert {len(h.slots) for h in several} == {4, 10} and len({h.label for h in several}) == len(several)
+    for single, swell in zip(several[::2], several[1::2], strict=True):
+        assert single.columns == swell.columns and dict(swell.at).items() >= dict(single.at).items()
+        assert [dict(swell.at)[index[f"waves.{p}"]] for p in ("period", "period_2", "period_3")] == [9.0, 10.0, 8.0]
+    assert {len(h.slots) for h in hypotheses(parts, hints=Hints({None: (9.0,)}))[0] if h.name == "waves"} == {4}

@@ -25,7 +25,8 @@ def test_a_vehicle_under_way_meets_waves_at_another_period_than_theirs(period, d
     p, _ = posed((f"waves:amplitude={amplitude},period={period},direction={direction},phase=1",))
     point = map_fit(p, p.origin, ())
     met = [one for one, _ in spectral_lines(p, point)]
-    [found] = wave_periods(p, point, met, (2.0, 20.0), (direction,))[direction]
+    found, *others = wave_periods(p, point, met, (2.0, 20.0), (direction,))[direction]
+    assert all(abs(1.0 / found - 1.0 / other) > 1.0 / 200.0 for other in others), "no nearer than a log of that length can tell"
     assert abs(found - period) < 0.4 * abs(met[0] - period)
     lost = replace(p, runs=tuple(replace(part, run=without(part.run, "x")) for part in p.runs))
     assert wave_periods(lost, point, met, (2.0, 20.0), (direction,)) == wave_periods(p, point, [70.0], (2.0, 20.0), (direction,)) == {}

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.data import Array, Flags
-from rovval.diagnose.criteria import SHORTEST_PERIOD_S, WAVE_DOPPLER, WAVE_LINES
+from rovval.diagnose.criteria import SHORTEST_PERIOD_S, WAVE_DOPPLER, WAVE_LINES, WAVE_TRAINS
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.normal_equations import Linearisation
@@ -68,7 +68,7 @@ def wave_periods(
         directions: tried, in rad from north.
 
     Returns:
-        One period (s) for each direction; nothing where a log does not say where the vehicle was.
+        Periods (s) for each direction, the strongest first, `WAVE_TRAINS` at most; nothing where a log does not say where the vehicle was.
     """
     runs, placed = _velocities(problem, point), all(part.run.measured(c) for part in problem.runs for c in ("x", "y", "z"))
     seen = [period for period in encounter if bounds[0] <= period <= bounds[1]][:WAVE_LINES]
@@ -81,8 +81,17 @@ def wave_periods(
     for direction in directions:
         ahead = np.array([np.cos(direction), np.sin(direction)])
         share = [_share(runs, 2.0 * np.pi * rate, ahead * (2.0 * np.pi * rate) ** 2 / gravity) for rate in rates]
-        found[direction] = (1.0 / float(rates[int(np.argmax(share))]),)
+        found[direction] = tuple(1.0 / rate for rate in _apart(rates, np.array(share), 1.5 * PER_TURN * step))
     return found
+
+
+def _apart(rates: Array, share: Array, distance: float) -> list[float]:
+    """The rates of the largest local maxima of the share, `WAVE_TRAINS` at most, no nearer to one another than ``distance``: one line is no wider."""
+    chosen, tops = list[float](), np.flatnonzero((share >= np.roll(share, 1)) & (share >= np.roll(share, -1)))
+    for i in tops[np.argsort(-share[tops])]:
+        if len(chosen) < WAVE_TRAINS and all(abs(float(rates[i]) - other) > distance for other in chosen):
+            chosen.append(float(rates[i]))
+    return chosen
 
 
 def _velocities(problem: Problem, point: Posterior) -> list[_Velocities]:

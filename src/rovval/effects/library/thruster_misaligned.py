@@ -10,7 +10,7 @@ import numpy as np
 from rovval.effects.effect import Effect, Parameter, Tolerance
 from rovval.effects.lanes import Array, Lanes
 
-SOURCE = "1 to 10 degrees (chosen); the bounds hold one that was knocked round or mounted across"
+SOURCE = "1 to 10 degrees (chosen); the bounds hold one that was knocked round: beyond 45 degrees a bracket has come off, and its thrust is no longer there"
 MOUNTED = Tolerance(0.3, "rad per unit of calibration tolerance: 5 % goes with thrusters mounted to within a degree (chosen)")
 
 EFFECT = Effect(
@@ -21,8 +21,8 @@ EFFECT = Effect(
     "thruster, whose yaw turns about y); thrust and moment follow.",
     symbols={"e_i": "unit vector of thruster i's thrust, body axes", "yaw, tilt": "angles of the two turns; rad"},
     parameters=(
-        Parameter("yaw", "rad", -1.4, 1.4, 0.0, 0.05, SOURCE, tolerance=MOUNTED),
-        Parameter("tilt", "rad", -1.4, 1.4, 0.0, 0.05, SOURCE, tolerance=MOUNTED),
+        Parameter("yaw", "rad", -0.8, 0.8, 0.0, 0.05, SOURCE, tolerance=MOUNTED),
+        Parameter("tilt", "rad", -0.8, 0.8, 0.0, 0.05, SOURCE, tolerance=MOUNTED),
     ),
     per="thruster",
     signature="a force across that thruster, growing with its thrust",
