@@ -152,6 +152,20 @@ def test_a_flipped_bit_is_found_by_the_checksum(tmp_path):
     assert any(f.code == "cut_file" for f in log.findings) and len(log.channels["u"].t) < N
 
 
+def test_a_spoiled_stream_of_a_chunk_is_a_refusal_or_a_finding(tmp_path):
+    """Also where it is zstandard, not a checksum, that meets the damage."""
+    write_protobuf(tmp_path / "dive.mcap")
+    own, whole = profile(tmp_path, "u"), (tmp_path / "dive.mcap").read_bytes()
+    refused = 0
+    for at in range(100, len(whole) // 2, len(whole) // 20):
+        (tmp_path / "dive.mcap").write_bytes(whole[:at] + bytes([whole[at] ^ 0x55]) + whole[at + 1 :])
+        try:
+            read(tmp_path / "dive.mcap", own)
+        except BadInput as refusal:
+            refused += "dive.mcap" in str(refusal)
+    assert refused > 3
+
+
 def test_a_topic_that_is_not_there_and_a_field_that_is_not(tmp_path):
     write_json(tmp_path / "dive.mcap")
     with pytest.raises(BadInput, match=r"/nav has no number 'velocity.x'; it has: timestamp.sec"):

@@ -25,7 +25,7 @@ def opened(path: Path) -> Iterator[Any]:
     try:
         with h5py.File(path, "r") as file:
             yield file
-    except (OSError, RuntimeError, KeyError) as error:
+    except (OSError, RuntimeError, KeyError, TypeError, ValueError, AttributeError, OverflowError, MemoryError) as error:  # h5py, of damage
         said = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise BadInput(f"{path}: damaged or no HDF5: {said}", "is the file whole? was it closed by what wrote it?") from None
 
@@ -38,7 +38,8 @@ def nested(group: Any, matlab: bool = False, path: str = "") -> tuple[dict[str, 
 
     arrays: dict[str, Any] = {}
     units: dict[str, str] = {}
-    for name, member in group.items():
+    for key, member in group.items():
+        name = key if isinstance(key, str) else key.decode(errors="replace")  # h5py leaves a name that is no UTF-8 as bytes
         here = f"{path}{path and '/'}{name}"
         if matlab and name.startswith("#"):
             continue

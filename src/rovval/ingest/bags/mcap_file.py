@@ -153,6 +153,7 @@ class _Known:
 
 def _unpacked(record: bytes, damage: Damage) -> bytes:
     """A chunk's content; b"" where it is spoiled, what is there of one that is cut and not compressed."""
+    import zstandard
     from mcap.data_stream import ReadDataStream
     from mcap.exceptions import McapError
     from mcap.records import Chunk
@@ -169,7 +170,7 @@ def _unpacked(record: bytes, damage: Damage) -> bytes:
         return bytes(stream.read(length))
     except CRCValidationError:
         damage.lost["a chunk that does not fit its CRC"] += 1
-    except (McapError, ValueError, RuntimeError, struct.error, OverflowError, MemoryError):
+    except (McapError, zstandard.ZstdError, ValueError, RuntimeError, struct.error, OverflowError, MemoryError):
         damage.lost["a chunk that cannot be unpacked"] += 1
     return b""
 

@@ -78,13 +78,14 @@ def _topics(path: Path) -> set[str]:
 
 def _summary(path: Path) -> list[Any] | None:
     """The channels that the end of the file lists; None of a file without its end."""
+    import zstandard
     from mcap.exceptions import McapError
     from mcap.reader import make_reader
 
     try:
         with path.open("rb") as file:
             summary = make_reader(file).get_summary()
-    except (McapError, ValueError, OSError, OverflowError, struct.error):
+    except (McapError, zstandard.ZstdError, ValueError, RuntimeError, OSError, OverflowError, MemoryError, struct.error):
         return None
     return list(summary.channels.values()) if summary is not None and summary.channels else None
 
@@ -123,6 +124,7 @@ def _blocks(path: Path, wanted: Callable[[str], bool]) -> Iterator[Block]:
 
 def _records(path: Path, findings: list[Finding]) -> Iterator[Any]:
     """Every record outside of the file's end, checked by its CRC; damage ends it, and is a finding. Raises `BadInput` where nothing came before."""
+    import zstandard
     from mcap.exceptions import McapError
     from mcap.records import DataEnd, Message
     from mcap.stream_reader import StreamReader
@@ -137,7 +139,7 @@ def _records(path: Path, findings: list[Finding]) -> Iterator[Any]:
                     count, last = count + 1, record.log_time
                 yield record
             why = "ends without its summary"
-        except (McapError, ValueError, RuntimeError, OSError, EOFError, OverflowError, MemoryError, struct.error) as error:
+        except (McapError, zstandard.ZstdError, ValueError, RuntimeError, OSError, EOFError, OverflowError, MemoryError, struct.error) as error:
             why = f"is damaged or ends in the middle of a chunk: {type(error).__name__}{str(error) and ': '}{error}"
     if not count:
         raise BadInput(f"{path}: no message can be read: the file {why}", "`mcap recover` may mend it")

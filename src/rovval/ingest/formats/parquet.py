@@ -48,6 +48,6 @@ def _blocks(path: Path, rows: int | None = None) -> Iterator[Block]:
 
     try:
         frame = pl.read_parquet(path, n_rows=rows, use_pyarrow=False, glob=False)
-    except (pl.exceptions.PolarsError, OSError) as error:
+    except (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError) as error:  # its decoder panics at some damage
         raise BadInput(f"{path}: damaged: {str(error).splitlines()[0]}", "Parquet keeps its index at the end: is the file whole?") from None
     yield block_of("", frame)
