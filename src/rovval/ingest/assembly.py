@@ -20,6 +20,7 @@ from rovval.ingest.thruster_speeds import signed_by_command, without_spikes
 SIDEWAYS_OR_DOWN = ("v", "w", "q", "r", "vdot", "wdot")  # change sign between forward-left-up and forward-starboard-down
 TO_NED = {"ned": np.eye(3), "enu": ENU_TO_NED, "nwu": FLU_TO_FSD}
 EULER = ("phi", "theta", "psi")
+UNIT_WITHIN = 0.1  # of the length of a quaternion: rounding of an export leaves less; what is further off is no rotation
 SPIKE_RAD = 1.5  # rad
 WGS84_A, WGS84_E2 = 6378137.0, 6.69437999014e-3  # semi-major axis (m) and first eccentricity squared, NIMA TR8350.2, table 3.1
 
@@ -57,7 +58,7 @@ def build(
         if not present.any():
             found.append(Finding("empty_channel", name, "holds no value"))
         elif name == ATTITUDE:
-            series |= _attitude(profile, signal, present)
+            series |= _attitude(profile, signal, present, found)
         else:
             t, values = (signal.t, signal.values) if present.all() else (signal.t[present], signal.values[present])
             series[name] = Series(t, _si(values, signal.source), signal.stamp)
@@ -95,14 +96,16 @@ def _si(raw: Array, source: Source) -> Array:
     return values
 
 
-def _attitude(profile: Profile, signal: Signal, present: Flags) -> dict[str, Series]:
+def _attitude(profile: Profile, signal: Signal, present: Flags, found: list[Finding]) -> dict[str, Series]:
     """Euler angles of the quaternion in the pair of axes that belongs to its world: fsd in ned, flu in enu and nwu."""
     q = signal.values[present]
     if (profile.frame_of(ATTITUDE) == "fsd") != (profile.world_of(ATTITUDE) == "ned"):
         w, x, y, z = q.T
         q = np.stack([-x, w, z, -y], axis=1)  # half a turn about the bow first: fsd <-> flu
-    norm = np.linalg.norm(q, axis=1)
-    unit = np.abs(norm - 1.0) < 0.1
+    norm = np.linalg.norm(np.clip(q, -2.0, 2.0), axis=1)  # longer than one all the same, and the square of no number is too large
+    unit = np.abs(norm - 1.0) < UNIT_WITHIN
+    if not unit.all():
+        found.append(Finding("not_a_rotation", ATTITUDE, f"{(~unit).sum()} quaternions are not of length 1 to within {UNIT_WITHIN:g}; dropped"))
     euler = euler_from_quaternion(q[unit] / norm[unit, None])
     return {n: Series(signal.t[present][unit], euler[:, i], signal.stamp) for i, n in enumerate(EULER)}
 

@@ -11,7 +11,7 @@ import struct
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Literal
+from typing import IO, Any, Literal, cast
 
 import numpy as np
 
@@ -27,6 +27,14 @@ TOGETHER = 1 << 24  # bytes of messages outside chunks that are taken at a time
 LANGUAGES: dict[str, Literal["msg", "idl"]] = {"ros1msg": "msg", "ros2msg": "msg", "ros2idl": "idl"}
 
 
+class Mapped(mmap.mmap):
+    """A file whose reads never ask for more memory than it has bytes, whatever a damaged length says."""
+
+    def seekable(self) -> bool:
+        """It is."""
+        return True
+
+
 class Mcap:
     """A `rovval.ingest.bags.block.Container`."""
 
@@ -35,7 +43,7 @@ class Mcap:
         self.findings: list[Finding] = []
         self.foreign: dict[str, str] = {}
         with path.open("rb") as file:
-            self._file = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+            self._file = Mapped(file.fileno(), 0, access=mmap.ACCESS_READ)
         self._summary = self._read_summary()
 
     def _read_summary(self) -> Any:
@@ -43,8 +51,7 @@ class Mcap:
         from mcap.reader import make_reader
 
         try:
-            with self.path.open("rb") as file:
-                return make_reader(file).get_summary()
+            return make_reader(cast(IO[bytes], self._file)).get_summary()
         except (McapError, ValueError, KeyError, struct.error, OverflowError, OSError, MemoryError):
             return None
 

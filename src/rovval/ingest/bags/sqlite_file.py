@@ -65,7 +65,7 @@ class Sqlite:
             damage.cut = f"the file ends {self.cut:,} pages of {pages(self.path)[1]:,} too early"
         wanted = [number for number, connection in self._topics.items() if connection.topic in topics]
         with closing(self._open()) as base:
-            for rows in _rows(base, None if self.cut else wanted, damage):
+            for rows in _rows(base, None if self.cut else wanted, damage, pages(self.path)[1]):
                 ids, ns = (np.fromiter((row[k] for row in rows), dtype=np.int64, count=len(rows)) for k in (1, 2))
                 damage.found(ns)
                 for number in wanted:
@@ -87,8 +87,8 @@ class Sqlite:
         return base
 
 
-def _rows(base: sqlite3.Connection, wanted: list[int] | None, damage: Damage) -> Iterator[list[Row]]:
-    """Whole rows in the order of their numbers; where SQLite cannot go on, from the next number at which it can."""
+def _rows(base: sqlite3.Connection, wanted: list[int] | None, damage: Damage, most: int) -> Iterator[list[Row]]:
+    """Whole rows in the order of their numbers; where SQLite cannot go on, from the next number at which it can, ``most`` (pages) times."""
     which = "" if wanted is None else f" AND topic_id IN ({', '.join(map(str, wanted))})"
     query = f"SELECT id, topic_id, timestamp, data FROM messages WHERE id > ?{which} ORDER BY id"
     last, top = 0, None
@@ -108,13 +108,14 @@ def _rows(base: sqlite3.Connection, wanted: list[int] | None, damage: Damage) ->
             if rows:
                 yield [row for row in rows if _is_message(row)]
             top = _last_number(base) if top is None else top
-            following = _readable_after(base, last, top)
+            most -= 1
+            following = _readable_after(base, last, top) if most > 0 else None
             if following is None:
                 if not damage.cut:
                     damage.lost[f"rows beyond number {last} cannot be read"] += 1
                 return
-            damage.lost[f"rows {last + 1} to {following - 1} cannot be read"] += 1
-            last = following - 1
+            damage.lost["rows of a page that cannot be read"] += 1
+            last = max(following - 1, last + 1)  # a row that is there and cannot be read is passed over
 
 
 def _singly(base: sqlite3.Connection, query: str, last: int) -> list[Row]:
