@@ -72,20 +72,3 @@ def test_one_axis_and_several_that_are_off_alike_are_told_apart(planted, other):
     problem = pose(parts, columns_of(library), 0.05)
     evidence = {h.name: fit_hypothesis(problem, problem.origin, h.slots).evidence for h in library}
     assert evidence[planted] > evidence[other] + 20.0
-
-
-def test_ground_effect_is_found_without_an_altitude():
-    """The seabed is a metre and a half below the deepest point; where exactly is one number with the gain, and the pull at that point is not."""
-    deepest = float(own((), 4, 120.0).get("z").max())
-    truth = f"ground_effect:gain=900,height=0.8,drag=4,seabed={deepest + 1.5}"
-    parts = (cut_run(own((truth,), 4, 120.0), merlin(), "fossen", 10.0),)
-    h = next(h for h in hypotheses(parts)[0] if h.name == "ground_effect")
-    problem, slots = pose(parts, columns_of([h]), 0.05), parts[0].plant.slots
-    start = problem.origin.copy()
-    for where, value in h.at:
-        start[where] = value
-    done = fit_hypothesis(problem, start, h.slots)
-    gain, height, seabed = (done.beta[slot(problem, f"ground_effect.{p}")] for p in ("gain", "height", "seabed"))
-    there = float(parts[0].run.get("z").max())
-    assert done.evidence > 100.0 and len(slots) == len(done.beta)
-    assert gain * np.exp((there - seabed) / height) == pytest.approx(900.0 * np.exp((there - deepest - 1.5) / 0.8), rel=0.15)
