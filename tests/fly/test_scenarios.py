@@ -66,3 +66,10 @@ def test_a_document_follows_the_thesis_figure_by_figure(tmp_path):
     text = (tmp_path / "two" / "scenarios.md").read_text()
     assert "| VFP | 82.7 | 80.5 | -2.7 % |" in text and "Circular" in text
     assert (tmp_path / "two" / "scenario-2-fossen.rrd").stat().st_size > 1000
+
+
+def test_scenario_3_closes_the_loop_round_way_points():
+    checks = json.loads(run("scenario", "3", "--json").stdout)["checks"]
+    closed = [c for c in checks if c["expected"].startswith("closed loop")]
+    assert len(closed) == 4 and all(c["holds"] for c in closed)
+    assert not [c for c in json.loads(run("scenario", "3", "--model", "uuv", "--json").stdout)["checks"] if c["expected"].startswith("closed loop")]

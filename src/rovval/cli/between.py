@@ -10,7 +10,7 @@ from rovval.cli import complete, logs, output
 from rovval.core.errors import UsageProblem
 
 if TYPE_CHECKING:
-    from rovval.comparison.between import Track
+    from rovval.comparison.between import Difference, Track
     from rovval.core.data import Run
     from rovval.vehicle.model import Vehicle
 
@@ -23,16 +23,27 @@ def difference(
 ) -> None:  # fmt: skip
     """B minus A on stdout; difference.json and difference.md into ``out``, where it is given."""
     from rovval.comparison.between import between as subtract
-    from rovval.report import between as report
-    from rovval.report.common.files import write_all
 
     platforms = [name for name in names if name in complete.known("platform")]
     if not platforms and source is not None:
         raise UsageProblem(f"{source}: two files need no log", f"leave it out, or give platforms: {', '.join(complete.known('platform'))}")
+    if source is not None and (source.endswith(".toml") or source in complete.missions(source)):
+        a, b = (_flown(source, vehicle, name, effects) if name in platforms else _track(name, None, effects, profile, archive, quiet) for name in names)
+        result, what = subtract(a, b), f"mission {source}"
+        _told(result, what, out, as_json, quiet)
+        return
     driven: tuple[Run, Vehicle] | None = _driven(source, vehicle, profile, archive, quiet, between) if platforms else None
     a, b = (_track(name, driven, effects, profile, archive, quiet) for name in names)
     result = subtract(a, b)
     what = "as recorded in the files" if driven is None else f"{driven[1].name}, {driven[0].source or PROTOCOL}"
+    _told(result, what, out, as_json, quiet)
+
+
+def _told(result: Difference, what: str, out: Path | None, as_json: bool, quiet: bool) -> None:
+    """The difference on stdout, and in a folder where one is given."""
+    from rovval.report import between as report
+    from rovval.report.common.files import write_all
+
     if out is not None:
         import json
 
@@ -58,6 +69,17 @@ def _driven(
 
     loaded = vehicles.load(vehicle or "merlin")
     return replace(commanded(loaded, protocol(loaded), "movement-protocol"), source=""), loaded
+
+
+def _flown(mission: str, vehicle: str | None, model: str, effects: Sequence[str]) -> Track:
+    """The true motion of a mission that a platform flies."""
+    from rovval import vehicle as vehicles
+    from rovval.comparison.between import of_run
+    from rovval.fly import fly
+    from rovval.fly import mission as missions
+
+    plan = missions.load(mission)
+    return of_run(fly(plan, vehicles.load(vehicle or plan.vehicle or "merlin"), model, effects).run(truth=True), model)
 
 
 def _track(name: str, driven: tuple[Run, Vehicle] | None, effects: Sequence[str], profile: str | None, archive: Path, quiet: bool) -> Track:

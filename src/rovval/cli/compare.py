@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 Optional = Annotated[
     str | None,
     typer.Argument(
-        metavar="[LOG|RUN]", help="A log file, a bag folder, or a run of the archive; needed but between two files.", autocompletion=complete.sources
+        metavar="[LOG|RUN]",
+        help="A log file, a bag folder, or a run of the archive; with --between two platforms a mission, too.", autocompletion=complete.sources
     ),
 ]
 Between = Annotated[

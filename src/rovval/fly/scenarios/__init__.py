@@ -21,7 +21,7 @@ class Check:
 @dataclass(frozen=True, slots=True)
 class Outcome:
     """A scenario's result. ``document`` has every number with its unit in its key; ``comparison`` is what was compared,
-    ``motion`` the motion and ``run`` the log that the scenario's pictures show, where there is any."""
+    ``motion`` the motion and ``run`` the log that the scenario's pictures show, where there is any; ``closed`` its motion in closed loop."""
 
     number: int
     title: str
@@ -32,6 +32,7 @@ class Outcome:
     comparison: Comparison | None = None
     motion: SimResult | None = None
     run: Run | None = None
+    closed: SimResult | None = None
 
     @property
     def passed(self) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -67,8 +67,9 @@ def write(outcomes: Outcomes, vehicle: Vehicle, folder: Path, document: Mapping[
         "scenarios.json": json.dumps(document, indent=2, allow_nan=False) + "\n",
     }  # fmt: skip
     for (scenario, model), outcome in outcomes.items():
-        if (comparison := recorded(outcome)) is not None:
-            files[f"scenario-{scenario}-{model}.rrd"] = partial(_record, comparison, vehicle)
+        for name, one in (("", outcome), ("-closed", replace(outcome, motion=outcome.closed))):
+            if (comparison := recorded(one)) is not None and (not name or outcome.closed is not None):
+                files[f"scenario-{scenario}-{model}{name}.rrd"] = partial(_record, comparison, vehicle)
     return write_all(folder, files)
 
 
@@ -96,7 +97,9 @@ def figures(outcomes: Outcomes, vehicle: Vehicle) -> list[Drawn]:
         if not here:
             continue
         model = figure.platform if figure.platform in here else next(iter(here))
-        found.append(Drawn(figure.number, figure.caption, f"{vehicle.name}, {model}" if model else "the log", figure.reason, figure.draw(here[model], vehicle)))
+        if drawings := figure.draw(here[model], vehicle):
+            of = f"{vehicle.name}, {model}" if model else "the log"
+            found.append(Drawn(figure.number, figure.caption, of, figure.reason, drawings))
     return found
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -110,6 +110,15 @@ def way(outcome: Outcome, vehicle: Vehicle) -> list[Drawing]:
     return [path("path", _sim(outcome).free.eta[:, :3])]
 
 
+def closed(draw: Drawn) -> Drawn:
+    """The same of the motion in closed loop."""
+
+    def drawn(outcome: Outcome, vehicle: Vehicle) -> list[Drawing]:
+        return draw(replace(outcome, motion=outcome.closed), vehicle) if outcome.closed else []
+
+    return drawn
+
+
 def setpoint_and_feedback(outcome: Outcome, vehicle: Vehicle) -> list[Drawing]:
     """Each thruster's set-point and measured speed, where the log has them."""
     run = outcome.run
@@ -138,9 +147,9 @@ def performance(outcome: Outcome, vehicle: Vehicle) -> list[Drawing]:
 NOISE = "Ours has no noise: the thesis reads its velocities through Gazebo's sensors (1e-3 m/s, 6.2)."
 TRIM = "Ours sinks slowly from its trim, as 6.2 says of both of the thesis's."
 TIMES = "The thesis turned the knobs by hand at times that it does not print; ours turns each thruster for 30 s, one after the other."
-OPEN = (
+LOOP = (
     "The thesis steered by way points with a controller that it calls premature (6.4), whose gains and points it does not print; "
-    "ours is the protocol of table 4.6."
+    "ours is a square with a step of depth, steered by gains that follow from the vehicle's mass and drag."
 )
 LAG = "Thrust is that of the commanded speed: the thruster's own 0.05 s is not drawn."
 PLACES = "Speed of each thruster's place: positions are assumed (docs/thesis.md)."
@@ -163,9 +172,9 @@ FIGURES = (
     Figure("5.14", "Thruster 3 and 2 input and output versus time", 3, ROS, thruster_pair(3, 2)),
     Figure("5.15", "Thruster 5 and 4 input and output versus time", 3, ROS, thruster_pair(5, 4)),
     Figure("5.16", "Thruster 6 input and output versus time", 3, ROS, thruster_pair(6, 7), "A vehicle with eight thrusters has the last one here."),
-    Figure("5.17", "ROV change in position in MATLAB", 3, SIMULINK, position, OPEN),
-    Figure("5.18", "ROV motion, 3-D plot in MATLAB", 3, SIMULINK, way, OPEN),
-    Figure("5.19", "ROV velocity in MATLAB", 3, SIMULINK, velocity, OPEN),
+    Figure("5.17", "ROV change in position in MATLAB", 3, SIMULINK, closed(position), LOOP),
+    Figure("5.18", "ROV motion, 3-D plot in MATLAB", 3, SIMULINK, closed(way), LOOP),
+    Figure("5.19", "ROV velocity in MATLAB", 3, SIMULINK, closed(velocity), LOOP),
     Figure("5.20", "Response from the thrusters of the vehicle: set-point and feedback", 4, "", setpoint_and_feedback, PRIVATE),
     Figure("5.21", "Performance: vehicle and simulator", 5, SIMULINK, performance, PRIVATE),
 )  # fmt: skip

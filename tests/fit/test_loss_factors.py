@@ -1,0 +1,45 @@
+"""The thesis's tuning (6.5), replayed: loss factors and an allocation error that were planted are found in one log and shown on another."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rovval import vehicle
+from rovval.comparison import compare
+from rovval.core.channels import POSE, VELOCITIES
+from rovval.core.data import Array, Reason, Run
+from rovval.fit import fit
+from rovval.fly.scenarios.movements import protocol
+from rovval.fly.scenarios.still_water import commanded
+from rovval.simulation import simulate
+
+MERLIN = vehicle.load("merlin")
+THETA = {"HFP": 0.75, "HAS": 0.85}  # share of the thrust that is left: theta of F = rho D^4 n |n| theta K_T
+TURNED = 0.12  # rad, of HFS about the vertical
+PLANTED = [*(f"thruster_degraded[{name}]:loss={1 - theta}" for name, theta in THETA.items()), f"thruster_misaligned[HFS]:yaw={TURNED}"]
+
+
+def flown(speed_rpm: Array, name: str, seed: int) -> Run:
+    """The log of a Merlin with the planted errors under these thruster speeds, with sensor noise."""
+    run = commanded(MERLIN, speed_rpm, name)
+    truth, rng = simulate(run, MERLIN, "fossen", PLANTED).free, np.random.default_rng(seed)
+    nu = truth.nu + rng.normal(size=truth.nu.shape) * [0.01, 0.01, 0.01, 0.002, 0.002, 0.002]
+    eta = truth.eta + rng.normal(size=truth.eta.shape) * [0.05, 0.05, 0.02, 0.001, 0.001, 0.002]
+    values = {**run.values, **{n: nu[:, j] for j, n in enumerate(VELOCITIES)}, **{n: eta[:, j] for j, n in enumerate(POSE)}}
+    return replace(run, id=name, values=values, reasons={c: np.full(len(nu), Reason.OK, dtype=np.uint8) for c in values})
+
+
+@pytest.mark.slow
+def test_planted_loss_factors_and_an_allocation_error_are_found_and_shown_on_a_second_log():
+    one = flown(protocol(MERLIN)[:2400], "one", 1)
+    two = flown(np.repeat(np.random.default_rng(3).uniform(-90, 90, size=(24, 7)), 100, axis=0), "two", 2)
+    done = fit([one], MERLIN, ["thruster_degraded[H*]", "thruster_misaligned[HFS]"])
+    found = vehicle.parse(done.vehicle, "fitted").effects
+    for name, theta in THETA.items():
+        assert 1 - found[f"thruster_degraded[{name}]"]["loss"] == pytest.approx(theta, abs=0.04), name
+    assert found["thruster_misaligned[HFS]"]["yaw"] == pytest.approx(TURNED, abs=0.05)
+    before, after = (compare(two, simulate(two, v)).windowed for v in (MERLIN, vehicle.parse(done.vehicle, "fitted")))
+    assert all(after[axis].rmse < 0.7 * before[axis].rmse for axis in ("surge", "sway", "yaw"))
