@@ -12,7 +12,7 @@ from rovval.plant import Inputs, Plant, parse_settings
 def test_it_is_by_now_what_came_on_since_the_run_began():
     """Over a tenth of a second, half a minute in, a drift is a buoyancy error of its size then."""
     plant, zero = Plant(cases.merlin()), np.zeros((3, 6))
-    asked = ["buoyancy_drift:rate=0.5"], ["buoyancy_error:force=15.025"], []
+    asked: tuple[list[str], ...] = ["buoyancy_drift:rate=0.5"], ["buoyancy_error:force=15.025"], []
     beta = np.array([parse_settings(plant, settings) for settings in asked])
     out = plant.simulate(Inputs(0.1, np.zeros((302, 7)), False), np.full(3, 300), 1, zero, zero, beta)
     drift, error = (out.nu[i, 1] - out.nu[2, 1] for i in (0, 1))

@@ -20,6 +20,8 @@ JUSTIFIED = {
         "added_mass", "added_mass[", "linear_drag", "linear_drag[", "quadratic_drag", "quadratic_drag[", "attitude_bias", "dvl_lever_arm",
         "dvl_misalignment", "tether_drag", "thrust_lag",
     },
+    "plant/platforms/freefloating.py": {"added_mass", "linear_drag"},  # keys of the vehicle's file, which the platform has no use for
+    "plant/platforms/uuv.py": {"quadratic_drag"},  # the same, of which it takes the diagonal
 }  # fmt: skip
 FILES = sorted(p for p in PACKAGE.rglob("*.py") if p.relative_to(PACKAGE).parts[0] not in OTHERS)
 

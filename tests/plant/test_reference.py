@@ -98,7 +98,7 @@ def test_every_slot_does_something():
     base = np.array([min(max(s.parameter.null + s.parameter.typical, s.parameter.low), s.parameter.high) for s in plant.slots])
     base[[s.parameter.name == "onset" for s in plant.slots]] = 21.0
     rows, keys = [], []
-    for slot in plant.slots:
+    for slot in (s for s in plant.slots if not s.parameter.instead_of):  # what stands in for a channel that is logged here does nothing
         columns = list(plant.hypotheses[slot.hypothesis])
         one = plant.null.copy()
         one[columns] = base[columns]

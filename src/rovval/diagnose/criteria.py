@@ -79,7 +79,9 @@ MOST_REFITS = 5  # fits without a part of the logs: of more logs than that, a fi
 IDENTIFIABLE_ALONE = 3.0  # standard errors with which a typical size shows while nothing else moves (chosen)
 IDENTIFIABLE_JOINTLY = 1.5  # the same while all that is tuned, and every tolerance, moves with it (chosen: a 90 % interval within a typical size)
 WIDEST_INTERVAL = 2.0  # typical sizes: a half interval beyond it, at the fitted point, is no answer (chosen)
-PRIOR_WIDTH = 4.0  # wide prior, in typical sizes: keeps a parameter that the log does not see from running away
+EXACT_WINDOWS = 8.0  # windows for which the equations are as good as exact: of m, each says 1 / (1 + m / this) of what it seems to (development logs)
+PRIOR_WIDTH = 4.0  # wide prior, in typical sizes, in which effects are fitted: keeps a parameter that the log does not see from running away
+PRIOR_FREEDOM = 3.0  # of Student's t, scaled by the typical size, the prior in which effects are compared: large ones are rare, not impossible (chosen)
 FEW_WINDOWS = 6  # windows: fewer are too few to average model-form error over (chosen)
 
 
@@ -109,16 +111,19 @@ SPRING_LEAST_STIFFNESS = 5.0  # N/m: half of what is typical of `tether_snag`; s
 SPRING_EVIDENT_SHARE = 0.2  # of the gap, from which a spring is fitted in any case (opened sets: eight snags 0.22 to 0.82; of 82 others three)
 
 
-# -- search: detection, candidates, forward selection, confusion groups, onsets -----------------------------------------------------
+# -- search and decision: prior masses, what is fitted, something else ---------------------------------------------------------------
 
 # Evidence is twice the logarithm of a Bayes factor: 2 to 6 is positive, 6 to 10 strong, above 10 very strong (Kass and Raftery 1995).
-FALSE_ALARM = 0.05  # family-wise rate, over the whole library, at which a step of the search goes on for nothing (convention)
-EVIDENT_WITHOUT_TEST = 20.0  # evidence that needs no p-value (chosen): where a strong effect is left of the log, null logs hold some of it
-LEAST_EVIDENCE = 6.0  # evidence of a cause over its baseline: "strong"; no healthy Merlin log of the tuning set got as far as candidates
-PROMISING_EVIDENCE = 0.5  # share of `LEAST_EVIDENCE` that the linearised model has to promise, else nothing is re-simulated (chosen)
+PRIOR_HEALTHY = 0.50  # prior mass of a vehicle that is as its file has it, within tolerance (chosen: one log in two has nothing to find),
+PRIOR_CAUSES = (0.30, 0.10, 0.03)  # of one, two and three causes of the library (chosen: each further one a third as likely),
+PRIOR_FILE = 0.02  # of a file that is off in many numbers at once (chosen),
+PRIOR_SOMETHING_ELSE = 0.05  # and of something that the library does not hold (chosen)
+FILE_WIDTH = 10.0  # times the tolerance: prior standard deviation of a number of such a file (chosen: 50 % where the tolerance is 5 %)
+LEAST_EVIDENCE = 6.0  # evidence that is called strong (Kass and Raftery 1995)
+VARIATIONS = (0.2, 0.8)  # of its size, from window to window: by how much a cause that is not constant varies (chosen)
+GROUP_PROBABILITY = 0.90  # of a confusion group
+NEGLIGIBLE = 0.01  # probability of a model beside the best one, below which it is not sought after (chosen)
 MOST_CAUSES = 3  # at once (chosen)
-MOST_STEPS = 5  # of the search: a cause that later ones make needless leaves its place (chosen)
-NEEDLESS_EVIDENCE = 6.0  # evidence below which a cause is dropped again: less than strong
 MOST_CANDIDATES = 10  # hypotheses that are re-simulated in a step (chosen)
 SCREENED_EVIDENCE = 0.15  # share of the best linearised evidence: with less, a hypothesis is not re-simulated (chosen),
 LEAST_SCREENED = 4  # unless it is among so many of the first (chosen)
@@ -131,77 +136,24 @@ MOST_REFITTED = 2  # fits that are (chosen)
 REFITTED_EVIDENCE = 0.25  # share of the best's evidence that their tangent must promise (chosen: what gains little is found again beside the best)
 MOST_RELINEARISED = 4  # candidates that are fitted again with sensitivities made at their own point (chosen)
 SERIOUS_EVIDENCE = 0.5  # share of the best evidence from which a candidate's gain counts (chosen)
-STRONG_EVIDENCE = 60.0  # evidence from which it is asked what a candidate gains beside coefficients within tolerance (chosen on opened logs)
-COUNTED_REDUCTION = 0.2  # of what those leave of the gap, that a candidate must reduce it by for this to count (opened logs: wrong ones 0.12 at most)
-ONSET_LEAST_WINDOWS = 6  # in which something acts, from which it is asked what it gains there (chosen: fewer may be any event)
-PARITY_CONTRADICTED = 0.2  # of the parity residuals: a fault of a sensor that adds as much is not there (opened logs: true ones nothing, false ones 0.3 to 15)
-ADMISSIBLE_SIGMA = 2.2  # standard errors, tolerances included, by which a candidate departs from no effect (tuning set: healthy logs reach 2.0)
-ADMISSIBLE_TOLERANCES = 3.0  # tolerances within which a coefficient is no cause (chosen)
-ADMISSIBLE_LOSS = 1.5  # the same of a loss of thrust that comes and goes, in tolerances of thrust (chosen)
-ADMISSIBLE_GAIN = 0.5  # share of the gain of the best candidate with serious evidence (chosen)
-SIMPLER_GAIN = 0.9  # share of the best's gain at which a candidate with fewer parameters is named instead (chosen)
-ONSET_CLEAR = 20.0  # evidence of a loss of thrust with an onset over the same without (opened logs: false ones below 0, true ones 69 and more)
-FORM_SHARE = 0.35  # share of the evidence that may be owed to model-form error (chosen on the tuning set)
-FORM_SHARE_MOST = 0.7  # the same where windows are few (chosen)
-FEW_WINDOWS_GAIN = 0.6  # with fewer than `FEW_WINDOWS`: share of the best's gain from which a candidate stays beside it (chosen)
-EVIDENCE_PER_PARAMETER = 0.05  # share of the best's evidence, or gain, that each parameter which it has more may add to it (chosen)
-TEMPERING_EVIDENCE = 4.0  # evidence that counts as a nat of belief, beside the share of model-form error (chosen on the tuning set)
-CONFUSED_LEVEL = 0.05  # one-sided: a member of a group must be this plausible to be as good as the best (convention)
-FIRST_GAIN = 0.15  # reduction of the gap, held out, by a first cause (opened sets: 0 of 8 below it were right)
-FURTHER_GAIN = 0.18  # the same of what is left by a further cause: model-form error leaves structure (opened sets: 0 of 7 below it were right)
-FURTHER_EVIDENCE_GAIN = 8.0  # evidence times gain of a further cause: little evidence will do where much is gained (opened sets: 1 of 9 below it was right)
-OFFSET_EVIDENCE = 0.1  # share of the causes' evidence from which a candidate that gains little by itself may wait for another, if it is strong (chosen)
-OFFSET_TRIED = 3  # candidates that are fitted to find it (chosen)
+FURTHER_GAIN = 0.18  # share of what causes leave of the gap, that a recalibration of the file must take away beyond them (opened sets)
 MOST_ALTERNATIVES = 2  # candidates against which a cause is weighed again in the end (chosen)
-ALTERNATIVE_EVIDENCE = 0.5  # share of the best candidate's evidence that makes one (chosen)
 WINDOWS_BEFORE_ONSET = 3  # windows without what begins during a log, at least (chosen),
 WINDOWS_AFTER_ONSET = 6  # and with it (chosen)
 ONSETS_TRIED = 12  # first windows with it that are tried, evenly spread, before those about the best of them (chosen)
-ONSET_HINTED = 10.0  # linearised evidence of the part after an onset over the whole log (chosen)
-ONSET_DENIED = 20.0  # linearised evidence of the windows before it against the cause (chosen)
 ONSET_SEARCHED = 0.2  # share of the evidence of the best on the whole log: with less, linearised, no part is searched (opened logs: 0.25 of a true one)
-ONSET_CLEARER = 20.0  # evidence of the causes with an onset over those without, on the same windows, from which they are told (chosen)
 OWN_FORCE = 0.05  # of what a generic force does, that nothing else does: with less it is not one of its own (opened logs: one on speed beside drag 0.02)
+MOST_FORCES = 4  # generic forces that stand for something else (chosen)
 GENERIC_SIZES = (0.01, 0.1, 1.0)  # prior sizes of a generic force that are tried, in the rms of the thrusters' own on that axis (chosen)
 
 
-# -- decision: benefit, constancy, consistency, verdict -----------------------------------------------------------------------------
+# -- decision: consistency, indications, what is left ---------------------------------------------------------------------------------
 
-ACTING_SHARE = 0.15  # of the causes' reduction: the axes on which they act (chosen)
-FOLLOWED_AXES = 0.3  # of the same: the axes on which the simulator must follow the vehicle (chosen; the one on which it falls most always)
-FOLLOWED_MOTION = 0.5  # of the squared motion: an axis on which more error is left is not simulated at all (chosen)
-FOLLOWED_ANYWAY = 0.15  # of the squared error of an axis before: one with less left is followed whatever it moves (chosen)
-HARMFUL = 0.25  # of the whole reduction: causes that add more to one axis are the least bad (chosen)
-OWN_AXIS_WORSE = 0.02  # of the gap, that the axis of an axis's own cause may get worse (opened sets: of 100 right ones none does at all, of a foreign one 0.06)
-ROUNDING_SHARE = 0.001  # of the gap: less is rounding, as of a compass, which moves nothing (chosen)
-UNEXPLAINED_NOTHING = 0.05  # of the squared error: less is model-form error, whatever its evidence (chosen)
-SURE_REDUCTION = 0.05  # lower end of the interval of what causes reduce beside coefficients within tolerance (opened sets: a true one 0.08, a false one 0.02)
-RELIEVED_DEPARTURE = 2.0  # standard deviations by which causes bring the worst coefficient back (opened sets: true ones 2.5 and 3.1, a false one 0.8)
-PARITY_ISOLATES_SHARE = 0.5  # of the parity residuals, from which they isolate a fault of a sensor by themselves (chosen),
-PARITY_ISOLATES_EVIDENCE = 100.0  # with so much evidence (chosen)
+OPEN_GAP = 2.0 / 3.0  # share of a gap that neither noise nor tolerance accounts for, from which "no gap" would say too much (healthy logs: 0.51 at most)
 INCONSISTENT_SHARE = 0.1  # of what causes reduce most (opened sets: right ones 0.005 at most, a real run 0.05; a gyro that clips as inertia 0.22)
 INCONSISTENT_DRIFT = 0.01  # rad within a window: an AHRS errs by less, as its tolerance says
-DRIFTING_SHARE = 0.4  # of a value, that it moves by along a log (opened sets: 30 true causes by 0.24 at most),
-DRIFTING_SIGMA = 5.0  # standard errors with which it does (the same 30: 3.3 at most)
-VARYING_EVIDENCE = 0.5  # share of a cause's evidence: one whose value varies more surely than that is not it (opened sets: true ones 0.40 at most)
-GENERIC_BETTER = 1.0  # of the causes' evidence: generic forces in their place that have more are nearer to the truth (chosen)
-FEW_FORCES = 4  # single generic forces that are tried in the causes' place (chosen)
-FEW_FORCES_EVIDENCE = 0.9  # of the causes' evidence, that so few gain in their place and not beside them (opened sets: right 0.77 at most, wrong 0.88)
-INCOMPLETE_EVIDENCE = 20.0  # evidence of what is beside the causes, from which it is more than model-form error (chosen)
-SINGLE_FORCE_EVIDENCE = 75.0  # evidence of a single generic force beside the causes (opened sets: the 5 beyond this and the next were wrong; a right one 61),
-SINGLE_FORCE_SHARE = 0.15  # and its share of theirs
-BROKEN_DEPARTURE = 7.0  # standardised departure that says by itself that something is at work: one of some hundred healthy logs of the tuning set reached 6
-STRAINED_DEPARTURE = 6.0  # the same of causes with less evidence than
-STRAINED_EVIDENCE = 5.0  # times the squared departure, which is what it costs by its prior (opened sets: false ones 3.9, 4.6; a true one 15)
-GENERIC_EVIDENCE = 100.0  # evidence of generic forces, or of causes that were rejected, from which it is no healthy vehicle's form error (tuning set)
-GENERIC_LEFT = 0.10  # share of the causes' evidence: less left over is form error, not another cause (chosen)
-BY_CHANCE = 0.02  # of the squared error: generic forces that reduce it by less on held-out windows are a fit to these windows (chosen)
-FURTHER_CAUSE_BELIEF = 0.4  # of the probability of a further cause: what one leaves unexplained has other names, too (opened sets: 16 of 45 were right)
-NEAR_GAIN = 0.05  # reduction of the gap, held out: an effect with less is not near the truth, whatever its evidence (chosen),
-NEAR_LITTLE = 3.0  # and this part of that counts (chosen)
 INDICATED_GAIN, INDICATED_EVIDENCE = 0.3, 2.0  # chosen: an effect with as much gain, and evidence at all, is mentioned though it is not named,
 INDICATED_LESS_GAIN, INDICATED_MORE_EVIDENCE = 0.15, 20.0  # and one with less gain and more evidence
-OPEN_GAP = 2.0 / 3.0  # share of a gap that neither noise nor tolerance accounts for, from which "no gap" would say too much (healthy logs: 0.51 at most)
 ACTING_FORCE = 0.3  # of the evidence of the generic forces on the strongest axis: others with more are told as well (chosen),
 MOST_ACTING = 3  # so many axes at most (chosen)
 VARYING_FORCE = 0.5  # of the evidence of the strongest feature: others with more are told as well (chosen),

@@ -2,8 +2,8 @@
 
 Logs are cut into windows, each simulated from its measured start (multiple shooting). An estimation problem is posed about the nominal vehicle; the
 effects of the library are its hypotheses. A healthy vehicle is fitted first, with every coefficient within its tolerance; beside it causes are added
-one at a time (forward selection), and what was found is named only if nothing speaks against it. Where something seems to begin in mid-log, the part
-after that is analysed by itself, and its answer counts if it explains the log clearly better.
+one at a time (forward search), and the most probable of all models that were fitted is the answer. Where something seems to begin in mid-log, the part
+after that is analysed by itself, and its answer counts if it is the more probable model of the whole log.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import replace
 
 from rovval.core.data import Run
 from rovval.core.errors import BadInput
-from rovval.diagnose.decision.finding import Finding, clearer
+from rovval.diagnose.decision.finding import Finding, more_probable
 from rovval.diagnose.decision.verdict import decide
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses, initialised
@@ -67,7 +67,7 @@ def diagnose(
     if onset := found.onset:
         say(f"searching the part from {onset.time:.0f} s on", 0.85)
         late = _analysed_from(onset.time, windows[0], without, calibration_slop, seed)
-        found = late if late and clearer(late, found, onset) else found
+        found = late if late and more_probable(late, found, onset) else found
     return assemble(found, left_out, calibration_slop, seed, say)
 
 
@@ -78,7 +78,7 @@ def analyse(windows: tuple[Windows, ...], without: Sequence[str], tolerance: flo
     problem = pose(windows, columns_of(library), tolerance)
     library, unseen = observable(problem, library)
     healthy = healthy_fit(problem)
-    selection = search(problem, library, initialised(problem, library, healthy), healthy, seed, say)
+    selection = search(problem, library, initialised(problem, library, healthy), healthy, say)
     say("asking how much any systematic cause could explain", 0.85)
     residuals = corrected_residuals(problem)
     faults = tuple(f for check, part in zip(problem.parity, problem.runs, strict=True) for f in sensor_faults(check, part, problem.origin))

@@ -132,6 +132,7 @@ class Effect:
     - ``onset_of``: the effect that it is from an onset on.
     - ``continues``: the effect that imitates it as far as that goes, and which it exceeds (a dead thruster is one that is half reversed).
     - ``family``: the name by which `rovval fit` tunes it along with others of its kind.
+    - ``in_file``: whether it is a number of the vehicle's file that is off, rather than something that no file holds.
     - ``absent_in``: platforms whose equations lack what it scales: there is nothing to take away.
     - ``stage``: where on the way from the true motion into the log a sensor's effect acts.
     """
@@ -160,6 +161,7 @@ class Effect:
     continues: str = ""
     family: Family = ""
     absent_in: tuple[str, ...] = ()
+    in_file: bool = False
     stage: Stage = ""
 
     def __post_init__(self) -> None:

@@ -1,19 +1,13 @@
-"""The baseline: what a candidate gains beside coefficients within tolerance, and what parity residuals contradict."""
+"""The baseline: what causes gain beside coefficients within tolerance."""
 
 from __future__ import annotations
 
 from diagnose_case import merlin, own, posed, slot
 
 from rovval.diagnose import diagnose
-from rovval.diagnose.criteria import (
-    COUNTED_REDUCTION,
-    FIRST_GAIN,
-)
 from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
 from rovval.diagnose.inference.map_fit import healthy_fit
-from rovval.diagnose.search.admissibility import possible
-from rovval.diagnose.search.baseline import Candidate, healthy_without, reduction_beside
-from rovval.diagnose.search.joint import sufficient
+from rovval.diagnose.search.baseline import healthy_without, reduction_beside
 from rovval.report.diagnosis.json import document as written
 
 
@@ -21,25 +15,16 @@ def test_a_cause_that_healthy_coefficients_hide_is_found_beside_them():
     """Thrust within its tolerance makes most of the gap, a weak current the rest: by itself it brings too little to be named."""
     document = diagnose([own(("current_constant:north=0.03,east=0.015", "reverse_asymmetry:scale=0.1", "rpm_scale:scale=0.06"), 5, 240.0)], merlin()).document()
     (cause,) = document["causes"]
-    assert "current_constant" in cause["group"] and document["shrinkage"]["total"] < FIRST_GAIN, document["sentence"]
-    assert document["within_tolerance"]["low"] > COUNTED_REDUCTION
+    assert "current_constant" in cause["group"] and document["shrinkage"]["total"] < 0.15, document["sentence"]
+    assert document["within_tolerance"]["low"] > 0.0
 
 
 def test_a_coefficient_surely_off_is_named_though_the_gap_is_another_axis():
     """Trim within its tolerance makes nine tenths of the gap, in heave; sway's drag is out of tolerance as no healthy file's is."""
     document = written(diagnose([own(("quadratic_drag[sway]:scale=0.8", "buoyancy_error:force=60"), 5, 240.0)], merlin()))
     (cause,) = document["causes"]
-    assert cause["effect"] == "quadratic_drag[sway]" and document["shrinkage"]["total"] < FIRST_GAIN
+    assert cause["effect"] == "quadratic_drag[sway]" and document["shrinkage"]["total"] < 0.15
     assert document["shrinkage"]["axes"]["sway"] > 0.4 and "that of sway by" in document["sentence"]
-
-
-def test_a_fault_of_a_sensor_that_the_kinematic_checks_deny_is_not_named():
-    p, library = posed(("buoyancy_error:force=60",))
-    (h,) = (h for h in library if h.label == "time_offset[attitude]")
-    fitted = fit_hypothesis(p, p.origin, h.slots)
-    seen, against = (Candidate(h, fitted, 900.0, 0.5, parity_gain) for parity_gain in (0.1, -0.5))
-    assert sufficient(seen, alone=True) and not seen.contradicted
-    assert against.contradicted and not sufficient(against, alone=True) and against not in possible(p, [against])
 
 
 def test_what_tolerances_alone_make_is_no_cause():

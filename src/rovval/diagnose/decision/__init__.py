@@ -1,1 +1,1 @@
-"""The decision: which of the causes found are isolated, with which probability, and what stays unexplained."""
+"""The decision: how probable every model is, and what is named, with which probability, and what stays unexplained."""

@@ -6,13 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import ONSET_CLEARER, ONSET_SEARCHED
+from rovval.diagnose.criteria import ONSET_SEARCHED
 from rovval.diagnose.decision.verdict import Decision
-from rovval.diagnose.inference.laplace import laplace_evidence
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.sensor_faults import FittedFault
 from rovval.diagnose.search.forward import Selection
-from rovval.diagnose.search.onset import Onset, evidence_with_onset
+from rovval.diagnose.search.onset import Onset, evidence_with_onset, onset_cost
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,26 +39,21 @@ class Finding:
     @property
     def is_event(self) -> bool:
         """Whether a cause was named that has an onset of its own: that is what changes the log, where it changes."""
-        return any(n.hypothesis.effect.begins for n in self.decision.causes)
-
-    @property
-    def best_evidence(self) -> float:
-        """Twice the log Bayes factor over the healthy vehicle of the best that this pass shows, named or not."""
-        first = self.selection.steps[0] if self.selection.steps else ()
-        return max([0.0, *(evidence for _, evidence, _ in first), *([self.decision.evidence] if self.decision.causes else [])])
+        return any(h.effect.begins for h in self.decision.causes)
 
     @property
     def onset(self) -> Onset | None:
         """From when on the log is worth a search of its own; None where it is not."""
         onset = self.selection.onset
-        return None if onset is None or self.is_event or onset.evidence < ONSET_SEARCHED * self.best_evidence else onset
+        if onset is None or self.is_event:
+            return None
+        return onset if self.decision.verdict != "explained" or onset.evidence >= ONSET_SEARCHED * self.decision.evidence else None
 
 
-def clearer(late: Finding, whole: Finding, onset: Onset) -> bool:
-    """Whether the causes that a search ``late`` of the windows from an onset on found, at work from then on, explain the whole log clearly better than
-    anything that was found in the ``whole`` of it."""
+def more_probable(late: Finding, whole: Finding, onset: Onset) -> bool:
+    """Whether the causes that a search ``late`` of the windows from an onset on found, at work from then on, are a more probable model of the whole log
+    than any that was found in the ``whole`` of it."""
     if not late.decision.causes or not late.decision.fit or late.is_event:
         return False
-    healthy = whole.selection.healthy
-    beyond = evidence_with_onset(whole.problem, late.decision.fit, onset.time, healthy) - laplace_evidence(whole.problem, healthy)
-    return beyond > whole.best_evidence + ONSET_CLEARER
+    evidence = evidence_with_onset(whole.problem, late.decision.fit, onset.time, whole.selection.healthy) - onset_cost(whole.problem)
+    return late.selection.best.log_prior + 0.5 * evidence > whole.selection.best.log_posterior

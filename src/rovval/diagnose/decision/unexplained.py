@@ -76,8 +76,8 @@ def unexplained(problem: Problem, forces: GenericForces, point: Posterior, incon
 
 
 def open_gap(problem: Problem, known: Accounted, residuals: list[Array]) -> Unexplained | None:
-    """A gap of which noise and tolerance account for too little to call it none, though no force is shown to be at work and no cause is named; None
-    where they account for enough. ``residuals`` are the nominal vehicle's residuals."""
+    """A gap of which noise and tolerance account for too little to call it none, though no model explains it; None where they account for enough.
+    ``residuals`` are the nominal vehicle's residuals."""
     if 1.0 - known.share <= OPEN_GAP:
         return None
     weight = weighted_errors(problem, residuals)

@@ -1,8 +1,4 @@
-"""The verdict: explained, partly explained, unknown, or no gap. It is decided here and nowhere else.
-
-What was found is named if no reason speaks against it (`rejection`). Causes whose value is not constant along the log are left out and reported as what is
-left; faults of sensors that the parity residuals isolate by themselves stay, whatever speaks against the others.
-"""
+"""The verdict: explained, partly explained, unknown, or no gap: the most probable of the models that were compared. It is decided here and nowhere else."""
 
 from __future__ import annotations
 
@@ -10,27 +6,24 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
+import numpy as np
+
 from rovval.core.data import Array
-from rovval.diagnose.criteria import (
-    BROKEN_DEPARTURE,
-    BY_CHANCE,
-    FALSE_ALARM,
-    FURTHER_CAUSE_BELIEF,
-    GENERIC_EVIDENCE,
-    NEAR_GAIN,
-    NEAR_LITTLE,
-    OUT_OF_TOLERANCE,
-)
+from rovval.diagnose.criteria import FILE_WIDTH, MOST_CAUSES
+from rovval.diagnose.decision.consistency import inconsistencies
+from rovval.diagnose.decision.constancy import variation
 from rovval.diagnose.decision.indications import Indications, indications
-from rovval.diagnose.decision.rejection import Assessment, assess, of_sensor
+from rovval.diagnose.decision.posterior import Names, Probabilities, probabilities
 from rovval.diagnose.decision.unexplained import Accounted, Unexplained, accounted, open_gap, unexplained
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis
+from rovval.diagnose.inference.gap import weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
+from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.sensor_faults import FittedFault
-from rovval.diagnose.search.baseline import SelectedCause
 from rovval.diagnose.search.discrepancy import GenericForces, generic_forces, nominal_forces
 from rovval.diagnose.search.forward import Selection
-from rovval.diagnose.search.joint import joint_fit
+from rovval.diagnose.search.model import Model
 
 Verdict = Literal["no_gap", "explained", "partly_explained", "unknown"]
 
@@ -41,13 +34,15 @@ class Decision:
 
     Attributes:
         verdict: ``no_gap``, ``explained``, ``partly_explained`` or ``unknown``.
-        causes: the causes that are isolated, in the order found; empty for ``no_gap`` and ``unknown``.
+        probabilities: of all models.
+        causes: those of the most probable set, the surest first; empty for ``no_gap`` and ``unknown``.
         fit: their joint fit; None without causes.
         groups: of each cause the names that this log does not tell from it (itself first) with their probabilities.
-        probability: of each cause.
-        evidence: twice the log Bayes factor of the causes over the healthy vehicle; of ``unknown`` and ``no_gap`` of those that were rejected.
-        generic_instead: the same of generic forces in the causes' place.
-        generic_beside: the same of generic forces beside the causes, over the causes.
+        probability: that each cause is at work.
+        added: of each cause, twice the log Bayes factor of the set over the set without it.
+        evidence: twice the log Bayes factor of the best set of causes over the healthy vehicle, named or not.
+        generic_instead: the same of something else in the causes' place, its prior among generic forces paid; 0 where no force gains.
+        generic_beside: the same of something else beside the causes, over the causes.
         departure: largest standardised departure of a coefficient that is no cause's, in standard deviations of its prior.
         accounted: what of the gap needs no cause.
         unexplained: what is left; None where nothing is.
@@ -55,10 +50,12 @@ class Decision:
     """
 
     verdict: Verdict
-    causes: tuple[SelectedCause, ...]
+    probabilities: Probabilities
+    causes: tuple[Hypothesis, ...]
     fit: HypothesisFit | None
     groups: Mapping[str, tuple[tuple[str, float], ...]]
     probability: Mapping[str, float]
+    added: Mapping[str, float]
     evidence: float
     generic_instead: float
     generic_beside: float
@@ -69,80 +66,85 @@ class Decision:
 
 
 def decide(problem: Problem, selection: Selection, residuals: list[Array], faults: Sequence[FittedFault]) -> Decision:
-    """The verdict on what a search found; ``residuals`` are the nominal vehicle's, ``faults`` of sensors those that parity residuals show."""
-    general = generic_forces(problem, selection.healthy)
-    assessed = _assessed(problem, selection, general, residuals)
-    if assessed and assessed.inconstant and not assessed.rejected:
-        selection, assessed = _constant(problem, selection, assessed, general, residuals)
-    if assessed and assessed.by_parity and assessed.rejected:
-        selection = _reduced_to(problem, selection, tuple(n for n in selection.causes if of_sensor(n)))
-        assessed = replace(assessed, remainder=True)
-    if selection.fit and assessed and (assessed.by_parity or not assessed.rejected):
-        return _isolated(problem, selection, selection.fit, assessed)
-    decision = _not_isolated(problem, selection, assessed, general, residuals)
-    first = selection.steps[0] if selection.steps else ()
-    return replace(decision, indications=indications(first, decision.accounted, faults))
-
-
-def _assessed(problem: Problem, selection: Selection, general: GenericForces, residuals: list[Array]) -> Assessment | None:
-    """What speaks for and against the causes found; None where there are none."""
-    return assess(problem, selection.causes, selection.fit, selection.healthy, general, residuals) if selection.fit else None
-
-
-def _isolated(problem: Problem, selection: Selection, fit: HypothesisFit, assessed: Assessment) -> Decision:
-    """The causes are named."""
-    groups = {n.hypothesis.name: n.group for n in selection.causes}
-    gone = [name for name in assessed.inconstant if name not in groups]
-    rest = unexplained(problem, assessed.forces, fit.posterior, gone) if assessed.remainder else None
-    surest = max(selection.causes, key=lambda n: n.evidence)
-    probability = {n.hypothesis.name: _probability(n) * (1.0 if n is surest or of_sensor(n) else FURTHER_CAUSE_BELIEF) for n in selection.causes}
-    verdict: Verdict = "partly_explained" if assessed.remainder else "explained"
-    figures = assessed.evidence, assessed.generic_instead, assessed.generic_beside, assessed.departure
-    return Decision(verdict, selection.causes, fit, groups, probability, *figures, accounted(problem, selection.healthy), rest)
-
-
-def _not_isolated(problem: Problem, selection: Selection, assessed: Assessment | None, general: GenericForces, residuals: list[Array]) -> Decision:
-    """An unknown cause where something is surely at work (a force, a coefficient far beyond tolerance, an effect that nearly fits) or where the gap stays
-    open; else no gap."""
-    evidence, followed, inconstant = (assessed.evidence, assessed.followed, assessed.inconstant) if assessed else (0.0, True, ())
-    anything, departure = general.evidence(), selection.healthy.largest_departure()
-    first = selection.steps[0] if selection.steps else ()
-    tried = max((worth if gain > NEAR_GAIN else worth / NEAR_LITTLE for _, worth, gain in first), default=0.0)
-    nearly = followed and (max(evidence, tried) > GENERIC_EVIDENCE or bool(inconstant))
-    sure = nearly or (anything > GENERIC_EVIDENCE and general.held_out_gain(problem.folds) > BY_CHANCE) or departure > BROKEN_DEPARTURE
+    """The verdict on what a search met; ``residuals`` are the nominal vehicle's, ``faults`` of sensors those that parity residuals show."""
+    instead = generic_forces(problem, selection.healthy)
+    best = selection.best
+    beside = generic_forces(problem, best.fit.posterior) if best.fit else instead
+    evidence, more = instead.sparse()[0], beside.sparse()[0] if best.fit else 0.0
+    varies = variation(problem, best.fit.posterior, best.causes) if best.fit else 0.0
+    belief = probabilities(selection, _file_evidence(problem, selection), evidence, {best.names: more} if best.fit else {}, varies)
     known = accounted(problem, selection.healthy)
-    rest = unexplained(problem, nominal_forces(problem), selection.healthy, inconstant) if sure else open_gap(problem, known, residuals)
-    return Decision("unknown" if rest else "no_gap", (), None, {}, {}, evidence, anything, anything, departure, known, rest)
+    over = best.evidence - selection.models[0].evidence
+    found = Decision("no_gap", belief, (), None, {}, {}, {}, over, max(evidence, 0.0), max(more, 0.0), selection.healthy.largest_departure(), known, None)
+    contradicted = any(h.effect.place != "sensor" for h in best.causes) and _contradicted(problem, residuals)
+    if best.fit and belief.causes > max(belief.healthy, belief.file, belief.something_else) and not contradicted:
+        return _named(problem, selection, found, best, best.fit, beside)
+    first = selection.steps[0] if selection.steps else ()
+    found = replace(found, indications=indications(first, known, faults))
+    if belief.healthy > max(belief.file, belief.something_else, belief.causes):
+        rest = open_gap(problem, known, residuals)
+        return replace(found, verdict="unknown" if rest else "no_gap", unexplained=rest)
+    inconstant = [h.name for h in best.causes] if belief.varying > 0.5 * belief.something_else else []
+    return replace(found, verdict="unknown", unexplained=unexplained(problem, nominal_forces(problem), selection.healthy, inconstant))
 
 
-def _constant(
-    problem: Problem, selection: Selection, assessed: Assessment, general: GenericForces, residuals: list[Array]
-) -> tuple[Selection, Assessment]:
-    """The causes without those that are not constant, which are reported as what is left."""
-    kept = tuple(n for n in selection.causes if n.hypothesis.name not in assessed.inconstant)
-    if not kept:
-        return selection, replace(assessed, rejected=True)
-    selection = _reduced_to(problem, selection, kept)
-    again = _assessed(problem, selection, general, residuals)
-    assert again is not None
-    return selection, without_inconstant(again, assessed.inconstant)
+def _named(problem: Problem, selection: Selection, found: Decision, best: Model, fit: HypothesisFit, beside: GenericForces) -> Decision:
+    """The causes of the most probable set are named."""
+    belief = found.probabilities
+    probability = {h.name: belief.of(h.name) for h in best.causes}
+    partly = belief.partly(best.names)
+    return replace(
+        found,
+        verdict="partly_explained" if partly else "explained",
+        causes=tuple(sorted(best.causes, key=lambda h: -probability[h.name])),
+        fit=fit,
+        groups={h.name: belief.group(h.name) for h in best.causes},
+        probability=probability,
+        added={h.name: best.evidence - _evidence_without(selection, best.names - {h.name}) for h in best.causes},
+        departure=fit.posterior.largest_departure(),
+        unexplained=unexplained(problem, beside, fit.posterior) if partly else None,
+    )
 
 
-def without_inconstant(again: Assessment, inconstant: tuple[str, ...]) -> Assessment:
-    """The assessment ``again`` of causes after those named ``inconstant`` went. They are rejected as well where another is inconstant now, or where what went
-    had kept a coefficient within its tolerance: another cause is there."""
-    rejected = again.rejected or bool(again.inconstant) or again.departure > OUT_OF_TOLERANCE
-    return replace(again, remainder=True, rejected=rejected, inconstant=inconstant)
+def _contradicted(problem: Problem, residuals: list[Array]) -> bool:
+    """Whether the log contradicts itself on the axis of the largest gap: a fault of a sensor that the library lacks, whatever explains the gap."""
+    weight = weighted_errors(problem, residuals)
+    return bool(inconsistencies(problem, dict([max(weight.items(), key=lambda item: item[1])])))
 
 
-def _reduced_to(problem: Problem, selection: Selection, kept: tuple[SelectedCause, ...]) -> Selection:
-    """The selection with the causes ``kept`` alone, fitted again."""
-    fit = selection.fit
-    if fit is None or not kept or len(kept) == len(selection.causes):
-        return selection
-    return replace(selection, causes=kept, fit=joint_fit(problem, fit, [n.hypothesis for n in kept]))
+def _evidence_without(selection: Selection, rest: Names) -> float:
+    """Evidence of a set of causes; of the healthy vehicle where it was not fitted."""
+    return max((m.evidence for m in selection.models if m.names == rest), default=selection.models[0].evidence)
 
 
-def _probability(cause: SelectedCause) -> float:
-    """Probability of the cause's name in its group, less the chance that detection itself was false."""
-    return float(cause.group[0][1] * (1.0 - min(cause.p_value, FALSE_ALARM)))
+def _file_evidence(problem: Problem, selection: Selection) -> float:
+    """Twice the log Bayes factor, over the file as it is, of one that is off (`FILE_WIDTH`) in more numbers than there may be causes, or in a few that no
+    effect which competes is about."""
+    plant = problem.plant
+    of_file = [s for s in problem.tolerance.sd if (own := plant.slots[s].parameter.tolerance) and own.calibrated]
+    compete = {s for name, _ in selection.ranking for s in plant.hypotheses[name]}
+    many = departures(problem, selection.healthy, of_file)[MOST_CAUSES:]
+    few = departures(problem, selection.healthy, [s for s in of_file if s not in compete])
+    return max((*many, *few), default=-np.inf)
+
+
+def departures(problem: Problem, healthy: Posterior, among: Sequence[int]) -> list[float]:
+    """Twice the log Bayes factor, over the file as it is, of one of which one, two, three ... of the numbers ``among`` (slots) are off by as much as
+    `FILE_WIDTH` has it: those that explain most, and which they are is paid for. It ends where one more explains no more. One step from the ``healthy``
+    fit (automatic relevance determination; MacKay 1992)."""
+    columns, found = [healthy.columns.index(s) for s in among], list[float]()
+    while columns:
+        freed = {i: replace(healthy, precision=_divided(healthy.precision, i)) for i in columns}
+        worth = {i: laplace_evidence(problem, one) - 2.0 * (len(found) + 1) * float(np.log(len(among))) for i, one in freed.items()}
+        best = max(worth, key=lambda i: worth[i])
+        if len(found) > MOST_CAUSES and worth[best] <= found[-1]:
+            break
+        found.append(worth[best])
+        healthy = freed[best]
+        columns.remove(best)
+    return found
+
+
+def _divided(precision: Array, i: int) -> Array:
+    """The precision of priors with the ``i``-th number as wide as a file that is off has it."""
+    return np.where(np.arange(len(precision)) == i, precision / FILE_WIDTH**2, precision)

@@ -114,7 +114,7 @@ def standard_errors(problem: Problem, fitted: HypothesisFit, fixed: Sequence[int
     pairs = score[: len(score) // 2 * 2].reshape(-1, 2, len(bread)).sum(axis=1)
     half = bread[:k] @ pairs.T
     sandwich = (half**2).sum(axis=1) * (len(score) / max(2 * len(pairs), 1)) * len(pairs) / max(len(pairs) - k, 1)
-    by_tolerance = problem.design_effect * (bread[:k, k:] ** 2 @ point.precision[k:])
+    by_tolerance = problem.tempering * (bread[:k, k:] ** 2 @ point.precision[k:])
     return np.asarray(np.sqrt(np.maximum(sandwich + by_tolerance, problem.design_effect * np.diag(bread)[:k])))
 
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import special, stats
 
 from rovval.core.data import Array
+from rovval.diagnose.criteria import PRIOR_FREEDOM, PRIOR_WIDTH
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.normal_equations import Linearisation, NormalEquations, Whitened
 from rovval.diagnose.residuals.ridge import losses
@@ -16,14 +18,14 @@ from rovval.diagnose.residuals.ridge import losses
 class Posterior:
     """Quadratic expansion of the log posterior about ``beta``, effects and coefficients within tolerance (Laplace approximation: MacKay 1992).
 
-    Cost is twice the negative log posterior times the design effect: squared residuals plus precision times squared departures.
+    Cost is twice the negative log posterior times the tempering (`problem.Problem.tempering`): squared residuals plus precision times squared departures.
 
     Attributes:
         beta: parameters (p,) of the plant.
         columns: the k slots that move: first the ``effect_count`` of the effects, then those that have a tolerance.
         whitened: linearisation of each run in the metric of the likelihood; empty where it was dropped.
         dynamics, total: normal equations without and with parity.
-        precision: of each column's prior (k,), times the design effect.
+        precision: of each column's prior (k,), times the tempering.
         departure: of each column from the mean of its prior (k,).
         bound_side: -1 and 1 for a column on its lower and upper bound, else 0 (k,).
         tangent_only: columns that are moved in the linearisation and not in the simulation (k,).
@@ -108,10 +110,25 @@ def resampled_evidence(problem: Problem, point: Posterior, counts: Array) -> Arr
         H = (count @ flat).reshape(k, k) + np.diag(point.precision)
         slope = count @ point.total.b - pull
         loss = float(count @ point.total.c) + float(pull @ point.departure) - float(slope @ point.solve(H, slope))
-        found[i] = (float(count @ problem.likelihood.total.c) - loss) / problem.design_effect - (np.linalg.slogdet(H)[1] + volume)
+        found[i] = (float(count @ problem.likelihood.total.c) - loss) / problem.tempering - (np.linalg.slogdet(H)[1] + volume)
     return found
 
 
 def laplace_evidence(problem: Problem, point: Posterior) -> float:
     """Twice the log Bayes factor of the model fitted at ``point`` over the vehicle as its file has it, on every window once."""
-    return float(resampled_evidence(problem, point, np.ones((1, problem.window_count)))[0])
+    return float(resampled_evidence(problem, point, np.ones((1, problem.window_count)))[0]) + heavy_tails(problem, point)
+
+
+def heavy_tails(problem: Problem, point: Posterior) -> float:
+    """Twice the log of the mean ratio, over the posterior of each of the effects' sized parameters, of the prior in which effects are compared (Student's t,
+    `PRIOR_FREEDOM`) to the wide normal one in which they are fitted (`PRIOR_WIDTH`): what the evidence gains by the other prior."""
+    own = range(point.effect_count)
+    parameters = [problem.plant.slots[s].parameter for s in point.columns[: point.effect_count]]
+    size = point.departure + point.solve(point.curvature, point.descent)
+    sd = np.sqrt(problem.tempering * np.diag(np.linalg.inv(point.curvature)))
+    total, z = 0.0, np.linspace(-6.0, 6.0, 241)  # standard deviations of the posterior: finer than any feature of the ratio
+    for i, p in ((i, p) for i, p in zip(own, parameters, strict=True) if not p.places):
+        at = (size[i] + sd[i] * z) / p.typical
+        log_ratio = stats.t.logpdf(at, PRIOR_FREEDOM) - stats.norm.logpdf(at, scale=PRIOR_WIDTH)
+        total += 2.0 * float(special.logsumexp(log_ratio + stats.norm.logpdf(z)) + np.log(z[1] - z[0]))
+    return total

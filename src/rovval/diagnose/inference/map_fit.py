@@ -40,7 +40,7 @@ def map_fit(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[
     point = posterior_at(problem, start, _columns(problem, slots), len(slots))
     for _ in range(RELINEARISED_TIMES):
         reached = _descended(problem, point, point.whitened, rounds)
-        if point.cost() - reached.cost() < RELINEARISED_FROM * problem.design_effect:
+        if point.cost() - reached.cost() < RELINEARISED_FROM * problem.tempering:
             return reached
         point = posterior_at(problem, reached.beta, point.columns, point.effect_count)
     return _descended(problem, point, point.whitened, rounds)
@@ -98,7 +98,7 @@ def _descended(problem: Problem, point: Posterior, slopes: tuple[Whitened, ...],
         if better is None:
             break
         gain, point = point.cost() - better.cost(), better
-        if gain < STEP_WORTH * problem.design_effect:
+        if gain < STEP_WORTH * problem.tempering:
             break
     return point
 
@@ -136,7 +136,7 @@ def _point(problem: Problem, beta: Array, own: int, there: tuple[Whitened, ...])
     side = np.array([float(x >= p.high) - float(x <= p.low) for x, p in zip(at, parameters, strict=True)])
     sensors = tangent_slots(problem.plant)
     still = np.array([i >= own and s in sensors for i, s in enumerate(columns)], dtype=bool)
-    return Posterior(beta, columns, own, there, dynamic, data, problem.design_effect / width**2, at - problem.prior_mean[list(columns)], side, still)
+    return Posterior(beta, columns, own, there, dynamic, data, problem.tempering / width**2, at - problem.prior_mean[list(columns)], side, still)
 
 
 def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...]) -> Posterior | None:
@@ -148,7 +148,7 @@ def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...]) -> P
         if data is None:
             continue
         trial = replace(point, beta=beta, total=data, departure=point.departure + (beta - point.beta)[list(point.columns)])
-        if trial.cost() < point.cost() - STEP_WORTH * problem.design_effect:
+        if trial.cost() < point.cost() - STEP_WORTH * problem.tempering:
             return posterior_at(problem, beta, point.columns, point.effect_count, near)
     return None
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from rovval.core.data import Array
 from rovval.core.errors import BadInput
-from rovval.diagnose.criteria import FEWEST_WINDOWS
+from rovval.diagnose.criteria import EXACT_WINDOWS, FEWEST_WINDOWS
 from rovval.diagnose.problem.cross_validation import Fold, make_folds
 from rovval.diagnose.problem.disturbance import Disturbance
 from rovval.diagnose.problem.noise_model import equations_of_runs, fit_noise_model
@@ -68,6 +68,8 @@ class Problem:
         parity: parity residuals of each run.
         folds: windows that are held out together.
         design_effect: by how much autocorrelated residuals say less than independent ones (Kish 1965).
+        coarsening: by how much all residuals say less than the noise model has it, because no model's equations are exact (coarsened posterior:
+            Miller and Dunson 2019).
         run_of_window: number of the run that each window is of (m,).
         disturbance: what pushed the vehicle that nobody logged.
     """
@@ -82,6 +84,7 @@ class Problem:
     parity: tuple[ParityResiduals, ...]
     folds: tuple[Fold, ...]
     design_effect: float
+    coarsening: float
     run_of_window: np.ndarray
     disturbance: Disturbance
 
@@ -89,6 +92,11 @@ class Problem:
     def plant(self) -> Plant:
         """The plant that all runs share."""
         return self.runs[0].plant
+
+    @property
+    def tempering(self) -> float:
+        """What squared residuals are divided by where models are fitted and compared: design effect times coarsening."""
+        return self.design_effect * self.coarsening
 
     @property
     def window_count(self) -> int:
@@ -123,7 +131,8 @@ def pose(runs: tuple[Windows, ...], asked: Columns, tolerance: float) -> Problem
         runs=noise.runs, origin=origin, prior_mean=means, tolerance=prior,
         nominal=tuple(replace(one, S=one.S[..., :0].copy(), columns=()) for one in noise.linear),
         likelihood=Metric(noise.white_variance, likelihood, likelihood + parity), gap=Metric(noise.total_variance, gap, gap + parity),
-        parity=checks, folds=folds, design_effect=noise.design_effect, run_of_window=run_of_window, disturbance=noise.disturbance,
+        parity=checks, folds=folds, design_effect=noise.design_effect,
+        coarsening=1.0 + len(run_of_window) / EXACT_WINDOWS, run_of_window=run_of_window, disturbance=noise.disturbance,
     )  # fmt: skip
 
 

@@ -35,6 +35,7 @@ from rovval.diagnose.result.diagnosis import (
     Indications,
     LogRemark,
     NotTestable,
+    Probabilities,
     Reduction,
     Score,
     SensorFault,
@@ -82,7 +83,8 @@ def assemble(
         ),
         next_experiment=experiment.summary() if experiment else None,
         manoeuvre=experiment.schedule(problem.plant.vehicle.thrusters) if experiment else None,
-        detection=_detection(selection, decision),
+        probabilities=_probabilities(decision),
+        detection=_detection(decision),
         finalists=tuple(tuple(Candidate(effect=n, evidence=e, gain=g) for n, e, g in step) for step in selection.steps),
         disturbance=_disturbance(problem),
         left=_unexplained(decision.unexplained),
@@ -150,14 +152,16 @@ def _within_tolerance(problem: Problem, selection: Selection, decision: Decision
     return Reduction(total=total, low=low, high=high)
 
 
-def _detection(selection: Selection, decision: Decision) -> Detection:
+def _probabilities(decision: Decision) -> Probabilities:
+    """Of the four kinds of model."""
+    found = decision.probabilities
+    return Probabilities(healthy=found.healthy, causes=found.causes, miscalibrated_file=found.file, something_else=found.something_else)
+
+
+def _detection(decision: Decision) -> Detection:
     return Detection(
         noise=decision.accounted.noise,
         tolerance_share=decision.accounted.tolerance,
-        p_value=selection.causes[0].p_value if selection.causes else selection.p_value,
-        last_p=selection.p_value,
-        last_evidence=selection.last_evidence,
-        null_evidence=selection.null_evidence,
         causes=decision.evidence,
         generic_instead=decision.generic_instead,
         generic_beside=decision.generic_beside,

@@ -6,7 +6,6 @@ from dataclasses import asdict
 
 import numpy as np
 
-from rovval import effects
 from rovval.core.data import Array
 from rovval.diagnose.criteria import GROUP_NAMES, PARAMETER_FORM_ERROR
 from rovval.diagnose.decision.verdict import Decision
@@ -15,15 +14,15 @@ from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, confidence_i
 from rovval.diagnose.inference.shrinkage import shrinkage
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.result.diagnosis import Cause, Parameter, Shrinkage
-from rovval.diagnose.search.baseline import SelectedCause
 
 
 def causes(problem: Problem, decision: Decision, before: list[Array], since: float | None, seed: int) -> tuple[Cause, ...]:
-    """Every isolated cause, in the order found.
+    """Every cause of the most probable model, in the order of what each by itself closes.
 
     ``before`` are the nominal simulator's residuals; ``since`` (s) is when the part of the log begins that was searched, None for all of it.
     """
-    return tuple(_cause(problem, decision, one, before, since, seed) for one in decision.causes)
+    found = [_cause(problem, decision, h, before, since, seed) for h in decision.causes]
+    return tuple(sorted(found, key=lambda cause: -cause.shrinkage.total))
 
 
 def members(decision: Decision, h: Hypothesis) -> tuple[str, ...]:
@@ -49,19 +48,19 @@ def settings(problem: Problem, fitted: HypothesisFit | None) -> tuple[str, ...]:
     return tuple(f"{name}:{','.join(values)}" for name, values in by_name.items())
 
 
-def _cause(problem: Problem, decision: Decision, one: SelectedCause, before: list[Array], since: float | None, seed: int) -> Cause:
+def _cause(problem: Problem, decision: Decision, h: Hypothesis, before: list[Array], since: float | None, seed: int) -> Cause:
     assert decision.fit is not None
-    h, joint = one.hypothesis, decision.fit
+    joint = decision.fit
     single = joint if len(decision.causes) == 1 else fit_quickly(problem, alone(problem, joint, h), h.slots, joint.posterior.whitened)
     return Cause(
         effect=h.name,
-        title=effects.load(h.name.partition("[")[0]).title,
+        kind="file" if h.effect.in_file else "effect",
+        title=h.effect.title,
         group=members(decision, h),
         probability=decision.probability[h.name],
         onset_s=next((float(joint.beta[s]) for s in h.slots if problem.plant.slots[s].parameter.role == "onset"), since),
         parameters=_parameters(problem, joint, h),
-        p_value=one.p_value,
-        evidence=one.evidence,
+        evidence=decision.added[h.name],
         shrinkage=Shrinkage(**asdict(shrinkage(problem, single, before, seed))),
     )
 

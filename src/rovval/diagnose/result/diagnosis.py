@@ -108,10 +108,12 @@ class Cause(Record):
     effect: str = Field(description="name in the library, with its axis or thruster: thruster_degraded[HFP]")
     title: str = Field(default="", description="the effect in a few words")
     group: tuple[str, ...] = Field(description="confusion group: what this log cannot tell apart, the cause itself first")
-    probability: float = Field(description="probability of this member of the group")
+    kind: Literal["effect", "file"] = Field(
+        default="effect", description="file: a number of the vehicle's file that is off; effect: something that the simulator lacks"
+    )
+    probability: float = Field(description="probability that it is at work")
     onset_s: float | None = Field(description="time from which it is at work, s; null: all of the log")
     parameters: Mapping[str, Parameter] = Field(description="by name")
-    p_value: float | None = Field(default=None, description="of its detection, against a healthy vehicle")
     evidence: float | None = Field(default=None, description="twice the log Bayes factor of the model with it over that without it")
     shrinkage: Shrinkage = Field(description="by itself, without the other causes")
 
@@ -138,6 +140,15 @@ class Candidate(Record):
     gain: float = Field(description="share of the squared gap that it takes away on held-out windows")
 
 
+class Probabilities(Record):
+    """How probable each kind of model is; the four sum to one."""
+
+    healthy: float = Field(description="a vehicle as its file has it, within tolerance")
+    causes: float = Field(description="causes of the library, alone or with something else beside them")
+    miscalibrated_file: float = Field(description="a file that is off in many numbers at once")
+    something_else: float = Field(description="something that the library does not hold")
+
+
 class Detection(Record):
     """What the verdict rests on."""
 
@@ -146,10 +157,6 @@ class Detection(Record):
         validation_alias=AliasChoices("tolerance_share", "slop"),
         description="share of the gap that coefficients within their tolerances take away without any cause",
     )
-    p_value: float = Field(description="of the first cause, against a healthy vehicle")
-    last_p: float = Field(description="p-value of the step that ended the search")
-    last_evidence: float = Field(description="statistic of that step: twice the log Bayes factor of its best candidate")
-    null_evidence: float = Field(description="what that statistic reaches by chance on a healthy vehicle")
     causes: float = Field(description="twice the log Bayes factor of the causes, named or rejected, over the healthy vehicle")
     generic_instead: float = Field(description="the same of generic forces in the place of the causes")
     generic_beside: float = Field(description="twice the log Bayes factor of generic forces beside the causes over the causes")
@@ -371,6 +378,7 @@ class Diagnosis(Record):
     not_testable: tuple[NotTestable, ...] = Field(description="effects that these logs could not show")
     next_experiment: NextExperiment | None = Field(description="what to fly to separate a confusion group; null: nothing to separate")
     manoeuvre: ThrusterSchedule | None = Field(default=None, description="its thruster schedule")
+    probabilities: Probabilities | None = Field(default=None, description="of the kinds of model that were compared; null in older documents")
     detection: Detection | None = Field(default=None, description="what the verdict rests on")
     finalists: tuple[tuple[Candidate, ...], ...] = Field(default=(), description="candidates of each step of the search")
     disturbance: Mapping[str, Disturbance] = Field(default_factory=dict, description="forces that nobody logged, by axis")

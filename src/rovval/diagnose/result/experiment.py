@@ -64,11 +64,11 @@ def next_experiment(problem: Problem, decision: Decision) -> Experiment | None:
     no manoeuvre can be simulated."""
     for one in decision.causes if decision.fit else ():
         assert decision.fit is not None
-        group = members(decision, one.hypothesis)
+        group = members(decision, one)
         if len(group) > 1:
             speed = np.concatenate([np.abs(p.actuation.inputs.speed) for p in problem.runs])
             most = np.maximum(np.quantile(speed, BUSY_QUANTILE, axis=0), BUSY_LEAST * speed.max())
-            return best(problem, alone(problem, decision.fit, one.hypothesis), group, most)
+            return best(problem, alone(problem, decision.fit, one), group, most)
     return None
 
 

@@ -68,7 +68,7 @@ def _trace(part: Windows, axis: str, channel: int, w: int, nominal: Array, corre
 def coherence_matrix(problem: Problem, selection: Selection, decision: Decision) -> Coherence:
     """First canonical correlation between the projected sensitivities of the causes, their groups and the best-ranked effects."""
     columns = set(problem.likelihood.total.columns)
-    wanted = [name for n in decision.causes for name, _ in decision.groups[n.hypothesis.name]] + [name for name, _ in selection.ranking]
+    wanted = [name for n in decision.causes for name, _ in decision.groups[n.name]] + [name for name, _ in selection.ranking]
     own = {n: tuple(s for s in problem.plant.hypotheses[n] if not only_places(problem, s)) for n in dict.fromkeys(wanted)}
     names = [n for n in own if set(own[n]) <= columns][:COHERENCE_EFFECTS]
     slots = [own[n] for n in names]

@@ -1,1 +1,1 @@
-"""The search: which causes, added to the healthy vehicle one after the other and weighed beside each other, explain the gap."""
+"""The search: the models that may explain the logs, a healthy vehicle with sets of causes, each with its evidence and its prior mass."""

@@ -1,10 +1,6 @@
-"""The model that a cause is added to, and what a candidate for the cause gains over it.
+"""The model that a cause is added to, and what a candidate for the cause adds to it.
 
-The gain is asked in two ways: with every other coefficient as the file has it, and with coefficients fitted within their tolerance beside the
-candidate. A vehicle that rolls freely answers to each of its coefficients: with those of the file a true cause may even open the gap; beside fitted
-ones it closes what they leave, which the nearest relative of something else does not.
-
-Evidence in this room is twice the logarithm of a Bayes factor (Kass and Raftery 1995): of a fit over the nominal vehicle, or of a candidate over its
+Evidence is twice the logarithm of a Bayes factor (Kass and Raftery 1995): of a fit over the vehicle as its file has it, or of a candidate over its
 baseline, as is said.
 """
 
@@ -13,18 +9,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from rovval.core.data import Array
-from rovval.diagnose.criteria import (
-    COUNTED_REDUCTION,
-    HEALTHY_DEPARTURE,
-    ONSET_LEAST_WINDOWS,
-    OUT_OF_TOLERANCE,
-    PARITY_CONTRADICTED,
-    QUICK_STEPS,
-    STRONG_EVIDENCE,
-)
+from rovval.diagnose.criteria import QUICK_STEPS
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.bootstrap import shrinkage_interval
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
@@ -53,59 +39,19 @@ class Baseline:
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """A hypothesis fitted by re-simulation, and what it adds to a baseline. Reductions are shares of a squared error, held out.
+    """A hypothesis fitted by re-simulation, and what it adds to a baseline.
 
     Attributes:
         hypothesis: what was set free.
         fit: its fit together with the causes of the baseline.
         evidence: twice the log Bayes factor over the baseline.
-        gain: reduction of the gap, every coefficient that is no cause's as the file has it.
-        parity_gain: reduction of the parity residuals alone.
-        gain_beside: reduction of what coefficients within tolerance leave of the gap, these fitted beside it; 0 where `gain` is enough.
-        restores: whether without it a coefficient has to leave its tolerance, and with it none. A drag may be surely wrong and yet be little of a gap that
-            is mostly heave's.
-        gain_since: of what begins during the log, the reduction from its onset on; else 0.
+        gain: share by which the squared error on held-out windows falls, every coefficient that is no cause's as the file has it.
     """
 
     hypothesis: Hypothesis
     fit: HypothesisFit
     evidence: float
     gain: float
-    parity_gain: float
-    gain_beside: float = 0.0
-    restores: bool = False
-    gain_since: float = 0.0
-
-    @property
-    def best_gain(self) -> float:
-        """The larger reduction of the gap of the two ways, as far as the second counts."""
-        return max(self.gain, self.gain_beside) if self.gain_beside >= COUNTED_REDUCTION else self.gain
-
-    @property
-    def contradicted(self) -> bool:
-        """Whether it is a fault of a sensor that makes the parity residuals worse, which no error of the dynamics touches."""
-        return self.hypothesis.effect.place == "sensor" and self.parity_gain < -PARITY_CONTRADICTED
-
-
-@dataclass(frozen=True, slots=True)
-class SelectedCause:
-    """A cause that the search has found.
-
-    Attributes:
-        hypothesis: what it is.
-        group: names that this log does not tell from it, itself first, with their probabilities.
-        fit: the joint fit after it was added.
-        p_value: of the detection that let it in (`detection`).
-        evidence: twice the log Bayes factor over the baseline that it was added to.
-        candidates: those that it was chosen from, best evidence first.
-    """
-
-    hypothesis: Hypothesis
-    group: tuple[tuple[str, float], ...]
-    fit: HypothesisFit
-    p_value: float
-    evidence: float
-    candidates: tuple[Candidate, ...]
 
 
 def healthy_baseline(problem: Problem, healthy: Posterior) -> Baseline:
@@ -118,36 +64,14 @@ def baseline_of(fit: HypothesisFit) -> Baseline:
     return Baseline(fit.posterior, fit.evidence, (fit.loss, fit.dynamics_loss))
 
 
-def compared(problem: Problem, h: Hypothesis, fit: HypothesisFit, baseline: Baseline) -> Candidate:
-    """A fitted hypothesis as a candidate: what it adds to a baseline; beside coefficients within tolerance only where its evidence is strong."""
-    evidence = fit.evidence - baseline.evidence
-    gain, parity_gain = reduction(baseline.losses, (fit.loss, fit.dynamics_loss))
-    since = _gain_since(problem, h, fit, baseline) if evidence >= STRONG_EVIDENCE else 0.0
-    beside = 0.0
-    if evidence >= STRONG_EVIDENCE and gain < COUNTED_REDUCTION:
-        others = healthy_without(problem, baseline.posterior, h.slots)
-        beside = reduction(_losses(problem, others), _losses(problem, fit.posterior))[0]
-    before, after = baseline.posterior.largest_departure(), fit.posterior.largest_departure()
-    restores = evidence >= STRONG_EVIDENCE and gain > 0.0 and before > OUT_OF_TOLERANCE and after <= HEALTHY_DEPARTURE
-    return Candidate(h, fit, evidence, gain, parity_gain, beside, restores, since)
+def compared(h: Hypothesis, fit: HypothesisFit, baseline: Baseline) -> Candidate:
+    """A fitted hypothesis as a candidate: what it adds to a baseline."""
+    return Candidate(h, fit, fit.evidence - baseline.evidence, reduction(baseline.losses, (fit.loss, fit.dynamics_loss)))
 
 
-def reduction(before: Losses, after: Losses) -> tuple[float, float]:
-    """Shares by which held-out losses fall: the larger of those with and without the parity residuals, and that of the parity residuals alone."""
-    checks = float((before[0] - before[1]).sum())
-    parity = 1.0 - float((after[0] - after[1]).sum()) / checks if checks > 0 else 0.0
-    return max(float((a - b).sum() / a.sum()) for a, b in zip(before, after, strict=True)), parity
-
-
-def _gain_since(problem: Problem, h: Hypothesis, fit: HypothesisFit, baseline: Baseline) -> float:
-    """Reduction by what begins in mid-log in the windows in which it acts: those before say nothing of it. 0 for another hypothesis."""
-    onset = [float(fit.beta[s]) for s in h.slots if problem.plant.slots[s].parameter.role == "onset"]
-    if not onset:
-        return 0.0
-    ends = np.concatenate([(part.start + part.steps) * part.run.dt for part in problem.runs])
-    acts = np.flatnonzero(ends > onset[0])
-    (before, moved), (after, still) = baseline.losses, (fit.loss, fit.dynamics_loss)
-    return reduction((before[acts], moved[acts]), (after[acts], still[acts]))[0] if len(acts) >= ONSET_LEAST_WINDOWS else 0.0
+def reduction(before: Losses, after: Losses) -> float:
+    """Share by which held-out losses fall: the larger of those with and without the parity residuals."""
+    return max(float((a - b).sum() / a.sum()) for a, b in zip(before, after, strict=True))
 
 
 def healthy_without(problem: Problem, healthy: Posterior, slots: Sequence[int]) -> Posterior:

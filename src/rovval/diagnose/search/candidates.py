@@ -50,12 +50,12 @@ def candidates(
     """
     base = baseline.posterior
     ordered = sorted(library, key=lambda h: (not h.evident, -promised[h.label]))
-    least = SCREENED_EVIDENCE * max(0.0, *(promised[h.label] for h in library))
+    share = SCREENED_EVIDENCE * max(0.0, *(promised[h.label] for h in library))
     prior = problem.tolerance.widened(wide_prior(problem, chosen))
     fits: Fits = {}
 
     def steps(h: Hypothesis) -> Array:
-        return ridge_step(data, prior.widened(prior_of(problem, h)), problem.design_effect)
+        return ridge_step(data, prior.widened(prior_of(problem, h)), problem.tempering)
 
     def alone(h: Hypothesis, slots: tuple[int, ...]) -> Array:
         """The start where all else stays as in the baseline: a step of everything may lead away what was found before."""
@@ -74,7 +74,7 @@ def candidates(
 
     tries = Counter[str]()
     for h in ordered:
-        promising = h.evident or promised[h.label] > (least if len(fits) >= LEAST_SCREENED else min(least, SCREENED_ANYWAY))
+        promising = h.evident or promised[h.label] > (share if len(fits) >= LEAST_SCREENED else min(share, SCREENED_ANYWAY))
         if promising and (tries[h.name] < STARTS_TRIED if h.name in fits and _has_local_minima(h) else h.name not in fits and len(fits) < MOST_CANDIDATES):
             refit(h)
             tries[h.name] += 1
@@ -82,7 +82,7 @@ def candidates(
         if h.name not in fits:
             refit(h)
     carefully = _refitted(problem, promised, fits, alone if chosen else None, baseline.evidence)
-    return _compared(problem, list(carefully.values()), baseline)
+    return _relinearised(problem, _compared(list(carefully.values()), baseline), baseline)
 
 
 def _like_the_best(data: NormalEquations, ordered: list[Hypothesis], fits: Fits) -> list[Hypothesis]:
@@ -117,16 +117,16 @@ def _refitted(problem: Problem, promised: Mapping[str, float], fits: Fits, alone
     return found
 
 
-def relinearised(problem: Problem, some: list[Candidate], baseline: Baseline) -> list[Candidate]:
+def _relinearised(problem: Problem, some: list[Candidate], baseline: Baseline) -> list[Candidate]:
     """The best of the candidates fitted with sensitivities made at their own point, the others as they are; best evidence first."""
-    serious = [c for c in some if c.evidence > SERIOUS_EVIDENCE * some[0].evidence][:MOST_RELINEARISED]
+    serious = [c for c in some if c.evidence > SERIOUS_EVIDENCE * some[0].evidence][:MOST_RELINEARISED] if some else []
     again = [(c.hypothesis, fit_hypothesis(problem, c.fit.posterior.beta, c.fit.slots)) for c in serious]
-    return _compared(problem, again + [(c.hypothesis, c.fit) for c in some if c not in serious], baseline)
+    return _compared(again + [(c.hypothesis, c.fit) for c in some if c not in serious], baseline)
 
 
-def _compared(problem: Problem, fits: list[tuple[Hypothesis, HypothesisFit]], baseline: Baseline) -> list[Candidate]:
+def _compared(fits: list[tuple[Hypothesis, HypothesisFit]], baseline: Baseline) -> list[Candidate]:
     """Fits with what they add to the baseline, best evidence first."""
-    return sorted((compared(problem, h, fit, baseline) for h, fit in fits), key=lambda c: -c.evidence)
+    return sorted((compared(h, fit, baseline) for h, fit in fits), key=lambda c: -c.evidence)
 
 
 def _beyond(problem: Problem, h: Hypothesis, start: Array) -> Array:

@@ -15,7 +15,7 @@ import numpy as np
 
 from rovval.core.channels import AXES
 from rovval.core.data import Array
-from rovval.diagnose.criteria import GENERIC_SIZES, OWN_FORCE
+from rovval.diagnose.criteria import GENERIC_SIZES, MOST_FORCES, OWN_FORCE
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.cross_validation import Fold, held_out_losses
 from rovval.diagnose.problem.problem import Problem
@@ -23,8 +23,6 @@ from rovval.diagnose.residuals.external_forces import generic_force_responses
 from rovval.diagnose.residuals.normal_equations import Linearisation, NormalEquations, concatenated, normal_equations
 from rovval.diagnose.residuals.nuisances import nuisance_sd
 from rovval.diagnose.residuals.ridge import Prior, eliminated
-
-FREED = 1e-3  # of a prior's precision: it holds nothing any more
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,44 +34,44 @@ class GenericForces:
         data: normal equations of the fit's k columns and of the forces behind them.
         precision: (k,) of the priors of the fit's columns.
         pull: (k,) gradient that those priors add.
-        design_effect: design effect of autocorrelated residuals.
+        tempering: what squared residuals are divided by (`problem.Problem.tempering`).
     """
 
     names: tuple[tuple[str, str], ...]
     data: NormalEquations
     precision: Array
     pull: Array
-    design_effect: float
+    tempering: float
 
     def evidence(self, axes: Sequence[str] = AXES, feature: str = "") -> float:
         """Evidence of all forces on ``axes``, or of those with one feature only."""
         chosen = [i for i, (axis, name) in enumerate(self.names) if axis in axes and feature in ("", name)]
         return max(self._evidence(chosen, size) for size in GENERIC_SIZES) - self._evidence([], 1.0) if chosen else 0.0
 
-    def single(self, axes: Sequence[str] = AXES, most: int = 1, causes: Sequence[int] = ()) -> float:
-        """Evidence of the one force, of one feature on one of ``axes``, that has most, or of up to ``most`` of them, each beside those before: where few are
-        at work, all together cost more than they gain.
+    def sparse(self, most: int = MOST_FORCES) -> tuple[float, tuple[tuple[str, str], ...]]:
+        """(Evidence of the few forces, each of one feature on one axis, that explain most, the names of these): up to ``most``, each beside those before and
+        only where it gains, after the prior of one force and one size among all has been paid; minus infinity where none does.
 
         One that the fit's columns can undo all but a little of (`OWN_FORCE`), as drag undoes a force that varies with speed, is none: the two
-        against each other hold the simulation to the measured speed, whatever it is that is missing. Nor is one that is what the columns ``causes``
-        are, which may undo as much as they can.
+        against each other hold the simulation to the measured speed, whatever it is that is missing.
         """
         k = len(self.precision)
-        freed = np.where(np.isin(self.data.columns[:k], causes), FREED, 1.0) * self.precision
-        undone, at_first = np.diag(self._eliminated(freed)[0]), np.einsum("wii->i", self.data.A)
-        own = [k + i for i, (axis, _) in enumerate(self.names) if axis in axes and undone[k + i] > OWN_FORCE * at_first[k + i]]
         A, b = self._eliminated(self.precision)
-        A, b = A[np.ix_(own, own)], b[own]
-        ridge, total = self.design_effect / np.array(GENERIC_SIZES)[:, None] ** 2, 0.0
+        at_first = np.einsum("wii->i", self.data.A)
+        own = [k + i for i in range(len(self.names)) if A[k + i, k + i] > OWN_FORCE * at_first[k + i]]
+        A, b, names = A[np.ix_(own, own)], b[own], [self.names[i - k] for i in own]
+        ridge, total, found = self.tempering / np.array(GENERIC_SIZES)[:, None] ** 2, 0.0, list[tuple[str, str]]()
+        each = 2.0 * np.log(max(len(own) * len(ridge), 1))
         for _ in range(min(most, len(own))):
-            worth = b**2 / (np.diag(A) + ridge) / self.design_effect - np.log1p(np.diag(A) / ridge)
+            worth = b**2 / (np.diag(A) + ridge) / self.tempering - np.log1p(np.diag(A) / ridge) - each
             size, best = np.unravel_index(int(np.argmax(worth)), worth.shape)
             if worth[size, best] <= 0.0:
                 break
             total += float(worth[size, best])
+            found.append(names.pop(int(best)))
             A, b = eliminated(A, b, np.array([best]), np.diag(ridge[size]), np.zeros(1))
             A, b = np.delete(np.delete(A, best, 0), best, 1), np.delete(b, best)
-        return total
+        return total if found else -np.inf, tuple(found)
 
     @property
     def features(self) -> tuple[str, ...]:
@@ -84,7 +82,7 @@ class GenericForces:
         """Share by which all forces reduce the squared error on held-out windows, everything else fixed; 0 where they do not."""
         k = len(self.precision)
         columns, whole = self.data.columns[k:], float(self.data.c.sum())
-        kept = [float(held_out_losses(self.data, folds, Prior(dict.fromkeys(columns, size)), self.design_effect).sum()) for size in GENERIC_SIZES]
+        kept = [float(held_out_losses(self.data, folds, Prior(dict.fromkeys(columns, size)), self.tempering).sum()) for size in GENERIC_SIZES]
         return max(1.0 - min(kept) / whole, 0.0)
 
     def _eliminated(self, precision: Array) -> tuple[Array, Array]:
@@ -95,10 +93,10 @@ class GenericForces:
     def _evidence(self, chosen: Sequence[int], prior_size: float) -> float:
         k = len(self.precision)
         free = np.array([*range(k), *(k + i for i in chosen)], dtype=int)
-        ridge = np.concatenate([self.precision, np.full(len(chosen), self.design_effect / prior_size**2)])
+        ridge = np.concatenate([self.precision, np.full(len(chosen), self.tempering / prior_size**2)])
         H = self.data.A.sum(axis=0)[np.ix_(free, free)] + np.diag(ridge)
         slope = self.data.b.sum(axis=0)[free] - np.concatenate([self.pull, np.zeros(len(chosen))])
-        return float(slope @ np.linalg.solve(H, slope)) / self.design_effect - float(np.linalg.slogdet(H)[1] - np.log(ridge).sum())
+        return float(slope @ np.linalg.solve(H, slope)) / self.tempering - float(np.linalg.slogdet(H)[1] - np.log(ridge).sum())
 
 
 def generic_forces(problem: Problem, point: Posterior) -> GenericForces:
@@ -118,4 +116,4 @@ def _beside(problem: Problem, beta: Array, linear: Sequence[Linearisation], prec
     for part, one, answer in zip(problem.runs, linear, answers, strict=True):
         both = Linearisation(one.r, np.concatenate([one.S, answer], axis=-1), one.J, (*one.columns, *ids), one.valid)
         parts.append(normal_equations(both, part.ok, problem.likelihood.variance, nuisance_sd(part)))
-    return GenericForces(names, concatenated(parts), precision, pull, problem.design_effect)
+    return GenericForces(names, concatenated(parts), precision, pull, problem.tempering)

@@ -2,7 +2,7 @@
 
 A cause that is there half of the time is fitted with half of its size, and its nearest relative, which moves in that half only, may fit as well.
 In the linearised model every window could be the first with the cause in it (likelihood ratio over all change points; Basseville and Nikiforov 1993):
-it must have clearly more evidence from there on than on the whole log, and the windows before must deny that it was there.
+it must have more evidence from there on than on the whole log, beyond what the choice of the window costs (`onset_cost`): the windows before deny it.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import ONSET_DENIED, ONSET_HINTED, ONSETS_TRIED, WINDOWS_AFTER_ONSET, WINDOWS_BEFORE_ONSET
+from rovval.diagnose.criteria import ONSETS_TRIED, WINDOWS_AFTER_ONSET, WINDOWS_BEFORE_ONSET
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of
-from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, only_places
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import posterior_at
 from rovval.diagnose.problem.problem import Problem
@@ -41,21 +41,16 @@ class Stretch:
     b: Array
 
     @classmethod
-    def of(cls, data: NormalEquations, windows: slice, tolerance: Prior, design_effect: float) -> Stretch:
+    def of(cls, data: NormalEquations, windows: slice, tolerance: Prior, tempering: float) -> Stretch:
         """Coefficients are fitted on these windows alone."""
-        free, ridge, offset = free_columns(data, tolerance, design_effect)
+        free, ridge, offset = free_columns(data, tolerance, tempering)
         return cls(*eliminated(data.A[windows].sum(axis=0), data.b[windows].sum(axis=0), free, ridge, ridge @ offset))
 
-    def explained(self, at: np.ndarray, prior: Prior, design_effect: float) -> tuple[float, Array]:
-        """(Twice the log Bayes factor of a hypothesis with the columns ``at`` over none, its fitted size)."""
-        ridge = design_effect / np.array(list(prior.sd.values())) ** 2
+    def explained(self, at: np.ndarray, prior: Prior, tempering: float) -> float:
+        """Twice the log Bayes factor of a hypothesis with the columns ``at`` over none."""
+        ridge = tempering / np.array(list(prior.sd.values())) ** 2
         H, slope = self.A[np.ix_(at, at)] + np.diag(ridge), self.b[at]
-        size = np.linalg.solve(H, slope)
-        return float(slope @ size / design_effect - np.linalg.slogdet(H)[1] + np.log(ridge).sum()), size
-
-    def reduction(self, at: np.ndarray, size: Array) -> float:
-        """What a hypothesis of a given size takes from the loss; negative where it adds to it."""
-        return float(2.0 * self.b[at] @ size - size @ self.A[np.ix_(at, at)] @ size)
+        return float(slope @ np.linalg.solve(H, slope) / tempering - np.linalg.slogdet(H)[1] + np.log(ridge).sum())
 
 
 def suspected_onset(problem: Problem, data: NormalEquations, library: Sequence[Hypothesis]) -> Onset | None:
@@ -64,8 +59,8 @@ def suspected_onset(problem: Problem, data: NormalEquations, library: Sequence[H
     if len(problem.runs) > 1 or problem.window_count < WINDOWS_BEFORE_ONSET + WINDOWS_AFTER_ONSET:
         return None
     priors = {h.label: prior_of(problem, h) for h in library if not h.effect.begins}
-    whole = Stretch.of(data, slice(None), problem.tolerance, problem.design_effect)
-    always = {label: whole.explained(data.place(tuple(prior.sd)), prior, problem.design_effect)[0] for label, prior in priors.items()}
+    whole = Stretch.of(data, slice(None), problem.tolerance, problem.tempering)
+    always = {label: whole.explained(data.place(tuple(prior.sd)), prior, problem.tempering) for label, prior in priors.items()}
     first, last = WINDOWS_BEFORE_ONSET, problem.window_count - WINDOWS_AFTER_ONSET
     step = max(1, (last - first) // ONSETS_TRIED)
     found = {k: _evidence_from(problem, data, priors, always, k) for k in range(first, last + 1, step)}
@@ -80,15 +75,19 @@ def suspected_onset(problem: Problem, data: NormalEquations, library: Sequence[H
 def _evidence_from(problem: Problem, data: NormalEquations, priors: Mapping[str, Prior], always: Mapping[str, float], k: int) -> float:
     """Most evidence of a hypothesis in the windows from the ``k``-th on, of those with clearly more than on the whole log that the windows before deny;
     0 where there is none."""
-    after = Stretch.of(data, slice(k, None), problem.tolerance, problem.design_effect)
-    before = Stretch.of(data, slice(k), problem.tolerance, problem.design_effect)
+    after = Stretch.of(data, slice(k, None), problem.tolerance, problem.tempering)
     best = 0.0
     for label, prior in priors.items():
         at = data.place(tuple(prior.sd))
-        evidence, size = after.explained(at, prior, problem.design_effect)
-        if evidence > max(best, max(always[label], 0.0) + ONSET_HINTED) and before.reduction(at, size) < -ONSET_DENIED * problem.design_effect:
+        evidence = after.explained(at, prior, problem.tempering)
+        if evidence > max(best, max(always[label], 0.0) + onset_cost(problem)):
             best = evidence
     return best
+
+
+def onset_cost(problem: Problem) -> float:
+    """What a cause that begins during the log pays for beginning in one of its windows rather than another, in twice the log of the prior."""
+    return 2.0 * float(np.log(problem.window_count))
 
 
 def windows_from(windows: Windows, time: float) -> Windows:
@@ -106,10 +105,12 @@ def evidence_with_onset(problem: Problem, late: HypothesisFit, time: float, heal
     Coefficients and sensors that are healthy are the same all through the log; they are fitted from where they are beside the causes, or from where they
     are at the ``healthy`` fit, whichever is better.
     """
-    own = list(late.slots)
-    beside, alone, without = late.posterior.beta, healthy.beta.copy(), late.posterior.beta.copy()
-    alone[own], without[own] = beside[own], healthy.beta[own]
-    starts = (beside, without), (alone, healthy.beta)
+    own, sized = list(late.slots), [s for s in late.slots if not only_places(problem, s)]  # what only places the causes has no null value
+    beside, alone, none = late.posterior.beta, healthy.beta.copy(), healthy.beta.copy()
+    without = beside.copy()
+    alone[own], without[sized], none[own] = beside[own], healthy.beta[sized], beside[own]
+    none[sized] = healthy.beta[sized]
+    starts = (beside, without), (alone, none)
     return max(laplace_evidence(problem, _switched(problem, late.slots, now, then, time)) for now, then in starts)
 
 
@@ -130,7 +131,7 @@ def _switched(problem: Problem, own: tuple[int, ...], now: Array, then: Array, t
     return replace(
         begun,
         columns=(*columns, *slots), total=NormalEquations(A, b, np.where(first, before.total.c, begun.total.c), (*columns, *slots)),
-        precision=np.concatenate([begun.precision, [problem.design_effect / problem.tolerance.sd[s] ** 2 for s in slots]]),
+        precision=np.concatenate([begun.precision, [problem.tempering / problem.tolerance.sd[s] ** 2 for s in slots]]),
         departure=np.concatenate([begun.departure, (then - problem.origin)[slots]]),
         bound_side=np.concatenate([begun.bound_side, none]), tangent_only=np.concatenate([begun.tangent_only, none > 0]),
     )  # fmt: skip

@@ -46,6 +46,7 @@ EFFECT = Effect(
     ),
     family="mass",
     absent_in=("freefloating",),
+    in_file=True,
 )
 
 

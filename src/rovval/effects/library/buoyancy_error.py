@@ -35,6 +35,7 @@ EFFECT = Effect(
     separates="coast in heave with thrusters off, both ways",
     literature=("thesis, equation 3.14", "Fossen 2021, section 4.1: restoring forces of submerged vehicles"),
     family="trim",
+    in_file=True,
 )
 
 

@@ -63,6 +63,7 @@ EFFECT = Effect(
     separable=True,
     far=(-5.0, -2.0, 2.0, 5.0),  # a vehicle that tumbles in simulation shows no useful slope of its trim at the null value (chosen)
     family="trim",
+    in_file=True,
 )
 
 

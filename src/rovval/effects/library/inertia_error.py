@@ -37,6 +37,7 @@ EFFECT = Effect(
         "Soule and Miller 1933: moments of inertia by swinging in air",
     ),
     family="mass",
+    in_file=True,
 )
 
 

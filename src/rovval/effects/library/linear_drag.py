@@ -53,6 +53,7 @@ EFFECT = Effect(
     ),
     family="drag",
     absent_in=("freefloating",),
+    in_file=True,
 )
 
 

@@ -40,6 +40,7 @@ EFFECT = Effect(
         "Caccia 2000: identification of linear and quadratic drag of open-frame vehicles",
     ),
     family="drag",
+    in_file=True,
 )
 
 

@@ -24,6 +24,7 @@ EFFECT = Effect(
     confused_with=("quadratic_drag", "linear_drag", "voltage_sag", "dvl_scale"),
     separates="coast-down with thrust off: drag is left alone",
     literature=("Fossen 2021, section 9.4: thrust by the square of the shaft speed", "Carlton 2018, chapter 6: propeller characteristics"),
+    in_file=True,
 )
 ROWS = ("factor",)
 SHARED = True

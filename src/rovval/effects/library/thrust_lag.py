@@ -40,6 +40,7 @@ EFFECT = Effect(
     ),
     refines=("dead",),
     far=(3.0,),  # a lag of half a second is no multiple of a short one (chosen)
+    in_file=True,
 )
 FULL_KERNEL = True
 

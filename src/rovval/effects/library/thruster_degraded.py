@@ -29,6 +29,7 @@ EFFECT = Effect(
         "Omerdic and Roberts 2004: faults of thrusters of open-frame vehicles, partial and total",
     ),
     family="thrust",
+    in_file=True,
 )
 
 

@@ -78,7 +78,7 @@ def constants(spec: Spec) -> dict[str, float]:
     }  # fmt: skip
     place = where.rows
     sizes = {"STATE": 5 * 13, "EULER": 3, "ENDS": 2 * k, "MEMORY": k, "NEXT": k, "ALIVE": 1, "CODE": 2, "CURRENT": 3, "WATER": 9, "EXTRA": 6}
-    sizes |= {"FILTERED": 6, "BEFORE": 6} if spec.explicit else {}
+    sizes |= dict.fromkeys(("FILTERED", "BEFORE"), 6 if spec.explicit else 0)
     for name, size in sizes.items():
         numbers[name] = place
         place += size

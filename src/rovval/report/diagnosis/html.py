@@ -69,6 +69,7 @@ def text(d: Diagnosis, recording: bool = False) -> str:
         ranking=figures.ranking(d),
         coherence=figures.matrix(d.coherence) if d.coherence else None,
         whiskers=[figures.whisker(f.value, f.low, f.high, unit=f.unit) for f in d.parity],
+        models=tables.models(d),
         harm=tables.harm(d),
         left=unexplained(d),
         next_flight=next_flight(d),

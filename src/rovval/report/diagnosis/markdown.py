@@ -29,6 +29,7 @@ def text(d: Diagnosis) -> str:
     parts += under("Where the gap lies", _axes(d), bullets(words.where(d, 99)), words.changes(d), words.disturbances(d))
     for cause in d.causes:
         parts += under(f"Cause: {' or '.join(f'`{e}`' for e in words.group(cause))}", *_cause(cause, d.gap.axes))
+    parts += under("How probable", bullets(tables.models(d)))
     parts += under(recalibration.TITLE, *_calibration(d))
     for title, candidates in tables.steps(d):
         rows = [[f"`{c.effect}`", per_cent(c.gain), number(c.evidence, 2)] for c in candidates]

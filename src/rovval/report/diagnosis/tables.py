@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 
 from rovval.diagnose.result.diagnosis import Candidate, Diagnosis
-from rovval.report.common.numbers import per_cent
+from rovval.report.common.numbers import per_cent, probability
 
 MOST_CANDIDATES, MOST_RANKED = 8, 16  # of a step of the search, of the screen
 WEIGHED = (
@@ -17,14 +17,9 @@ _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 
 
 def steps(d: Diagnosis) -> list[tuple[str, tuple[Candidate, ...]]]:
-    """Every step of the search that had candidates, with what it asked: on their own, beside what was found, or that it named none."""
-    found = [c.effect for c in d.causes]
-    titled = []
-    for k, rows in enumerate(d.finalists):
-        beside = f"beside {', '.join(found[:k])}" if k and found else "on its own"
-        title = beside if k < len(found) else f"{beside}: none was named, for too little gain, evidence or size beyond tolerance"
-        titled += [(title, rows[:MOST_CANDIDATES])] if rows else []
-    return titled
+    """Every step of the search that had candidates, with what they were added to."""
+    beside = ("on its own", "beside the best of those", "beside the best two")
+    return [(beside[min(k, len(beside) - 1)], rows[:MOST_CANDIDATES]) for k, rows in enumerate(d.finalists) if rows]
 
 
 def screen(d: Diagnosis) -> str:
@@ -59,3 +54,14 @@ def _ranges(reasons: Sequence[str]) -> str:
     columns = [sorted(set(column), key=float) for column in zip(*(_NUMBER.findall(why) for why in reasons), strict=True)]
     spans = iter([values[0] if len(values) == 1 else f"{values[0]} to {values[-1]}" for values in columns])
     return _NUMBER.sub(lambda _: next(spans), reasons[0])
+
+
+def models(d: Diagnosis) -> list[str]:
+    """How probable each kind of model is that was compared; none in a document of before they were written."""
+    if d.probabilities is None:
+        return []
+    kinds = {
+        "causes": "causes of the library", "healthy": "a vehicle as its file has it, within tolerance",
+        "miscalibrated_file": "a file that is off in many numbers", "something_else": "something that the library does not hold",
+    }  # fmt: skip
+    return [f"{kinds[kind]}: {probability(p)}" for kind, p in sorted(d.probabilities.model_dump().items(), key=lambda item: -item[1])]

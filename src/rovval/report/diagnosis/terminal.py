@@ -22,6 +22,7 @@ def text(d: Diagnosis) -> str:
     parts += ["", *wrap(pushed, WIDTH)] if (pushed := words.disturbances(d)) else []
     for cause in d.causes:
         parts += _block("cause: " + " | ".join(words.group(cause)), _cause(cause))
+    parts += _block("how probable", tables.models(d))
     parts += _block(recalibration.TITLE.lower(), _calibration(d))
     parts += _block("sensors", [f"{f.fault or f.check}: {estimate(f.value, f.low, f.high, f.unit)}" for f in d.parity if f.significant])
     parts += _block("harm", tables.harm(d))

@@ -1,0 +1,65 @@
+"""A model of the logs: a healthy vehicle with a set of causes, its evidence and its prior mass (Bayesian model comparison; Kass and Raftery 1995).
+
+The prior mass of no cause, of one, of two and of three is fixed. It is divided evenly among the effects that compete for these logs, then among the
+axes or thrusters that an effect may be of, so that an effect added to the library never makes it likelier that a healthy vehicle is blamed.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from math import factorial, log
+
+from rovval.diagnose.criteria import PRIOR_CAUSES, PRIOR_HEALTHY
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """A healthy vehicle with causes.
+
+    Attributes:
+        causes: in the order in which they were added; empty for the healthy vehicle.
+        fit: their joint fit; None for the healthy vehicle.
+        evidence: twice the log Bayes factor over the healthy vehicle.
+        log_prior: logarithm of its prior mass.
+    """
+
+    causes: tuple[Hypothesis, ...]
+    fit: HypothesisFit | None
+    evidence: float
+    log_prior: float
+
+    @property
+    def names(self) -> frozenset[str]:
+        """Names of the causes."""
+        return frozenset(h.name for h in self.causes)
+
+    @property
+    def log_posterior(self) -> float:
+        """Logarithm of its posterior probability, up to a constant that all models of the same logs share."""
+        return self.log_prior + 0.5 * self.evidence
+
+
+@dataclass(frozen=True, slots=True)
+class ModelPrior:
+    """Prior mass of sets of causes: ``effects`` compete, each of ``targets`` axes or thruster by name (1 where it has none)."""
+
+    effects: int
+    targets: dict[str, int]
+
+    @classmethod
+    def of(cls, library: Iterable[Hypothesis]) -> ModelPrior:
+        """The prior over a library of hypotheses."""
+        names = {h.name: h.effect.name for h in library}
+        targets = Counter(names.values())
+        return cls(len(targets), dict(targets))
+
+    def log_mass(self, causes: Sequence[Hypothesis]) -> float:
+        """Logarithm of the prior mass of a set of causes."""
+        if not causes:
+            return log(PRIOR_HEALTHY)
+        each = sum(log(self.effects) + log(self.targets[h.effect.name]) for h in causes)
+        return log(PRIOR_CAUSES[len(causes) - 1]) + log(factorial(len(causes))) - each

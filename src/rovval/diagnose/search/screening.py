@@ -1,0 +1,43 @@
+"""The screen: what each hypothesis of the library adds to a baseline, in the model linearised there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+
+from rovval.core.data import Array
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of, prior_of, wide_prior
+from rovval.diagnose.inference.laplace import Posterior
+from rovval.diagnose.problem.problem import Problem, equations_at
+from rovval.diagnose.residuals.normal_equations import NormalEquations
+from rovval.diagnose.residuals.ridge import Prior, free_columns
+
+
+def linearised(problem: Problem, library: Iterable[Hypothesis], base: Posterior) -> NormalEquations:
+    """Normal equations of a library about the baseline ``base``, with how far each column is from the mean of its prior there."""
+    asked = columns_of(list(library))
+    data = equations_at(problem, base.beta, tuple(sorted({*asked.slots, *problem.tolerance.sd, *base.columns})), asked.displaced)
+    offset = np.array([base.beta[c] - problem.origin[c] if c < len(base.beta) else 0.0 for c in data.columns])
+    return replace(data, offset=offset)
+
+
+def screened(problem: Problem, data: NormalEquations, library: Iterable[Hypothesis], chosen: tuple[int, ...]) -> dict[str, float]:
+    """Twice the log Bayes factor of each initial point of a library, by label, over coefficients within tolerance and the slots ``chosen`` before."""
+    base = problem.tolerance.widened(wide_prior(problem, chosen))
+    A, b = data.A.sum(axis=0), data.b.sum(axis=0)
+    ground = _evidence(data, A, b, base, problem.tempering)
+    return {h.label: _evidence(data, A, b, base.widened(prior_of(problem, h)), problem.tempering) - ground for h in library}
+
+
+def _evidence(data: NormalEquations, A: Array, b: Array, prior: Prior, tempering: float) -> float:
+    """Twice the log marginal likelihood up to a constant: explained sum of squares less the log volume that the data takes from the prior (MacKay 1992,
+    section 2.7)."""
+    if not prior.sd:
+        return 0.0
+    free, ridge, offset = free_columns(data, prior, tempering)
+    H, pull = A[np.ix_(free, free)] + ridge, ridge @ offset
+    slope = b[free] - pull
+    explained = (slope @ np.linalg.solve(H, slope) - pull @ offset) / tempering
+    return float(explained - np.linalg.slogdet(H)[1] + np.log(np.diag(ridge)).sum())

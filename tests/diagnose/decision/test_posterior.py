@@ -1,0 +1,77 @@
+"""Probabilities of models: they sum to one, follow evidence and prior, and groups hold what they say."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rovval.diagnose.criteria import GROUP_PROBABILITY
+from rovval.diagnose.decision.posterior import Probabilities, probabilities
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis
+from rovval.diagnose.search.model import Model, ModelPrior
+
+NAMES = ("waves", "dvl_scale", "thrust_lag", "time_offset", "cross_drag")
+
+
+def belief(
+    evidence: dict[tuple[str, ...], float], file: float = -100.0, forces: float = -np.inf, beside: float = -np.inf, varying: float = -np.inf
+) -> Probabilities:
+    """Probabilities where sets of causes have some evidence over the healthy vehicle."""
+    prior = ModelPrior.of([Hypothesis(n, n, (), (), ()) for n in NAMES])
+    models = []
+    for names, worth in {(): 0.0, **evidence}.items():
+        causes = tuple(Hypothesis(n, n, (), (), ()) for n in names)
+        models.append(Model(causes, None, worth, prior.log_mass(causes)))
+    best = max(models, key=lambda m: m.log_posterior)
+    selection: Any = SimpleNamespace(models=tuple(models), best=best)
+    return probabilities(selection, file, forces, {best.names: beside} if best.causes else {}, varying)
+
+
+@pytest.mark.parametrize("worth", [0.0, 8.0, 40.0, 4000.0])
+def test_they_sum_to_one_and_grow_with_evidence(worth: float):
+    found = belief({("waves",): worth, ("dvl_scale",): 3.0, ("waves", "dvl_scale"): worth + 1.0}, file=-3.0, forces=2.0, beside=1.0, varying=0.5)
+    assert found.healthy + found.causes + found.file + found.something_else == pytest.approx(1.0)
+    less = belief({("waves",): worth - 2.0, ("dvl_scale",): 3.0, ("waves", "dvl_scale"): worth - 1.0}, file=-3.0, forces=2.0, beside=1.0, varying=0.5)
+    assert found.of("waves") >= less.of("waves")
+
+
+def test_without_evidence_a_healthy_vehicle_is_believed():
+    found = belief({("waves",): -4.0, ("dvl_scale",): 0.0})
+    assert found.healthy > 0.8 and found.healthy > found.causes
+
+
+def test_a_group_is_the_fewest_names_that_hold_the_probability():
+    found = belief({("thrust_lag",): 60.0, ("time_offset",): 59.0, ("waves",): 50.0, ("dvl_scale",): 20.0})
+    group = dict(found.group("thrust_lag"))
+    assert list(group) == ["thrust_lag", "time_offset"]
+    assert sum(group.values()) >= GROUP_PROBABILITY > group["thrust_lag"]
+
+
+def test_a_group_is_of_one_cause_beside_the_others():
+    """What stands in for the second cause stands beside the first."""
+    found = belief({("waves", "thrust_lag"): 90.0, ("waves", "time_offset"): 89.0, ("waves",): 40.0, ("dvl_scale", "thrust_lag"): 60.0})
+    assert [n for n, _ in found.group("waves")] == ["waves"]
+    assert [n for n, _ in found.group("thrust_lag")] == ["thrust_lag", "time_offset"]
+    assert found.of("waves") > 0.99 > found.of("thrust_lag")
+
+
+def test_something_else_takes_what_no_cause_explains():
+    assert belief({("waves",): 10.0}, forces=80.0).something_else > 0.99
+    assert belief({("waves",): 80.0}, forces=60.0).causes > 0.99
+
+
+def test_something_beside_the_causes_leaves_them_at_work():
+    found = belief({("waves",): 80.0}, beside=30.0)
+    assert found.partly(frozenset({"waves"})) and found.of("waves") > 0.99
+
+
+def test_a_cause_that_would_have_to_vary_is_something_else():
+    found = belief({("waves",): 80.0}, varying=30.0)
+    assert found.something_else > 0.99 and found.varying == pytest.approx(found.something_else)
+
+
+def test_a_file_off_in_many_numbers_is_believed_where_it_explains_more():
+    assert belief({("waves",): 80.0}, file=200.0).file > 0.99

@@ -1,0 +1,45 @@
+"""Prior mass of models: fixed by the number of causes, whatever the library holds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+from math import exp
+
+import pytest
+
+from rovval.diagnose.criteria import PRIOR_CAUSES, PRIOR_HEALTHY
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis
+from rovval.diagnose.search.model import Model, ModelPrior
+
+NAMES = ("waves", "dvl_scale", "linear_drag[surge]", "linear_drag[sway]", "thruster_degraded[T1]", "thruster_degraded[T2]", "thruster_degraded[T3]")
+
+
+def library(names: Sequence[str]) -> list[Hypothesis]:
+    return [Hypothesis(name, f"{name}@{start}", (), (), ()) for name in names for start in range(2)]
+
+
+@pytest.mark.parametrize("names", [NAMES, NAMES[:4], NAMES[:1]])
+def test_the_mass_of_one_cause_is_the_same_however_many_could_be_it(names: tuple[str, ...]):
+    """Initial points of one hypothesis are not several."""
+    prior = ModelPrior.of(library(names))
+    assert sum(exp(prior.log_mass([Hypothesis(name, name, (), (), ())])) for name in names) == pytest.approx(PRIOR_CAUSES[0])
+    assert exp(prior.log_mass([])) == pytest.approx(PRIOR_HEALTHY)
+
+
+def test_an_effect_has_its_share_however_many_thrusters_it_may_be_of():
+    prior = ModelPrior.of(library(NAMES))
+    one, of_three = (exp(prior.log_mass([Hypothesis(name, name, (), (), ())])) for name in ("waves", "thruster_degraded[T2]"))
+    assert one == pytest.approx(3.0 * of_three)
+
+
+def test_sets_of_two_do_not_hold_more_than_is_theirs():
+    prior = ModelPrior.of(library(NAMES))
+    pairs = [exp(prior.log_mass([Hypothesis(n, n, (), (), ()) for n in pair])) for pair in combinations(NAMES, 2)]
+    assert 0.5 * PRIOR_CAUSES[1] < sum(pairs) <= PRIOR_CAUSES[1]
+
+
+def test_evidence_and_prior_are_on_one_scale():
+    """Twice the log Bayes factor: evidence of 2 is a factor of e."""
+    more, less = (Model((), None, evidence, -1.0) for evidence in (12.0, 10.0))
+    assert more.log_posterior - less.log_posterior == pytest.approx(1.0)
