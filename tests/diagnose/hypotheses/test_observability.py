@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 from diagnose_case import bluerov2, posed
 
 from rovval.diagnose import diagnose
@@ -20,6 +21,7 @@ def test_what_only_shows_when_it_is_large_competes_and_is_not_called_absent():
     assert all(float(why.split("with ")[1].split()[0]) >= OBSERVABLE_SIGMA / LARGE_SIZE for name, why in silent.items() if name in names)
 
 
+@pytest.mark.slow
 def test_what_is_named_is_not_called_untestable(tmp_path: Path):
     """A thruster that is turned far round shows, though a turn of typical size would not."""
     document = diagnose([bluerov2(tmp_path, "turned.csv", 12, 200.0, 0.03, ("thruster_misaligned", "T1", -2.0))], load("bluerov2_heavy")).document()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from diagnose_case import merlin, own, posed, slot
 
 from rovval.diagnose import diagnose
@@ -11,6 +12,7 @@ from rovval.diagnose.search.baseline import healthy_without, reduction_beside
 from rovval.report.diagnosis.json import document as written
 
 
+@pytest.mark.slow
 def test_a_cause_that_healthy_coefficients_hide_is_found_beside_them():
     """Thrust within its tolerance makes most of the gap, a weak current the rest: by itself it brings too little to be named."""
     document = diagnose([own(("current_constant:north=0.03,east=0.015", "reverse_asymmetry:scale=0.1", "rpm_scale:scale=0.06"), 5, 240.0)], merlin()).document()

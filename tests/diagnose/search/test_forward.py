@@ -63,8 +63,8 @@ def test_a_depth_sensor_that_is_late_is_named_and_has_no_tolerance(tmp_path: Pat
     ("planted", "seed", "effect", "parameter", "true"),
     [
         (("time_offset", "attitude", 2.0), 13, "time_offset[attitude]", "delay", 0.8),
-        (("time_offset", "attitude", -1.5), 13, "time_offset[attitude]", "delay", -0.6),
-        (("payload_change", "", -1.5), 14, "payload_change", "mass", None),
+        pytest.param(("time_offset", "attitude", -1.5), 13, "time_offset[attitude]", "delay", -0.6, marks=pytest.mark.slow),
+        pytest.param(("payload_change", "", -1.5), 14, "payload_change", "mass", None, marks=pytest.mark.slow),
     ],
     ids=["late", "early", "set down"],
 )
