@@ -82,7 +82,7 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
     first = selection.steps[0] if selection.steps else ()
     found = replace(found, indications=indications(first, known, faults))
     if belief.healthy > max(belief.file, belief.something_else, belief.causes):
-        rest = open_gap(problem, known, residuals)
+        rest = open_gap(problem, replace(known, departure=0.0), residuals)  # it is believed, so what its coefficients account for counts
         return replace(found, verdict="unknown" if rest else "no_gap", unexplained=rest)
     inconstant = [h.name for h in best.causes] if belief.varying > 0.5 * belief.something_else else []
     return replace(found, verdict="unknown", unexplained=unexplained(problem, nominal_forces(problem), selection.healthy, inconstant))
