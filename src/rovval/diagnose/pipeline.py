@@ -63,15 +63,15 @@ def diagnose(
     """
     say = progress or _silent
     windows, left_out = cut(runs, vehicle, model, window_s)
-    found = analyse(windows, without, calibration_slop, seed, say)
+    found = analyse(windows, without, calibration_slop, say)
     if onset := found.onset:
         say(f"searching the part from {onset.time:.0f} s on", 0.85)
-        late = _analysed_from(onset.time, windows[0], without, calibration_slop, seed)
+        late = _analysed_from(onset.time, windows[0], without, calibration_slop)
         found = late if late and more_probable(late, found, onset) else found
     return assemble(found, left_out, calibration_slop, seed, say)
 
 
-def analyse(windows: tuple[Windows, ...], without: Sequence[str], tolerance: float, seed: int, say: Progress) -> Finding:
+def analyse(windows: tuple[Windows, ...], without: Sequence[str], tolerance: float, say: Progress) -> Finding:
     """One pass over the windows of the logs: pose the estimation problem, fit the healthy vehicle, search for causes, decide."""
     library, untestable = hypotheses(windows, without)
     say(f"simulating every effect of the library on {sum(part.count for part in windows)} windows", 0.05)
@@ -85,10 +85,10 @@ def analyse(windows: tuple[Windows, ...], without: Sequence[str], tolerance: flo
     return Finding(problem, untestable | unseen, selection, residuals, faults, decide(problem, selection, residuals, faults))
 
 
-def _analysed_from(time: float, windows: Windows, without: Sequence[str], tolerance: float, seed: int) -> Finding | None:
+def _analysed_from(time: float, windows: Windows, without: Sequence[str], tolerance: float) -> Finding | None:
     """The same over the windows from ``time`` (s) on; None where too few of them can be simulated: the log as a whole was."""
     try:
-        return replace(analyse((windows_from(windows, time),), without, tolerance, seed, _silent), since=time)
+        return replace(analyse((windows_from(windows, time),), without, tolerance, _silent), since=time)
     except BadInput:
         return None
 

@@ -102,6 +102,11 @@ def missing_in(topics: Mapping[str, Sequence[str]], profile: Profile) -> tuple[s
     return (*gone, *(f"not {a}" for a in profile.absent if any(text_table.fits(a, name) for name in there)))
 
 
+def missing_in_blocks(blocks: Iterable[Block], profile: Profile) -> tuple[str, ...]:
+    """The same of a log that comes as blocks, several of one topic joined."""
+    return missing_in({name: topic.fields for name, topic in joined(blocks)[0].items()}, profile)
+
+
 def read_blocks(path: Path, profile: Profile, blocks: Iterable[Block]) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming every missing topic, field and column, or what else makes it useless."""
     topics, findings = joined(blocks)

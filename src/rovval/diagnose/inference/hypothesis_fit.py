@@ -118,14 +118,6 @@ def standard_errors(problem: Problem, fitted: HypothesisFit, fixed: Sequence[int
     return np.asarray(np.sqrt(np.maximum(sandwich + by_tolerance, problem.design_effect * np.diag(bread)[:k])))
 
 
-def significance(problem: Problem, fitted: HypothesisFit, slots: tuple[int, ...]) -> float:
-    """Largest departure of ``slots`` from the vehicle's file, in standard errors. Parameters that only place an effect (an onset, a period) have no null
-    value of their own: they do not count, and are held fixed."""
-    sized = [s for s in slots if not only_places(problem, s)]
-    error = standard_errors(problem, fitted, [s for s in slots if s not in sized])
-    return max(float(abs(fitted.beta[s] - problem.origin[s]) / max(error[fitted.slots.index(s)], 1e-12)) for s in sized)
-
-
 def only_places(problem: Problem, slot: int) -> bool:
     """Whether a parameter only places an effect, in time or in space."""
     return problem.plant.slots[slot].parameter.places

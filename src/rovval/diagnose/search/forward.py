@@ -121,12 +121,7 @@ def _reconsidered(
         if better.fit is None or better.log_posterior <= best.log_posterior:
             break
         best = refitted(problem, better)
-    return healthy, [replace_fit(m) for m in models], best
-
-
-def replace_fit(model: Model) -> Model:
-    """The model without the bulk of its fit."""
-    return Model(model.causes, model.fit.without_sensitivities() if model.fit else None, model.evidence, model.log_prior)
+    return healthy, [m.without_sensitivities() for m in models], best
 
 
 def _ranking(problem: Problem, library: list[Hypothesis], best: Model, steps: Sequence[Sequence[Row]]) -> tuple[tuple[str, float], ...]:

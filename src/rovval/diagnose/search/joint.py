@@ -7,6 +7,7 @@ logs alone, and where the first was the nearest relative of two, another name is
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from rovval.diagnose.criteria import MOST_ALTERNATIVES
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
@@ -44,8 +45,10 @@ def reconsidered(problem: Problem, prior: ModelPrior, best: Model, tried: Sequen
 def refitted(problem: Problem, model: Model) -> Model:
     """The model fitted with care, with its sensitivities."""
     assert model.fit is not None
+    if model.fit.posterior.whitened:
+        return model
     fit = fit_hypothesis(problem, model.fit.posterior.beta, model.fit.slots)
-    return model if model.fit.posterior.whitened else Model(model.causes, fit, max(fit.evidence, model.evidence), model.log_prior)
+    return replace(model, fit=fit, evidence=max(fit.evidence, model.evidence))
 
 
 def joint_fit(problem: Problem, whole: HypothesisFit, kept: Sequence[Hypothesis], other: Candidate | None = None) -> HypothesisFit:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import factorial, log
 
 from rovval.diagnose.criteria import PRIOR_CAUSES, PRIOR_HEALTHY
@@ -41,6 +41,10 @@ class Model:
     def log_posterior(self) -> float:
         """Logarithm of its posterior probability, up to a constant that all models of the same logs share."""
         return self.log_prior + 0.5 * self.evidence
+
+    def without_sensitivities(self) -> Model:
+        """The model without the bulk of its fit."""
+        return replace(self, fit=self.fit.without_sensitivities()) if self.fit else self
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,9 +33,9 @@ def sniff(path: Path) -> bool:
 
 def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     """Required topics or columns of ``profile`` that the log has not, and `absent` ones that it has."""
-    from rovval.ingest.topics import joined, missing_in
+    from rovval.ingest.topics import missing_in_blocks
 
-    return missing_in({name: topic.fields for name, topic in joined(contents(path))[0].items()}, profile)
+    return missing_in_blocks(contents(path), profile)
 
 
 def read(path: Path, profile: Profile) -> RawLog:
