@@ -51,13 +51,14 @@ def test_ingest_says_whose_findings_they_are(tmp_path):
 
 
 def test_a_log_given_twice_is_no_second_log(tmp_path):
-    """Taken as two, it would narrow every interval by the square root of two."""
+    """Taken as two, it would narrow every interval by the square root of two: once it was, under another name."""
     path = write(tmp_path)
-    copy = tmp_path / "again" / "dive.csv"
-    copy.parent.mkdir()
-    copy.write_bytes(path.read_bytes())
-    with pytest.raises(UsageProblem, match="given twice"):
-        logs.opened_as_one([str(path), str(copy)], None, "merlin", Path("archive"))
+    for name in ("again/dive.csv", "another_name.csv"):
+        copy = tmp_path / name
+        copy.parent.mkdir(exist_ok=True)
+        copy.write_bytes(path.read_bytes())
+        with pytest.raises(UsageProblem, match=rf"{copy.name} is given twice, as .*dive\.csv"):
+            logs.opened_as_one([str(path), str(copy)], None, "merlin", Path("archive"))
 
 
 def test_logs_of_two_vehicles_are_not_taken_for_one(tmp_path, monkeypatch):

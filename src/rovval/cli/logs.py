@@ -55,13 +55,11 @@ def opened_as_one(
 ) -> list[Run]:  # fmt: skip
     """Runs that are one experiment: each given once, all of one vehicle unless ``vehicle`` says which, of each the same stretch. Raises
     `UsageProblem`."""
+    from rovval.alignment.duplicates import duplicates
+
     runs = [opened(source, profile, archive, quiet, start_s, end_s) for source in sources]
-    for k, run in enumerate(runs):
-        if run.id in (earlier := [r.id for r in runs[:k]]):
-            raise UsageProblem(
-                f"{sources[k]}: run {run.id} is given twice, as {sources[earlier.index(run.id)]} already",
-                "give each log once: a copy adds no evidence",
-            )
+    if twice := [f"{sources[later]} is given twice, as {sources[earlier]} already" for earlier, later in duplicates(runs)]:
+        raise UsageProblem("; ".join(twice), "give each log once, by whatever name: a copy adds no evidence")
     named = {run.vehicle: source for run, source in zip(runs, sources, strict=True) if run.vehicle}
     if vehicle is None and len(named) > 1:
         raise UsageProblem(

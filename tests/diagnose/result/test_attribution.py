@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from diagnose_case import merlin, own
@@ -49,5 +51,14 @@ def test_an_even_gap_has_no_worst_place(part):
 
 def test_idle_thrusters_and_all_regimes_have_names(part):
     names = {s.regime for s in slices(part, RNG(15).normal(size=part.y.shape), part.ok, 0)}
-    assert {"HFP turning forward", "HFP turning backward", "first third of the run"} <= names
+    assert {"HFP turning forward", "HFP turning backward"} <= names
     assert any(n.startswith("heading") for n in names)
+
+
+def test_a_part_of_the_time_is_named_by_its_times(part):
+    """Once, the windows after an onset at 80 s were "the run", and what lies before 133 s of 240 was its first third."""
+    late = replace(part, start=part.start[8:], nu0=part.nu0[8:], eta0=part.eta0[8:], y=part.y[8:], ok=part.ok[8:])
+    times = {s.regime for s in slices(late, RNG(15).normal(size=late.y.shape), late.ok, 0) if s.regime.startswith("time ")}
+    ends = [[float(word) for word in name.split() if word.isdigit()] for name in times]
+    assert len(times) == 3 and min(e[0] for e in ends) == pytest.approx(part.start[8] * part.run.dt, abs=0.5)
+    assert max(e[1] for e in ends) == pytest.approx((part.start[-1] + part.steps + 1) * part.run.dt, abs=0.5)

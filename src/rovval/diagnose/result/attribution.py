@@ -81,11 +81,10 @@ def regimes(stretches: Windows) -> dict[str, Flags]:
     if run.measured("psi"):
         found.update(_headings(run.get("psi")[at]))
     found.update(_thrusters(stretches, at))
-    thirds = np.array_split(np.arange(len(at)), 3)
-    for words, part in zip(("first", "middle", "last"), thirds, strict=True):
+    for part in np.array_split(np.arange(len(at)), 3):  # by their times: the windows may begin in mid-log, where an onset was found
         flags = np.zeros(at.shape, dtype=bool)
         flags[part] = True
-        found[f"{words} third of the run"] = flags
+        found[f"time {run.dt * at[part].min():.0f} to {run.dt * (at[part].max() + 1):.0f} s"] = flags
     return {name: flags for name, flags in found.items() if REGIME_TIME[0] < flags.mean() < REGIME_TIME[1]}
 
 

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from rovval.alignment.duplicates import duplicates
 from rovval.core.data import Flags, Run
 from rovval.core.errors import BadInput, all_at_once
 from rovval.diagnose.criteria import FEWEST_WINDOWS, MANY_WINDOWS, MEASURED_SHARE
@@ -31,6 +32,8 @@ def cut(runs: Sequence[Run], vehicle: Vehicle, model: str, window_s: float) -> t
     Raises:
         BadInput: no run can be cut, or the runs differ in the channels that they hold.
     """
+    if twice := [f"run {runs[later].id} holds the same samples as run {runs[earlier].id}" for earlier, later in duplicates(runs)]:
+        raise BadInput(all_at_once(twice, "a log is given twice"), "give each log once, by whatever name: a copy adds no evidence")
     windows, left_out = list[Windows](), list[str]()
     for run in (condition(one)[0] for one in runs):
         try:
