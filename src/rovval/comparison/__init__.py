@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rovval.alignment.noise import channel_noise
 from rovval.comparison import metrics
 from rovval.core.channels import AXES, DRIVING, POSE, VELOCITIES, channel
 from rovval.core.data import Array, ChannelError, Comparison, Flags, Run, SimResult
@@ -54,7 +55,7 @@ def compare(
         for table, traj in ((free, sim.free), (windowed, sim.windowed)):
             row = _error(name, traj.nu[:, j], measured, ok & traj.ok, np.zeros(len(run)), run.dt)
             if row is not None:
-                table[axis] = row
+                table[axis] = replace(row, noise=channel_noise(run, name))
     absent = tuple(a for a, n in zip(AXES, VELOCITIES, strict=True) if not run.measured(n))
     pose = _pose(run, sim)
     if not free and not windowed and not pose:
@@ -162,7 +163,7 @@ def _pose(run: Run, sim: SimResult) -> Mapping[str, ChannelError]:
             simulated, still = (measured + _turn(run, x, euler)[:, axis] for x in (sim.windowed.eta[:, 3:], euler[first]))
         row = _error(name, simulated, measured, keep, still, run.dt)
         if row is not None:
-            result[name] = row
+            result[name] = replace(row, noise=channel_noise(run, name))
     return result
 
 

@@ -235,7 +235,8 @@ class ChannelError:
     """How far one simulated channel is from the measured one, over ``n`` samples (``coverage`` of the run).
 
     Errors are simulated minus measured, in ``unit``; ``iae`` in unit * s. ``baseline_rmse`` is the error of the predictor that
-    says "no motion" (velocities) or "stays where the stretch began" (pose), ``skill`` is 1 - mse / mse(baseline).
+    says "no motion" (velocities) or "stays where the stretch began" (pose), ``skill`` is 1 - mse / mse(baseline). ``noise`` is the standard deviation of
+    the sensor's white noise, in ``unit``: errors of that size say nothing of a simulator.
     """
 
     channel: str
@@ -250,6 +251,12 @@ class ChannelError:
     baseline_rmse: float
     skill: float | None
     extra: Mapping[str, float] = field(default_factory=dict)
+    noise: float = 0.0
+
+    @property
+    def misleads(self) -> bool:
+        """Whether the simulator is further from the vehicle than the trivial predictor, by more than the sensor's noise."""
+        return self.rmse**2 - self.baseline_rmse**2 > self.noise**2
 
 
 @dataclass(frozen=True, slots=True)

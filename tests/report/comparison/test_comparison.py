@@ -210,3 +210,19 @@ def test_a_log_of_less_than_a_minute_says_so_first() -> None:
     """Three seconds were compared without a word."""
     assert words.verdict(windowed(30, 10.0)).startswith("Only 2.9 s of log: under a minute")
     assert words.verdict(windowed(600, 10.0)).startswith("Over windows of 10 s")
+
+
+@pytest.mark.parametrize(("wobble", "alarm"), [(0.004, False), (0.02, True)])
+def test_what_lies_within_the_noise_of_a_sensor_is_no_alarm(wobble: float, alarm: bool) -> None:
+    """A headline once said "worse than predicting no motion in pitch" of errors of 0.03 deg/s."""
+    run = make_run(600)
+    still = replace(run, values={**run.values, "q": np.random.default_rng(3).normal(0.0, 0.006, 600)})
+    sim = make_sim(still)
+    nu = sim.windowed.nu.copy()
+    nu[:, 4] = wobble * np.sin(np.arange(600) / 9.0)
+    c = compare(still, replace(sim, windowed=replace(sim.windowed, nu=nu), free=replace(sim.free, nu=nu)))
+    said, pitch = words.verdict(c), c.windowed["pitch"]
+    assert pitch.noise == pytest.approx(0.006, rel=0.1) and (pitch.skill or 0.0) < 0.0
+    assert ("worse than predicting no motion in pitch" in said) is alarm
+    assert ("in pitch motion and error are hardly more than the sensor's noise" in said) is not alarm
+    assert ('class="neg"' in html.text(c)) is alarm

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rovval.alignment.noise import white_noise
 from rovval.core.data import Array, Flags, Reason, Resampled, Run
 from rovval.core.errors import Finding
 from rovval.diagnose.criteria import (
@@ -22,7 +23,6 @@ from rovval.diagnose.criteria import (
     SATURATED_SAMPLES,
     SLOWEST_PING,
 )
-from rovval.diagnose.windows.noise import white_noise
 
 NO_MEASUREMENT = ("saturated", "held")  # codes of the findings
 RATES = ("u", "v", "w", "p", "q", "r")  # channels that can reach the end of a sensor's range

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rovval.alignment.noise import white_noise
 from rovval.core.data import Array, Flags, Run
 from rovval.core.frames import wrap
 from rovval.diagnose.criteria import (
@@ -62,16 +63,6 @@ def _outliers(series: Array, name: str) -> Flags:
     with np.errstate(invalid="ignore"):
         outlier[1:-1] = np.abs(bend) > OUTLIER_SIGMA * max(spread, 2 * LEAST_NOISE[name])
     return outlier
-
-
-def white_noise(series: Array, good: Flags) -> float:
-    """White noise of a channel from third differences (median absolute, so that manoeuvres do not count).
-
-    A third difference of white noise has variance 20 sigma^2 (binomial coefficients 1 3 3 1).
-    """
-    third = np.diff(series, n=3)
-    usable = good[3:] & good[2:-1] & good[1:-2] & good[:-3]
-    return float(1.4826 * np.median(np.abs(third[usable])) / np.sqrt(20.0)) if usable.any() else 0.0
 
 
 def quantisation_step(values: Array) -> float:

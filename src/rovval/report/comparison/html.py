@@ -61,7 +61,8 @@ def _axes(c: Comparison) -> list[dict[str, Any]]:
     for axis in dict.fromkeys((*c.free, *c.windowed)):
         free, windowed = c.free.get(axis), c.windowed.get(axis)
         row = next(r for r in (free, windowed) if r is not None)
-        rows.append({"name": axis, "free": free, "windowed": windowed, "row": row, "motion": words.relative(windowed or row)})
+        told = windowed or row
+        rows.append({"name": axis, "free": free, "windowed": windowed, "row": row, "motion": words.relative(told), "misleads": told.misleads})
     return rows
 
 

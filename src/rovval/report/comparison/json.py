@@ -70,11 +70,12 @@ def _row(row: ChannelError) -> dict[str, Any]:
         "baseline_mae": row.baseline_mae,
         "baseline_rmse": row.baseline_rmse,
         "skill": row.skill,
+        "noise": row.noise,
         **row.extra,
     }
     if row.unit in DEGREE_UNITS:
         values["unit_deg"] = DEGREE_UNITS[row.unit]
-        names = [n for n in (*CORE, "baseline_mae", "baseline_rmse", *row.extra) if _has_unit(n)]
+        names = [n for n in (*CORE, "baseline_mae", "baseline_rmse", *row.extra) if _has_unit(n)] + ["noise"]
         values |= {f"{n}_deg": values[n] * DEGREES for n in names}
     return values
 

@@ -95,16 +95,21 @@ def _beside(comparison: Comparison) -> str:
 
 
 def _skill(table: Mapping[str, ChannelError]) -> str:
+    """Whether the simulator beats predicting no motion; an axis on which it is behind by no more than the sensor's noise counts for neither."""
     judged = [a for a in table if table[a].skill is not None]
-    worse = [a for a in judged if (table[a].skill or 0.0) <= 0.0]
     if not judged:
         return "the vehicle never moved, so there is no skill to speak of"
-    if not worse:
-        return f"it does better than predicting no motion {'on every measured axis' if len(judged) > 1 else f'in {judged[0]}'}"
-    if len(worse) == len(judged):
-        return f"it does worse than predicting no motion {'on every measured axis' if len(judged) > 1 else f'in {judged[0]}'}"
-    better = listed(a for a in judged if a not in worse)
-    return f"it does worse than predicting no motion in {listed(worse)} and better in {better}"
+    worse = [a for a in judged if table[a].misleads]
+    better = [a for a in judged if a not in worse and (table[a].skill or 0.0) > 0.0]
+    noisy = [a for a in judged if a not in worse and a not in better]
+    said = []
+    for word, axes in (("worse", worse), ("better", better)):
+        where = "on every measured axis" if axes == judged and len(axes) > 1 else f"in {listed(axes)}"
+        than = "" if said else " than predicting no motion"
+        said += [f"{word}{than} {where}"] if axes else []
+    does = [f"it does {' and '.join(said)}"] if said else []
+    hidden = [f"in {listed(noisy)} motion and error are hardly more than the sensor's noise"] if noisy else []
+    return ", ".join(does + hidden)
 
 
 def notes(comparison: Comparison) -> list[str]:
