@@ -39,10 +39,11 @@ INSIDE = {
     "blind": (("",), ("scoring",), ("sealed",), ("baselines", "cases"), ("planted",), ("missions",), ("plant",)),
     "report": (("scenario",), ("",), ("batch", "blind", "diagnosis", "flight", "recording"), ("comparison",), ("common",)),
     "effects": (("library",), ("",)),
+    "pipeline": (("",), ("keeping",), ("execution",), ("planning",), ("steps", "tolerances")),
     "plant": (("reference",), ("",), ("codegen",), ("platforms",)),
 }
 DEEPEST = 4  # files in the longest chain of imports inside a room of `diagnose`
-MOST_FILES = 12  # in a room of `diagnose`
+MOST_FILES = 12  # in a room of `diagnose` or `pipeline`
 # Third-party libraries and the rooms that may import them; numpy may be imported by every room that computes.
 ALLOWED = {
     "typer": {"cli"},
@@ -148,6 +149,11 @@ def test_a_room_of_the_diagnosis_is_small_and_flat(room: str):
     files = {module for module in MODULES if module.startswith(f"rovval.diagnose.{room}.")}
     assert 0 < len(files) <= MOST_FILES
     assert max(longest(module, files) for module in files) <= DEEPEST
+
+
+@pytest.mark.parametrize("room", ["keeping", "execution", "planning"])
+def test_a_room_of_the_batch_is_small(room: str):
+    assert 0 < sum(module.startswith(f"rovval.pipeline.{room}.") for module in MODULES) <= MOST_FILES
 
 
 @pytest.mark.parametrize("module", MODULES)

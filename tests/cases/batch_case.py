@@ -10,9 +10,9 @@ import numpy as np
 
 from rovval.core.errors import Unwritable
 from rovval.demo import make
-from rovval.pipeline import config
-from rovval.pipeline.plan import Task, plan
-from rovval.pipeline.worker import Outcome, work
+from rovval.pipeline.execution.worker import Outcome, work
+from rovval.pipeline.planning import config
+from rovval.pipeline.planning.plan import Task, plan
 
 
 def write_log(path: Path, seconds: float = 5.0, seed: int = 0, rpm: float = 40.0) -> Path:

@@ -15,7 +15,7 @@ from real_data import real
 
 from rovval.core.errors import BadInput
 from rovval.ingest import read
-from rovval.pipeline.discover import logs_in
+from rovval.pipeline.planning.discover import logs_in
 
 PACKERS: dict[str, Callable[[bytes], bytes]] = {
     ".gz": gzip.compress,

@@ -13,7 +13,7 @@ import pytest
 from rovval.core.errors import BadInput, UsageProblem
 from rovval.ingest import read
 from rovval.ingest.files import sha256
-from rovval.pipeline.discover import logs_in
+from rovval.pipeline.planning.discover import logs_in
 from rovval.storage.archive import open_run
 
 PROFILE = """

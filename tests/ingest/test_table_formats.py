@@ -19,7 +19,7 @@ from scipy.io import savemat
 from rovval.core.errors import BadInput, UsageProblem
 from rovval.ingest import read, reader
 from rovval.ingest.profile import parse_profile
-from rovval.pipeline.discover import logs_in
+from rovval.pipeline.planning.discover import logs_in
 from rovval.storage.archive import open_run
 
 Columns = dict[str, np.ndarray[Any, Any]]

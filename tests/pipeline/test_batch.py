@@ -13,7 +13,8 @@ import pytest
 from batch_case import counts, tasks_of
 
 from rovval.core.errors import UsageProblem
-from rovval.pipeline import batch, lock
+from rovval.pipeline import batch
+from rovval.pipeline.execution import lock
 from rovval.storage.archive import run_ids
 
 

@@ -10,7 +10,8 @@ from typer.testing import CliRunner
 
 from rovval.cli.app import app
 from rovval.core.errors import UsageProblem
-from rovval.pipeline import batch, lock
+from rovval.pipeline import batch
+from rovval.pipeline.execution import lock
 from rovval.storage.archive import run_ids
 
 

@@ -35,7 +35,7 @@ def command(
       rovval archive repair --archive /data/archive
     """
     from rovval.core.errors import UsageProblem
-    from rovval.pipeline import integrity
+    from rovval.pipeline.keeping import integrity
 
     if missing := [str(place) for place in (archive, reports) if place and not place.is_dir()]:
         raise UsageProblem(f"{' and '.join(missing)}: no such folder", "name the archive with --archive, the reports with --reports")

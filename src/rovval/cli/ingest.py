@@ -38,7 +38,7 @@ def command(
       rovval ingest dive.toml --from 60 --to 660
     """
     from rovval.alignment.stretch import stretch_of
-    from rovval.pipeline.discover import logs_in
+    from rovval.pipeline.planning.discover import logs_in
     from rovval.storage.archive import open_run, save_run
 
     show = output.progress(quiet)

@@ -11,7 +11,7 @@ import typer
 from rovval.cli import options, output
 
 if TYPE_CHECKING:
-    from rovval.pipeline.plan import Plan
+    from rovval.pipeline.planning.plan import Plan
 
 
 def command(
@@ -48,7 +48,8 @@ def command(
       rovval run pipelines/nightly.toml
       rovval run pipelines/nightly.toml --workers 8 --json
     """
-    from rovval.pipeline import batch, config
+    from rovval.pipeline import batch
+    from rovval.pipeline.planning import config
     from rovval.report.batch.terminal import text
 
     if only is not None:
@@ -64,7 +65,7 @@ def command(
 
 def _say_plan(planned: Plan, as_json: bool) -> None:
     """What a run would do with each log, and why."""
-    from rovval.pipeline.plan import why
+    from rovval.pipeline.planning.plan import why
 
     ids = {str(t.log): t.id for t in planned.todo}
     rows = [("do", str(t.log), why(t)) for t in planned.todo]

@@ -11,13 +11,15 @@ from pathlib import Path
 from typing import Any
 
 from rovval.core.errors import Unwritable, UsageProblem
-from rovval.pipeline import catalogue, cluster, config, lock, retention, summary
-from rovval.pipeline.config import Pipeline
-from rovval.pipeline.plan import Plan, Task, plan
-from rovval.pipeline.processes import execute
-from rovval.pipeline.summary import STOPPED
-from rovval.pipeline.trends import trends
-from rovval.pipeline.worker import Outcome, set_aside, work
+from rovval.pipeline.execution import cluster, lock
+from rovval.pipeline.execution.processes import execute
+from rovval.pipeline.execution.worker import Outcome, set_aside, work
+from rovval.pipeline.keeping import catalogue, retention, summary
+from rovval.pipeline.keeping.summary import STOPPED
+from rovval.pipeline.keeping.trends import trends
+from rovval.pipeline.planning import config
+from rovval.pipeline.planning.config import Pipeline
+from rovval.pipeline.planning.plan import Plan, Task, plan
 from rovval.report.batch.terminal import reasons
 from rovval.storage.atomic import json_text, read_json, sweep, write_over
 

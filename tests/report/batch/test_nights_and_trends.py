@@ -13,7 +13,7 @@ import pytest
 from catalogue_case import row
 from page_case import check_html
 
-from rovval.pipeline import summary
+from rovval.pipeline.keeping import summary
 from rovval.report.batch import html as batch_html
 from rovval.trend import trends
 

@@ -7,7 +7,8 @@ import batch_case
 import pytest
 from page_case import Balance
 
-from rovval.pipeline import batch, summary
+from rovval.pipeline import batch
+from rovval.pipeline.keeping import summary
 from rovval.report.batch import html as batch_html
 from rovval.report.batch import terminal
 

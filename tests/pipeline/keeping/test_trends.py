@@ -5,9 +5,9 @@ import numpy as np
 from catalogue_case import NOW, row
 
 from rovval import trend
-from rovval.pipeline import config
-from rovval.pipeline.catalogue import rows_of
-from rovval.pipeline.trends import KNOWN, trends
+from rovval.pipeline.keeping.catalogue import rows_of
+from rovval.pipeline.keeping.trends import KNOWN, trends
+from rovval.pipeline.planning import config
 from rovval.storage import catalogue
 
 

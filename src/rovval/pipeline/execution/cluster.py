@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from rovval.core.errors import UsageProblem
-from rovval.pipeline.plan import Task
-from rovval.pipeline.worker import Outcome
+from rovval.pipeline.execution.worker import Outcome
+from rovval.pipeline.planning.plan import Task
 
 PATIENCE_S = 60.0  # workers of a cluster are started beside the scheduler, some seconds after it
 

@@ -12,9 +12,9 @@ from rovval import vehicle
 from rovval.core.errors import UsageProblem
 from rovval.ingest import profile
 from rovval.pipeline import batch
-from rovval.pipeline.hashes import code_on_disk
-from rovval.pipeline.plan import why
-from rovval.pipeline.worker import work
+from rovval.pipeline.execution.worker import work
+from rovval.pipeline.planning.hashes import code_on_disk
+from rovval.pipeline.planning.plan import why
 from rovval.storage.archive import run_ids
 
 
@@ -50,8 +50,8 @@ def test_results_of_other_code_are_made_anew_and_it_is_said(site, monkeypatch):
     """The version's number stays the same while the code changes."""
     path = batch_case.write_pipeline(site)
     assert batch.run(path, workers=1)["why"] == {"new": 3}
-    monkeypatch.setattr("rovval.pipeline.plan.code_on_disk", lambda: "0123456789ab")
-    monkeypatch.setattr("rovval.pipeline.worker.code_of_this_process", lambda: "0123456789ab")
+    monkeypatch.setattr("rovval.pipeline.planning.plan.code_on_disk", lambda: "0123456789ab")
+    monkeypatch.setattr("rovval.pipeline.execution.worker.code_of_this_process", lambda: "0123456789ab")
     reasons = {why(task) for task in batch.dry_run(path).todo}
     assert reasons == {f"made by other code of rovval ({code_on_disk()}; now 0123456789ab)"}
     assert {work(task)["status"] for task in tasks_of(path)} == {"done"}

@@ -9,8 +9,8 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from rovval.core.errors import BadInput, Unwritable
-from rovval.pipeline.catalogue import rows_of
-from rovval.pipeline.config import Pipeline
+from rovval.pipeline.keeping.catalogue import rows_of
+from rovval.pipeline.planning.config import Pipeline
 from rovval.storage.atomic import read_json, write_json
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from contextlib import suppress
 from pathlib import Path
 
 from rovval.ingest.files import files_of
-from rovval.pipeline.config import Pipeline
-from rovval.pipeline.records import RECORD, read_record
+from rovval.pipeline.planning.config import Pipeline
+from rovval.pipeline.planning.records import RECORD, read_record
 
 DAY_S = 86400.0
 

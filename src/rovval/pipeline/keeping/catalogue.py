@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from rovval.core.channels import AXES
-from rovval.pipeline import lock, tolerances
-from rovval.pipeline.config import Pipeline
+from rovval.pipeline import tolerances
+from rovval.pipeline.execution import lock
+from rovval.pipeline.planning.config import Pipeline
 
 Record = Mapping[str, Any]
 NO_VEHICLE = "unknown"  # of a run that was only ingested, by a profile that names none

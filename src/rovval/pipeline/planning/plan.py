@@ -15,10 +15,10 @@ from typing import Any
 from rovval.core.errors import Unwritable, UsageProblem, all_at_once
 from rovval.core.file_names import printable, shortened
 from rovval.ingest.files import files_of
-from rovval.pipeline import discover
-from rovval.pipeline.config import Pipeline, Source
-from rovval.pipeline.hashes import Hashes, code_on_disk
-from rovval.pipeline.records import is_damaged, outputs_whole, read_quarantine, read_record
+from rovval.pipeline.planning import discover
+from rovval.pipeline.planning.config import Pipeline, Source
+from rovval.pipeline.planning.hashes import Hashes, code_on_disk
+from rovval.pipeline.planning.records import is_damaged, outputs_whole, read_quarantine, read_record
 
 QUARANTINE = "quarantine"
 HASHES = ".hashes.json"
@@ -28,7 +28,7 @@ RETRIED = ("crash", "internal", "unreadable", "changed")  # a worker that died m
 @dataclass(frozen=True, slots=True)
 class Task:
     """One log, all that a worker needs to know, picklable. ``keys`` in the order of the steps; ``folder`` takes its reports;
-    ``code`` is what the planner runs, `rovval.pipeline.hashes.code_on_disk`; ``method`` is the digest of all that the results depend on
+    ``code`` is what the planner runs, `rovval.pipeline.planning.hashes.code_on_disk`; ``method`` is the digest of all that the results depend on
     beside the log: runs of one method can be held against each other."""
 
     log: Path

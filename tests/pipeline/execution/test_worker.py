@@ -8,7 +8,7 @@ from pathlib import Path
 import batch_case
 from batch_case import tasks_of
 
-from rovval.pipeline.worker import work
+from rovval.pipeline.execution.worker import work
 
 
 def test_a_worker_of_other_code_stops_the_batch_and_sets_no_log_aside(site):

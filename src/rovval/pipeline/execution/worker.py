@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any
 from rovval.core.errors import BadInput, RovvalError, Unwritable
 from rovval.core.version import __version__
 from rovval.ingest.files import files_of, sha256
-from rovval.pipeline.hashes import code_of_this_process
-from rovval.pipeline.plan import Task
-from rovval.pipeline.records import outputs_whole, read_record, write_record
+from rovval.pipeline.planning.hashes import code_of_this_process
+from rovval.pipeline.planning.plan import Task
+from rovval.pipeline.planning.records import outputs_whole, read_record, write_record
 from rovval.storage.atomic import FULL, refusal, write_json, write_text
 from rovval.storage.contents import contents
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 from rovval.core.errors import BadInput, RovvalError
 from rovval.ingest.files import sha256
-from rovval.pipeline.plan import QUARANTINE
-from rovval.pipeline.records import RECORD, is_damaged, read_quarantine, read_record
+from rovval.pipeline.planning.plan import QUARANTINE
+from rovval.pipeline.planning.records import RECORD, is_damaged, read_quarantine, read_record
 from rovval.storage.atomic import refusal
 from rovval.storage.contents import damage
 

@@ -11,7 +11,7 @@ PACKAGE = Path(rovval.__file__).parent
 EDIT = """
 import sys
 from pathlib import Path
-from rovval.pipeline.hashes import code_on_disk
+from rovval.pipeline.planning.hashes import code_on_disk
 print(code_on_disk())
 for name in sys.argv[1:]:
     file = Path(name)

@@ -5,7 +5,8 @@ import pytest
 from batch_case import counts
 
 from rovval.core.errors import UsageProblem
-from rovval.pipeline import batch, config
+from rovval.pipeline import batch
+from rovval.pipeline.planning import config
 
 
 def test_every_problem_of_a_pipeline_file_is_named_at_once(tmp_path):

@@ -11,7 +11,7 @@ import batch_case
 from batch_case import counts, tasks_of
 
 from rovval.pipeline import batch
-from rovval.pipeline.processes import execute
+from rovval.pipeline.execution.processes import execute
 
 
 def test_a_worker_that_dies_takes_only_its_own_log_with_it(site):

@@ -6,7 +6,8 @@ import time
 import batch_case
 from batch_case import counts
 
-from rovval.pipeline import batch, records
+from rovval.pipeline import batch
+from rovval.pipeline.planning import records
 from rovval.storage import catalogue
 
 

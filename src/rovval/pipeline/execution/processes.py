@@ -16,8 +16,8 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any
 
-from rovval.pipeline.plan import Task
-from rovval.pipeline.worker import Outcome
+from rovval.pipeline.execution.worker import Outcome
+from rovval.pipeline.planning.plan import Task
 
 Work = Callable[[Task], Outcome]
 THREADS = ("POLARS_MAX_THREADS", "NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")

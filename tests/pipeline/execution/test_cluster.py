@@ -7,7 +7,8 @@ import pytest
 from batch_case import counts
 
 from rovval.core.errors import UsageProblem
-from rovval.pipeline import batch, cluster
+from rovval.pipeline import batch
+from rovval.pipeline.execution import cluster
 
 
 def test_a_cluster_without_dask_says_what_to_install(monkeypatch):

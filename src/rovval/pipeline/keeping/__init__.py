@@ -1,0 +1,1 @@
+"""What stays of a batch: catalogue, trends and summary of what was found, how long reports are kept, and whether they are whole."""
