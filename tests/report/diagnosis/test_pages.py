@@ -145,3 +145,12 @@ def test_the_largest_axis_stands_with_a_regime_of_its_own() -> None:
     page = html.text(Diagnosis.read(d | {"gap": d["gap"] | {"where": [other, own]}}))
     assert "most at u &gt; 0.5 m/s" in page and "most at |r|" not in page
     assert "most at" not in html.text(Diagnosis.read(d | {"gap": d["gap"] | {"where": [other]}}))
+
+
+def test_bars_of_errors_that_grew_differ_by_how_much() -> None:
+    """At -100 % and beyond they all looked alike."""
+    cause = make_diagnosis()["causes"][0]
+    shares = {"surge": 0.5, "sway": -1.0, "yaw": -5.0}
+    page = html.text(diagnosis(causes=[cause | {"shrinkage": cause["shrinkage"] | {"axes": shares}}]))
+    widths = [page.partition(f">{axis}</th><td class=\"l\"><span")[2].partition("width:")[2].partition("%")[0] for axis in shares]
+    assert widths == ["50.0", "50.0", "83.3"] and page.count('class="track wide worse"') >= 2

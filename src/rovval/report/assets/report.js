@@ -16,6 +16,12 @@
   const plots = D.plots.map((p) => ({ ...p, data: [X[p.x], ...p.series.map((s) => decode(s.d))] }));
   const colour = (s, i, n) => (s.hue === undefined ? css("--" + s.key) : `hsl(${s.hue} 55% ${css("--bg") === "#fff" ? 42 : 66}%)`);
   const short = (v) => (v === null || v === undefined ? "–" : v.toPrecision(3));
+  // An error strip is low: zero, and the largest round number that fits in on both sides.
+  const ticks = (u) => {
+    const { min, max } = u.scales.y, far = Math.max(Math.abs(min), Math.abs(max)), power = 10 ** Math.floor(Math.log10(far || 1));
+    const round = [5, 4, 3, 2, 1.5, 1].map((k) => k * power).find((v) => v <= far) || far;
+    return [-round, 0, round].filter((v) => v >= min && v <= max);
+  };
   let charts = [], moving = false;
 
   const draw = () => {
@@ -33,7 +39,7 @@
         cursor: { sync: { key: p.x, setSeries: false }, drag: { x: true, y: false }, points: { size: 5 }, y: false },
         scales: { x: { time: false } },
         axes: [{ ...axis, show: !p.bare, size: 26, values: (u, v) => v.map((t, i) => (i === v.length - 1 ? t + " s" : t)) },
-          { ...axis, size: 50, space: p.error ? 18 : 30 }],
+          { ...axis, size: 50, space: 30, ...(p.error ? { splits: ticks } : {}) }],
         series: [{}, ...series],
         hooks: {
           setCursor: [(u) => {
@@ -65,11 +71,15 @@
   let wait = 0;
   addEventListener("resize", () => {
     clearTimeout(wait);
-    wait = setTimeout(() => charts.forEach((u, j) => {
-      const host = document.getElementById(plots[j].id);
-      u.setSize({ width: host.clientWidth, height: host.clientHeight });
-    }), 80);
+    wait = setTimeout(() => fit(matchMedia("print").matches), 80);
   });
+  // A sheet of A4 or letter holds two pictures side by side, of 690 pixels in all.
+  const fit = (paper) => charts.forEach((u, j) => {
+    const host = document.getElementById(plots[j].id);
+    u.setSize({ width: !paper ? host.clientWidth : host.closest(".wide") ? 690 : 335, height: host.clientHeight });
+  });
+  addEventListener("beforeprint", () => fit(true));
+  addEventListener("afterprint", () => fit(false));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
   draw();
 })();

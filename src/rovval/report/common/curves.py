@@ -11,7 +11,7 @@ import numpy as np
 
 from rovval.core.data import Array
 
-MOST_POINTS = 6400  # a 10-minute run at 10 Hz is drawn whole
+MOST_POINTS = 36002  # an hour at 10 Hz is drawn whole, so that a zoom shows every sample
 MISSING = 65535
 
 

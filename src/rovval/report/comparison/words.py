@@ -102,7 +102,7 @@ def _skill(table: Mapping[str, ChannelError]) -> str:
     worse = [a for a in judged if table[a].misleads]
     better = [a for a in judged if a not in worse and (table[a].skill or 0.0) > 0.0]
     noisy = [a for a in judged if a not in worse and a not in better]
-    said = []
+    said = list[str]()
     for word, axes in (("worse", worse), ("better", better)):
         where = "on every measured axis" if axes == judged and len(axes) > 1 else f"in {listed(axes)}"
         than = "" if said else " than predicting no motion"

@@ -15,12 +15,12 @@ from rovval.report.comparison import words
 if TYPE_CHECKING:
     from rovval.vehicle.model import Vehicle
 
-COLOURS = {
-    "measured": (225, 230, 235),
-    "windows": (255, 150, 60),
-    "free run": (90, 170, 250),
-    "other": (199, 146, 224),
-    "corrected": (80, 205, 140),
+COLOURS = {  # the page's in the dark
+    "measured": (238, 242, 246),
+    "windows": (255, 143, 61),
+    "free run": (90, 169, 240),
+    "other": (180, 90, 160),
+    "corrected": (31, 191, 143),
 }
 ARROW_SHARE = 1.2  # the strongest thrust is drawn this many vehicle lengths long
 
