@@ -79,7 +79,7 @@ def run(
 def _spread(pipeline: Pipeline, tasks: Sequence[Task], workers: int | None, scheduler: str | None) -> Iterator[tuple[Task, Outcome]]:
     """Each task with its outcome as it ends, done by workers of this machine or of a cluster."""
     if scheduler:
-        return cluster.execute(tasks, work, died, scheduler)
+        return cluster.execute(tasks, work, died, scheduler, pipeline.timeout_s)
     return execute(tasks, work, died, workers or pipeline.workers or os.cpu_count() or 1, pipeline.timeout_s)
 
 

@@ -7,6 +7,7 @@ import json
 import os
 import re
 import shutil
+import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -27,7 +28,7 @@ def drafts(*places: Path) -> Iterator[list[Path]]:
     closed to us, `UsageProblem` where a place cannot be a file's.
     """
     refuse_url(*places)
-    beside = [place.with_name(f".{place.name}.{os.getpid()}.part") for place in places]
+    beside = [place.with_name(f".{place.name}.{uuid.uuid4().hex[:8]}.part") for place in places]  # two containers share process ids
     try:
         for place in places:
             place.parent.mkdir(parents=True, exist_ok=True)
