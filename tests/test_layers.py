@@ -36,7 +36,7 @@ ROOMS = (
 # The same inside a room; "" are the files that lie in the room itself.
 INSIDE = {
     "diagnose": (("",), ("result",), ("decision",), ("search",), ("hypotheses",), ("inference",), ("problem",), ("residuals",), ("windows",), ("criteria",)),
-    "blind": (("",), ("scoring",), ("sealed",), ("baselines", "cases"), ("planted",), ("missions",), ("plant",)),
+    "blind": (("",), ("scoring",), ("sealed",), ("baselines", "cases"), ("second",), ("planted",), ("missions",), ("plant",)),
     "report": (("scenario",), ("",), ("batch", "blind", "diagnosis", "flight", "recording"), ("comparison",), ("common",)),
     "effects": (("library",), ("",)),
     "pipeline": (("",), ("keeping",), ("execution",), ("planning",), ("steps", "tolerances")),

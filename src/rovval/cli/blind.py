@@ -28,9 +28,15 @@ def make(
     seed: Annotated[
         int | None, typer.Option("--seed", help="Equal seeds make equal logs. Default: drawn, and sealed too.")
     ] = None,
+    plant: Annotated[str, typer.Option("--plant", metavar="a|b", help="Which of the two independent plants flies.")] = "a",
     size: Annotated[
         str, typer.Option("--size", metavar="full|small|COUNT", help="Several hundred logs, 24, or so many.")
     ] = "full",
+    healthy: Annotated[
+        float | None,
+        typer.Option("--healthy", metavar="SHARE", help="Share of healthy logs. Default: 0.3 of plant b; of plant a the grid's."),
+    ] = None,
+    seconds: Annotated[float | None, typer.Option("--seconds", metavar="S", help="Length of each log. Default: 300.")] = None,
     cases: Annotated[
         Path | None, typer.Option("--cases", metavar="FILE", help="JSON list of missions and effects, instead of --size.")
     ] = None,
@@ -38,21 +44,28 @@ def make(
     workers: Workers = 2,
     quiet: options.QuietOption = False,
 ) -> None:
-    """Make logs with hidden effects by a plant that shares no code with rovval's own, and seal their labels.
+    """Make logs with hidden effects by plants that share no code with rovval's own or with each other, and seal their labels.
 
     \b
     Example:
       rovval blind make sets/small --seed 7 --size small
+      rovval blind make sets/b --plant b --vehicle minerva --size 60 --healthy 0.4
     """
     from rovval.blind.cases.generate import read_cases
     from rovval.blind.cases.questions import Question
+    from rovval.blind.plant.spec import PLANTS
     from rovval.blind.sealed.make import make_set
+    from rovval.core.errors import UsageProblem
     from rovval.vehicle import LIBRARY, load
 
+    if plant not in PLANTS:
+        raise UsageProblem(f"--plant {plant} is no plant", f"use one of {', '.join(PLANTS)}")
     load(vehicle)
     path = Path(vehicle) if vehicle.endswith(".toml") else LIBRARY / f"{vehicle}.toml"
-    asked = [Question(case) for case in read_cases(cases, seed or 0)] if cases else None
-    made = make_set(folder, path, seed, size, asked=asked, key=key, workers=workers, say=_steps(quiet))
+    asked = [Question(case) for case in read_cases(cases, seed or 0, PLANTS[plant])] if cases else None
+    made = make_set(
+        folder, path, seed, size, plant=PLANTS[plant], healthy=healthy, seconds=seconds, asked=asked, key=key, workers=workers, say=_steps(quiet)
+    )
     manifest = made.manifest()
     output.result(f"{manifest['count']} logs in {made.logs}; labels sealed, SHA-256 {manifest['labels_sha256']}")
     output.say(f"key: {key or made.key}; next: rovval blind answer {folder}", quiet)

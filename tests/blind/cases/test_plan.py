@@ -3,6 +3,7 @@
 import pytest
 
 from rovval import vehicle
+from rovval.blind.cases.mixed import kinds
 from rovval.blind.cases.questions import DECOY_SHARE, questions, same_law
 from rovval.blind.scoring import ground_truth
 from rovval.core.errors import UsageProblem
@@ -39,3 +40,23 @@ def test_what_is_left_out_is_gone_under_every_name_that_would_be_right():
 def test_size_is_checked(size):
     with pytest.raises(UsageProblem, match="use full, small, or a number"):
         questions(MERLIN, 1, size)
+
+
+@pytest.mark.parametrize("plant", ["a", "b"])
+def test_a_mixed_set_holds_the_stated_share_of_healthy_logs(plant):
+    cases = [q.case for q in questions(MERLIN, 4, "100", plant, 0.3, 240.0)]
+    assert sum(not case.effects for case in cases) == 30
+    assert {case.plant for case in cases} == {plant} and {case.duration_s for case in cases} == {240.0}
+    assert len({case.seed for case in cases}) == 100
+    lacking = {kind.name for kind in kinds(plant) if kind.lacking}
+    assert 5 <= sum(case.effects[0].name in lacking for case in cases if case.effects) <= 12
+    two = [case.effects for case in cases if len(case.effects) > 1]
+    assert 8 <= len(two) <= 14 and all(one.name != other.name for one, other in two)
+    singles = [case.effects[0].name for case in cases if len(case.effects) == 1]
+    assert max(singles.count(name) for name in singles) <= 3
+
+
+def test_shares_and_lengths_that_make_no_set_are_refused():
+    for healthy, seconds in ((1.5, 240.0), (0.3, 5.0)):
+        with pytest.raises(UsageProblem, match="--healthy"):
+            questions(MERLIN, 1, "10", "b", healthy, seconds)

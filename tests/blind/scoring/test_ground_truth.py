@@ -40,6 +40,16 @@ ALIASES = [
     (planted("time_offset", "depth", delay_s=0.4), cause("time_offset[depth]"), True),
     (planted("velocity_filter_lag", None), cause("time_offset"), False),
     (planted("current_constant", None), cause("current_varying"), False),
+    (planted("added_mass", "sway"), cause("added_mass[translation]"), True),
+    (planted("quadratic_drag", "yaw", coefficient=1.0), cause("quadratic_drag[rotation]"), True),
+    (planted("quadratic_drag", "yaw", coefficient=1.0), cause("quadratic_drag[translation]"), False),
+    (planted("quadratic_drag", "yaw", coefficient=1.0), cause("linear_drag[rotation]"), False),
+    (planted("added_mass", "translation"), cause("added_mass[heave]"), True),
+    (planted("added_mass", "translation"), cause("added_mass[translation]"), True),
+    (planted("added_mass", "translation"), cause("added_mass[rotation]"), False),
+    (planted("sticky_thruster", "HFP"), cause("thruster_sticking[HFP]"), True),
+    (planted("sticky_thruster", "HFP"), cause("thruster_sticking[HFS]"), False),
+    (planted("water_leak", None), cause("buoyancy_drift"), True),
 ]
 
 

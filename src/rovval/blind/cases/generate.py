@@ -16,33 +16,35 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
+from rovval.blind.cases import flight
 from rovval.blind.cases.csv_log import write_csv
-from rovval.blind.cases.flight import fly
 from rovval.blind.cases.grid import DURATION_S, Case, grid
-from rovval.blind.plant.spec import Planted, stream
+from rovval.blind.plant.spec import Planted, PlantName, stream
+from rovval.blind.second import flight as second_flight
 
 
-def read_cases(path: Path, seed: int) -> list[Case]:
-    """Cases file to cases; seeds that are left out are drawn from ``seed``."""
+def read_cases(path: Path, seed: int, plant: PlantName = "a") -> list[Case]:
+    """Cases file to cases of a plant; seeds that are left out are drawn from ``seed``."""
     rng = stream(seed, "cases")
     out = []
     for row in json.loads(path.read_text(encoding="utf-8")):
         effects = tuple(Planted(**effect) for effect in row.get("effects", []))
         drawn = int(rng.integers(2**31 - 1))
         duration, slop = float(row.get("duration_s", DURATION_S)), float(row.get("slop", 0.03))
-        out.append(Case(row["mission"], effects, int(row.get("seed", drawn)), duration, slop))
+        out.append(Case(row["mission"], effects, int(row.get("seed", drawn)), duration, slop, plant))
     return out
 
 
 def make(vehicle: Path, case: Case, path: Path) -> dict[str, Any]:
     """Fly one case and write its log; the label, with ``failed`` where there is no log."""
     try:
-        flight = fly(vehicle, case.mission, case.effects, case.seed, case.duration_s, case.slop)
+        fly = second_flight.fly if case.plant == "b" else flight.fly
+        flown = fly(vehicle, case.mission, case.effects, case.seed, case.duration_s, case.slop)
     except (RuntimeError, ValueError) as problem:
         effects = [{"name": e.name, "target": e.target, "severity": e.severity} for e in case.effects]
         return {"failed": str(problem), "mission": case.mission, "seed": case.seed, "effects": effects}
-    write_csv(flight, path)
-    return dict(flight.truth)
+    write_csv(flown, path)
+    return dict(flown.truth)
 
 
 def generate(

@@ -10,7 +10,7 @@ import numpy as np
 
 from rovval.blind.missions.manoeuvres import MISSIONS
 from rovval.blind.plant.nominal_vehicle import read_vehicle
-from rovval.blind.plant.spec import Planted, stream
+from rovval.blind.plant.spec import Planted, PlantName, stream
 from rovval.blind.planted.catalogue import Entry, catalogue, names
 
 SINGLES = (("rich", 1.0), ("rich", 2.0), ("survey", 1.0), ("", 1.5))  # mission ("" = the others in turn) and severity
@@ -28,6 +28,7 @@ class Case:
     seed: int
     duration_s: float = DURATION_S
     slop: float = 0.03
+    plant: PlantName = "a"
 
 
 def _targets(entry: Entry, thrusters: Sequence[str], rng: np.random.Generator) -> list[str | None]:

@@ -12,14 +12,16 @@ from pathlib import Path
 
 import numpy as np
 
-from rovval.blind.cases.grid import Case, draw_planted, grid
+from rovval.blind.cases.grid import DURATION_S, Case, draw_planted, grid
+from rovval.blind.cases.mixed import FULL, HEALTHY, mixed
 from rovval.blind.plant.nominal_vehicle import read_vehicle
-from rovval.blind.plant.spec import Planted, stream
+from rovval.blind.plant.spec import Planted, PlantName, stream
 from rovval.blind.planted.catalogue import catalogue, names
 from rovval.core.errors import UsageProblem
 
 DECOY_SHARE = 0.25  # share of the ordinary questions that have an effect taken out that is not there
 SMALL_S = 240.0
+SHORTEST_S = 30.0  # three windows of a diagnosis
 WEAK = ("thruster_degraded", "thruster_fault_onset", "thruster_reversed", "thruster_interaction")
 SAME_LAW = {  # taken out together: one is the other at some value, or closes nine tenths of what the other does (Merlin, no slop)
     **dict.fromkeys(WEAK, WEAK),  # interaction is a degradation where the neighbour always runs as hard: 1.00 on a survey, VFP
@@ -70,16 +72,28 @@ class Question:
     left_out: bool = False
 
 
-def questions(vehicle: Path, seed: int, size: str) -> list[Question]:
-    """The set of that size: ``full``, ``small`` (24 logs of the Merlin), or so many drawn from the full one."""
+def questions(
+    vehicle: Path, seed: int, size: str, plant: PlantName = "a", healthy: float | None = None, seconds: float | None = None
+) -> list[Question]:
+    """The set of that size: ``full``, ``small`` (24 logs), or so many.
+
+    Plant a's full set is a grid of effects and missions with leave-one-out questions, and a number is so many drawn from it. With a share of
+    ``healthy`` logs, and for plant b always, the set is drawn to measure instead (`mixed`), of logs of ``seconds``, with nothing left out.
+    """
+    if not (size in ("full", "small") or (size.isdecimal() and int(size) >= 1)):
+        raise UsageProblem(f"--size {size} is no size", "use full, small, or a number of logs")
+    if plant == "b" or healthy is not None or seconds is not None:
+        share, long = HEALTHY if healthy is None else healthy, DURATION_S if seconds is None else seconds
+        if not 0.0 <= share <= 1.0 or long < SHORTEST_S:
+            raise UsageProblem(
+                f"--healthy {share:g} --seconds {long:g} make no set", f"give a share from 0 to 1, and logs of {SHORTEST_S:g} s at least"
+            )
+        count = {"full": FULL, "small": len(SMALL)}.get(size) or int(size)
+        return [Question(case) for case in mixed(vehicle, seed, count, share, long, plant)]
     if size == "small":
         return _small(vehicle, seed)
     everything = _full(vehicle, seed)
-    if size == "full":
-        return everything
-    if not size.isdecimal() or int(size) < 1:
-        raise UsageProblem(f"--size {size} is no size", "use full, small, or a number of logs")
-    return everything[: int(size)]
+    return everything if size == "full" else everything[: int(size)]
 
 
 def _full(vehicle: Path, seed: int) -> list[Question]:

@@ -5,12 +5,15 @@ from __future__ import annotations
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from types import MappingProxyType
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+PlantName = Literal["a", "b"]
+PLANTS: Mapping[str, PlantName] = MappingProxyType({"a": "a", "b": "b"})  # `rovval.blind.plant` with `planted` and `missions`, and `rovval.blind.second`
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 RATE_HZ = 10.0  # the control and log rate of the Merlin, thesis 4.5
 STEP_S = 1.0 / RATE_HZ
@@ -18,7 +21,7 @@ STEP_S = 1.0 / RATE_HZ
 
 @dataclass(frozen=True, slots=True)
 class Planted:
-    """One thing to plant: a name of ``rovval.blind.planted.catalogue``, its axis or thruster, how strong, and from when.
+    """One thing to plant: a name of the plant's catalogue, its axis or thruster, how strong, and from when.
 
     ``severity`` 1 is clearly visible on a rich log, 0 is absent. ``target`` None lets the flight choose (by its seed) where
     the effect needs a target; ``onset_s`` None means from the start, except for effects that are events.

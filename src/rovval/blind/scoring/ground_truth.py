@@ -8,13 +8,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
+from rovval import effects
 from rovval.blind.plant.nominal_vehicle import read_vehicle
 from rovval.blind.plant.scales import scales
 from rovval.blind.plant.spec import AXES
 
 Row = Mapping[str, Any]  # one effect of a label
 TARGETED = {"added_mass", "linear_drag", "quadratic_drag", "inertia_error", "thruster_degraded", "thruster_fault_onset"}
-TARGETED |= {"thruster_reversed", "thruster_misaligned", "thruster_interaction"}  # by axis or thruster, as the library has them
+TARGETED |= {"thruster_reversed", "thruster_misaligned", "thruster_interaction", "thruster_sticking"}  # by axis or thruster, as the library has them
+NAMED_SINCE = {"sticky_thruster": "thruster_sticking", "water_leak": "buoyancy_drift"}  # what a plant holds for foreign and the library has learnt
 EARLY_S = 10.0  # an onset within the first window is no onset to a diagnosis in windows of 10 s
 MAIN_AXIS = 0.5  # an axis belongs to an effect that pushes it at least half as hard as its hardest
 SAME_INERTIA = {"added_mass": "inertia_error", "inertia_error": "added_mass"}  # one law about roll, pitch and yaw
@@ -52,13 +54,14 @@ def name(effect: Row) -> str:
     """The library's hypothesis for a planted effect; a foreign one keeps its own name, which no hypothesis has."""
     if effect["name"] == "inertia_error" and effect["target"] == "surge":
         return "added_mass[surge]"  # see `alias`
-    apart = effect["name"] in TARGETED or (effect["name"] == "time_offset" and effect["target"] in ("velocity", "attitude", "depth"))
-    return f"{effect['name']}[{effect['target']}]" if apart else str(effect["name"])
+    called = NAMED_SINCE.get(effect["name"], str(effect["name"]))
+    apart = called in TARGETED or (effect["name"] == "time_offset" and effect["target"] in ("velocity", "attitude", "depth"))
+    return f"{called}[{effect['target']}]" if apart else called
 
 
 def foreign(effect: Row) -> bool:
     """Whether the library has nothing of the kind."""
-    return bool(effect["place"] == "foreign")
+    return bool(effect["place"] == "foreign" and effect["name"] not in NAMED_SINCE)
 
 
 def accepts(effect: Row, said: Said) -> bool:
@@ -69,6 +72,8 @@ def accepts(effect: Row, said: Said) -> bool:
 def alias(effect: Row, cause: Said) -> str | None:
     """The reason for which a cause of another name is the same answer; None: it is not. There are these and no others."""
     said, on = cause.effect, f"[{effect['target']}]"
+    if said != name(effect) and _together(name(effect), said):
+        return "one axis of several that the library takes for one, or all of which one was off"
     if effect["name"] == "inertia_error" and effect["target"] == "surge":
         if said in ("added_mass[sway]", "added_mass[heave]", "payload_change"):
             return "weightless extra mass has no name of its own: the library has it as added mass of an axis or as a payload"
@@ -78,6 +83,13 @@ def alias(effect: Row, cause: Said) -> str | None:
     elif effect["name"] in SAME_INERTIA and effect["target"] in ("roll", "pitch", "yaw") and said == SAME_INERTIA[effect["name"]] + on:
         return "about an axis of rotation the motion shows the sum of inertia and added inertia and nothing of either"
     return None
+
+
+def _together(true: str, said: str) -> bool:
+    """Whether two names are of one effect, one of them on a group of axes of which the other is one."""
+    (name, _, one), (other, _, two) = (x.rstrip("]").partition("[") for x in (true, said))
+    groups = effects.load(name).groups if name == other and name in effects.names() else {}
+    return one in groups.get(two, ()) or two in groups.get(one, ())
 
 
 def axes(effect: Row, vehicle: Path) -> set[str]:

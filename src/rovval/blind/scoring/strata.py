@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from rovval.blind.cases.grid import lasting
+from rovval.blind.scoring import ground_truth
 
-RICH = ("rich", "steps", "protocol")
-POOR = ("survey", "station", "yoyo")
+RICH = ("rich", "steps", "protocol", "joystick", "square", "pirouette")  # missions of both plants that move the vehicle on all axes
 MAGNITUDES = ((1.25, "about 1"), (1.6, "about 1.5"), (float("inf"), "about 2"))  # upper end of |severity|, in words
 DISTINGUISHABLE = 0.10  # share of the gap that the oracle must close for an effect to be called distinguishable
 
@@ -21,7 +21,7 @@ def strata(label: Mapping[str, Any], best: Mapping[str, float]) -> list[str]:
         return ["left out", *seen]
     if not effects:
         return ["null", f"null, {mission}"]
-    if any(e["place"] == "foreign" for e in effects):
+    if any(ground_truth.foreign(e) for e in effects):
         return ["foreign"] if len(effects) == 1 else ["foreign with others"]
     if len(effects) > 1:
         several = {2: "two", 3: "three"}.get(len(effects), "many")

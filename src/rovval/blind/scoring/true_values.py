@@ -71,5 +71,8 @@ def true_values(effect: Mapping[str, Any], vehicle: Vehicle) -> dict[str, float]
     if row is None:
         return {}
     bounds = {p.name: (p.low, p.high) for p in effects.load(effect["name"]).parameters if not p.sized}
-    found = {k: float(x) for k, x in row(effect["values"], str(effect["target"]), vehicle).items()}
+    try:
+        found = {k: float(x) for k, x in row(effect["values"], str(effect["target"]), vehicle).items()}
+    except KeyError:  # a plant whose form has no such number does not state it
+        return {}
     return {k: x for k, x in found.items() if bounds.get(k, (x, x))[0] <= x <= bounds.get(k, (x, x))[1]}

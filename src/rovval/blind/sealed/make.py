@@ -14,6 +14,7 @@ from typing import Any
 
 from rovval.blind.cases import generate
 from rovval.blind.cases.questions import Question, questions
+from rovval.blind.plant.spec import PlantName
 from rovval.blind.sealed import sealing
 from rovval.blind.sealed.folder import MANIFEST, Folder, write
 from rovval.core.errors import UsageProblem
@@ -28,6 +29,9 @@ def make_set(
     seed: int | None = None,
     size: str = "full",
     *,
+    plant: PlantName = "a",
+    healthy: float | None = None,
+    seconds: float | None = None,
     asked: Sequence[Question] | None = None,
     key: Path | None = None,
     workers: int = 2,
@@ -35,13 +39,14 @@ def make_set(
 ) -> Folder:
     """Make the set in ``root``, which must not hold one. Without a seed one is drawn, and sealed with the labels.
 
+    ``plant``, ``healthy`` and ``seconds`` as `questions` takes them;
     ``asked`` gives the questions outright. Equal seeds give equal logs; names and seal differ each time.
     """
     place = Folder(root)
     if root.exists() and any(root.iterdir()):
         raise UsageProblem(f"{root} is not empty", "give a new folder; a sealed set is never made over another")
     drawn = secrets.randbits(31) if seed is None else seed
-    chosen = list(asked) if asked is not None else questions(vehicle, drawn, size)
+    chosen = list(asked) if asked is not None else questions(vehicle, drawn, size, plant, healthy, seconds)
     secret = sealing.new_key(key or place.key)
     place.logs.mkdir(parents=True)
     files = sorted(f"{secrets.token_hex(6)}.csv" for _ in chosen)
@@ -56,12 +61,12 @@ def make_set(
     if not flown:
         raise UsageProblem(f"{root}: every flight failed: {next(iter(labels.values()))['failed']}", "check the vehicle file")
     _equalise([place.logs / name for name in flown])
-    text = {"schema": "rovval.blind-labels/1", "vehicle": vehicle.stem, "seed": drawn, "size": size, "logs": flown}
+    text = {"schema": "rovval.blind-labels/1", "vehicle": vehicle.stem, "plant": plant, "seed": drawn, "size": size, "logs": flown}
     text["failed"] = [label for label in labels.values() if "failed" in label]
     place.labels.write_bytes(sealing.seal(json.dumps(text).encode(), secret))
     rows = {name: {"sha256": sealing.digest(place.logs / name), "without": label["without"]} for name, label in flown.items()}
     write(root / "manifest.json", {
-        "schema": MANIFEST, "made": now(), "vehicle": str(vehicle), "model": "fossen", "count": len(rows),
+        "schema": MANIFEST, "made": now(), "vehicle": str(vehicle), "plant": plant, "model": "fossen", "count": len(rows),
         "labels_sha256": sealing.digest(place.labels), "logs": rows,
     })  # fmt: skip
     return place
