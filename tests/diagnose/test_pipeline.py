@@ -101,13 +101,13 @@ def test_a_healthy_log_has_no_gap_and_nothing_to_mend():
     found = diagnosed()
     assert found.document()["verdict"] == "no_gap"
     assert found.document()["causes"] == [] and found.settings == () and found.vehicle_fixed == ""
-    assert "No gap beyond noise" in written(found)["sentence"]
+    assert "No gap beyond sensor noise" in written(found)["sentence"]
 
 
 def test_a_gap_of_no_known_effect_is_unknown_and_blamed_on_nothing():
     document = written(strange())
     assert document["verdict"] == "unknown" and document["causes"] == []
-    assert document["gap"]["axes"]["surge"]["share"] > 0.8 and "Unknown effect" in document["sentence"]
+    assert document["gap"]["axes"]["surge"]["share"] > 0.8 and "There is a gap" in document["sentence"]
 
 
 def test_the_mended_vehicle_closes_the_gap_that_compare_sees():

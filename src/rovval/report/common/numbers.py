@@ -74,8 +74,8 @@ def share(total: float | None, low: float | None = None, high: float | None = No
 
 
 def probability(value: float) -> str:
-    """A probability that no rounding makes certain: 0.71, > 0.99."""
-    return "> 0.99" if value > 0.99 else f"{value:.2f}"
+    """A probability that no rounding makes certain: 0.71, > 0.99, < 0.01."""
+    return "> 0.99" if value > 0.99 else "< 0.01" if value < 0.01 else f"{value:.2f}"
 
 
 def duration(seconds: float) -> str:

@@ -6,6 +6,7 @@ A template (``templates/*.html``, Jinja2) holds all the HTML of its page; what i
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
@@ -13,12 +14,14 @@ from typing import Any
 from urllib.parse import quote
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from rovval.core.units import DEGREE_UNITS, DEGREES, integral_unit
 from rovval.report.common import numbers
+from rovval.report.common.glossary import TERMS
 
 ROOM = Path(__file__).parent.parent
+EXPLAINED = ("comparison.html", "diagnosis.html")  # pages that end with the meaning of their words
 FORMATS = (numbers.number, numbers.signed, numbers.quantity, numbers.interval, numbers.per_cent, numbers.per_cents, numbers.share,
            numbers.probability, numbers.duration, numbers.listed)  # fmt: skip
 
@@ -26,7 +29,8 @@ FORMATS = (numbers.number, numbers.signed, numbers.quantity, numbers.interval, n
 def render(template: str, curves: Mapping[str, Any] | None = None, **data: Any) -> str:
     """The whole document of ``templates/<template>`` filled with ``data``. ``curves`` is what the script draws (see `curves.plot`); a page without
     any has no script. A name that the template uses and ``data`` lacks is an error."""
-    return _environment().get_template(template).render(curves=None if curves is None else _json(curves), **data)
+    words = TERMS if template in EXPLAINED else {}
+    return _environment().get_template(template).render(curves=None if curves is None else _json(curves), glossary=words, **data)
 
 
 @cache
@@ -34,9 +38,14 @@ def _environment() -> Environment:
     environment = Environment(
         loader=FileSystemLoader(ROOM / "templates"), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
-    environment.filters |= {f.__name__: f for f in FORMATS} | {"path": quote}
+    environment.filters |= {f.__name__: f for f in FORMATS} | {"path": quote, "code": _code}
     environment.globals |= {"asset": _asset, "MISSING": numbers.MISSING, "DEGREES": DEGREES, "DEGREE_UNITS": DEGREE_UNITS, "integral_unit": integral_unit}
     return environment
+
+
+def _code(words: str) -> Markup:
+    """Words in which what stands between backticks is typed."""
+    return Markup(re.sub("`([^`]*)`", r"<code>\1</code>", str(escape(words))))
 
 
 @cache

@@ -14,6 +14,7 @@ from rovval.report.common import curves
 from rovval.report.common.curves import Place
 from rovval.report.common.drawing import Box, Dot, Drawing, Line, Shape, Text
 from rovval.report.common.numbers import estimate, per_cent
+from rovval.report.diagnosis import plain
 from rovval.report.diagnosis.tables import MOST_RANKED
 from rovval.report.diagnosis.words import group
 
@@ -43,7 +44,7 @@ def heat_map(heat: HeatMap) -> Heat:
     rows = []
     for j, regime in enumerate(heat.regimes):
         cells = [Cell(per_cent(share[j]), f"x {lift[j]:.1f}", _alpha(share[j], top)) for share, lift in zip(heat.share, heat.lift, strict=True)]
-        rows.append((regime, cells))
+        rows.append((plain.regime(regime), cells))
     return Heat(heat.axes, rows)
 
 

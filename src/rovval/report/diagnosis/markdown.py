@@ -18,28 +18,33 @@ from rovval.report.common.numbers import (
     quantity,
 )
 from rovval.report.diagnosis import recalibration, tables, words
-from rovval.report.diagnosis.sentence import facts, headline, next_flight
+from rovval.report.diagnosis.first_screen import first_screen
+from rovval.report.diagnosis.plain import left_of, titled
+from rovval.report.diagnosis.sentence import also, answer, facts
 
 
 def text(d: Diagnosis) -> str:
     """The whole report."""
-    said = headline(d)
+    said = first_screen(d)
     parts = [f"# {d.run}: diagnosis", f"> **SYNTHETIC DATA: {d.synthetic}**" if d.synthetic else ""]
-    parts += [f"**{said[0]}**", *said[1:], bullets(f"{k}: {v}" for k, v in facts(d).items() if v)]
+    named = {"Where": said.where, "Which": said.which, "How far": said.how_far, "Next": said.next}
+    parts += [f"**{answer(d)}**", bullets(f"**{k}:** {v}" for k, v in named.items() if v), *also(d)]
+    parts += [bullets(f"{k}: {v}" for k, v in facts(d).items() if v)]
     parts += under("Where the gap lies", _axes(d), bullets(words.where(d, 99)), words.changes(d), words.disturbances(d))
     for cause in d.causes:
-        parts += under(f"Cause: {' or '.join(f'`{e}`' for e in words.group(cause))}", *_cause(cause, d.gap.axes))
-    parts += under("How probable", bullets(tables.models(d)))
+        parts += under(f"Cause: {' or '.join(titled(e) for e in words.group(cause))}", *_cause(cause, d.gap.axes))
+    models = [[kind, probability(p)] for kind, p in tables.models(d)]
+    parts += under("How probable", grid(["what makes the gap", "probability"], models) if models else "")
     parts += under(recalibration.TITLE, *_calibration(d))
     for title, candidates in tables.steps(d):
-        rows = [[f"`{c.effect}`", per_cent(c.gain), number(c.evidence, 2)] for c in candidates]
-        parts += under(f"Weighed by re-simulation: {title}", grid(["effect", "reduction of the squared gap", "evidence"], rows))
-    ranking = [[f"`{r.effect}`", number(r.score, 2)] for r in d.ranking[: tables.MOST_RANKED]]
-    parts += under("Screen of the library", grid(["effect", "score"], ranking) if ranking else "")
+        rows = [[titled(c.effect), left_of(c.gain), number(c.evidence, 2)] for c in candidates]
+        parts += under(f"Effects tried by simulation: {title}", grid(["effect", "what is left of the error", "evidence"], rows))
+    ranking = [[titled(r.effect), number(r.score, 2)] for r in d.ranking[: tables.MOST_RANKED]]
+    parts += under("First look at the library", grid(["effect", "score"], ranking) if ranking else "")
     parts += under("Sensors, by kinematics alone", _parity(d))
     parts += under("What gets worse", bullets(tables.harm(d)))
     flight = d.manoeuvre
-    parts += under("What to fly next", next_flight(d), flight.text if flight else "", _schedule(flight.schedule) if flight else "")
+    parts += under("What to fly next", flight.text if flight else "", _schedule(flight.schedule) if flight else "")
     parts += under("Not testable in this log", bullets(f"`{names}`: {why}" for names, why in tables.not_testable(d)))
     return "\n\n".join(p for p in [*parts, f"*{words.SCOPE} {words.SQUARED}*"] if p) + "\n"
 
@@ -62,8 +67,8 @@ def _cause(cause: Cause, gap: Mapping[str, AxisGap]) -> list[str]:
 def _gains(s: Shrinkage, gap: Mapping[str, AxisGap]) -> str:
     """Axis by axis, what becomes of the squared error."""
     spans = {axis: per_cents(i.low, i.high) for axis, i in s.axes_interval.items()}
-    rows = [[axis, per_cent(v), spans.get(axis, MISSING), words.rms_change(gap.get(axis), v)] for axis, v in s.axes.items()]
-    return grid(["axis", "squared gap less by", "interval", "rms"], rows) if rows else ""
+    rows = [[axis, words.rms_change(gap.get(axis), v), left_of(v), per_cent(v), spans.get(axis, MISSING)] for axis, v in s.axes.items()]
+    return grid(["axis", "error, rms", "left of it", "its square less by", "interval"], rows) if rows else ""
 
 
 def _calibration(d: Diagnosis) -> list[str]:

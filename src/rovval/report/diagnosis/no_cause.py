@@ -1,13 +1,13 @@
-"""What is said where no cause is named: what the sensors' own check shows, what came nearest to a cause, and what is left unexplained."""
+"""What is said where no cause is named: why not, what came nearest to one, what the sensors' own check shows, and what is left unexplained."""
 
 from __future__ import annotations
 
-from rovval.diagnose.criteria import LEAST_EVIDENCE
 from rovval.diagnose.result.diagnosis import Diagnosis, Unexplained
-from rovval.report.common.numbers import listed, number, per_cent
+from rovval.report.common.numbers import listed, number, per_cent, probability
+from rovval.report.diagnosis.plain import falls, titled
 from rovval.report.diagnosis.words import parameter, sensor_tolerance
 
-NOISE = "noise"
+NOISE = "sensor noise"
 
 
 def undecided(d: Diagnosis) -> bool:
@@ -16,14 +16,26 @@ def undecided(d: Diagnosis) -> bool:
 
 
 def nothing(d: Diagnosis) -> str:
-    """That no gap is claimed, and what was seen all the same: what the sensors' own check shows, and what came nearest to a cause."""
-    known, sensors, near = _known(d), _sensors(d), _near(d)
-    if near or sensors:
-        first = f"No gap beyond {known} is shown in the simulated motion"
-        sensors = sensors and f"{', but' if undecided(d) else ';'} {sensors}"
-    else:
-        first = f"No gap beyond {known}: no effect of the library explains anything that {known} {'does' if known == NOISE else 'do'} not"
-    return f"{first}{sensors}.{f' {near}.' if near else ''}"
+    """That no gap is claimed, and how sure that is."""
+    sure = f" (probability {probability(d.probabilities.healthy)})" if d.probabilities else ""
+    seen = " A sensor, or an effect that came near, deserves a look." if undecided(d) else ""
+    return f"No gap beyond {known(d)}{sure}: nothing in this log asks for a cause.{seen}" if not seen else f"No gap beyond {known(d)} is shown{sure}.{seen}"
+
+
+def unknown(d: Diagnosis) -> str:
+    """Why no cause is named though there is a gap: the kind of model that is the most probable, or a log that contradicts itself."""
+    opposed = [row for row in d.log if row.finding == "contradicted"]
+    p = d.probabilities
+    kinds = {} if p is None else {"causes": p.causes, "healthy": p.healthy, "file": p.miscalibrated_file, "else": p.something_else}
+    likely = max(kinds, key=lambda kind: kinds[kind], default="")
+    sure = f" (probability {probability(kinds[likely])})" if likely else ""
+    if opposed and likely in ("causes", ""):
+        return f"No cause is named, because the log contradicts itself: {opposed[0].channel} {opposed[0].detail}."
+    if d.left and d.left.accounted is not None:
+        return f"There is a gap that nothing here explains: {known(d)} account for only {per_cent(d.left.accounted)} of it, and no effect for the rest."
+    if likely == "file":
+        return f"No single cause: many numbers of the vehicle's file seem to be off at once{sure}."
+    return f"There is a gap, and no effect of the library is its cause: something else is at work{sure}{_acting(d.left)}."
 
 
 def unexplained(d: Diagnosis) -> str:
@@ -33,16 +45,57 @@ def unexplained(d: Diagnosis) -> str:
     return d.left.text or (_force(d.left) if d.left.accounted is None else _open(d, d.left.accounted))
 
 
+def nearest(d: Diagnosis) -> str:
+    """The effect that came nearest to a cause, and by how much it is less probable than what is believed; empty where none came near."""
+    if d.left and d.left.inconstant:
+        return f"Nearest: {listed(titled(name) for name in d.left.inconstant)}, but the size would have to change along the log."
+    if d.left and d.left.departed:
+        off = abs(d.left.departed.departure)
+        return f"Nearest: {d.left.departed.coefficient}, which would have to be {off:.0f} times its tolerance off."
+    best = d.indications.nearest if d.indications else None
+    if best is None:
+        return ""
+    less = f", but all causes together have a probability of only {probability(d.probabilities.causes)}" if d.probabilities else ""
+    return f"Nearest to a cause is {titled(best.effect)}: with it the error {falls(best.gain)}{less}."
+
+
+def sensors(d: Diagnosis) -> str:
+    """What the sensors' own check shows, without any dynamics; empty where it shows nothing."""
+    fault = d.indications.fault if d.indications else None
+    if d.indications is None or fault is None:
+        return ""
+    times, name = d.indications.fault_departure, fault.fault or fault.check
+    beyond = f", {number(times, 2)} times its tolerance" if times > 1.0 else ", within its tolerance" if sensor_tolerance(name) else ""
+    return f"The sensors disagree among themselves: {parameter(name, fault)}{beyond}."
+
+
+def next_step(d: Diagnosis) -> str:
+    """What to do where no cause is named."""
+    if any(row.finding == "contradicted" for row in d.log):
+        return "Check that sensor, or give a log in which it agrees with itself."
+    if undecided(d):
+        return "Check the sensor, or fly longer: more data decides."
+    if d.verdict == "no_gap":
+        return ""
+    p = d.probabilities
+    if p and p.miscalibrated_file >= max(p.healthy, p.causes, p.something_else):
+        return "Calibrate the vehicle's file with `rovval fit` and diagnose again."
+    return "Look at the worst stretches below; log what nobody logged (tether, current), or fly the same again."
+
+
+def known(d: Diagnosis) -> str:
+    """What a gap may be without any cause."""
+    return f"{NOISE} and a calibration tolerance of {per_cent(d.calibration_slop)}" if d.calibration_slop else NOISE
+
+
+def _acting(left: Unexplained | None) -> str:
+    return f", most in {listed(left.axes)}" if left and left.axes else ""
+
+
 def _force(left: Unexplained) -> str:
-    text = f"a systematic force on {', '.join(left.axes)}"
-    text += f" that varies with {', '.join(left.depends_on)}" if left.depends_on else ""
-    text += f" would take away {per_cent(left.share)} of it" if left.share >= 0.005 else " is at work"
-    text += "; no effect of the library is shown to be it"
-    if left.inconstant:
-        return f"{text}; nearest is {listed(left.inconstant)}, whose value would have to change along the log"
-    if left.departed:
-        return f"{text}; nearest is {left.departed.coefficient}, which would have to be {abs(left.departed.departure):.0f} times its tolerance off"
-    return text
+    text = f"a force in {listed(left.axes)} that nothing in the library explains"
+    text += f"; it varies with {listed(left.depends_on)}" if left.depends_on else ""
+    return text + (f", and a formula for it would bring the error to {falls(left.share).rpartition('to ')[2]}" if left.share >= 0.005 else "")
 
 
 def _open(d: Diagnosis, accounted: float) -> str:
@@ -50,18 +103,10 @@ def _open(d: Diagnosis, accounted: float) -> str:
     found, beyond = d.detection, ""
     if found and accounted < found.noise + found.tolerance_share - 1e-9:  # the tolerances were overdrawn: they were not counted
         beyond = f" (for {per_cent(found.tolerance_share)} if a coefficient were {found.largest_departure:.1f} times its tolerance off)"
-    text = (
-        f"{_known(d)} account for only {per_cent(accounted)} of the squared gap{beyond}: no effect of the library and no smooth force is shown to be "
-        f"the rest. It may be a disturbance{_largest(d)}, an effect in events, or motion that this log shows too little of"
+    return (
+        f"{known(d)} account for only {per_cent(accounted)} of the squared gap{beyond}; no effect of the library and no smooth force is shown to be "
+        f"the rest. It may be a disturbance{_largest(d)}, an effect that comes and goes, or motion that this log shows too little of"
     )
-    sensors, near = _sensors(d), _near(d)
-    text += f". {sensors[0].upper()}{sensors[1:]}" if sensors else ""
-    return f"{text}. {near}" if near else text
-
-
-def _known(d: Diagnosis) -> str:
-    """What a gap may be without any cause."""
-    return f"{NOISE} and a calibration tolerance of {per_cent(d.calibration_slop)}" if d.calibration_slop else NOISE
 
 
 def _largest(d: Diagnosis) -> str:
@@ -70,24 +115,3 @@ def _largest(d: Diagnosis) -> str:
     most = [max(same, key=lambda row: row[1].rms) for unit in ("N", "N m") if (same := [row for row in rows if row[1].unit == unit])]
     said = listed(f"{axis} {number(p.rms, 2)} {p.unit}" for axis, p in most)
     return f" that nobody logged (the fit allows for some, largest: {said} rms)" if said else ""
-
-
-def _near(d: Diagnosis) -> str:
-    best = d.indications.nearest if d.indications else None
-    if d.indications is None or best is None:
-        return ""
-    lacks = {
-        "evidence": f"its evidence of {best.evidence:.1f} is short of the {LEAST_EVIDENCE:g} asked for",
-        "reduction": f"coefficients within their tolerances take away {per_cent(d.indications.within_tolerance)}",
-    }
-    why = ", and ".join(lacks[lack] for lack in best.lacks) or "it does not pass all the checks that a cause must pass"
-    return f"Nearest to a cause, and not shown to be one, is {best.effect}: by itself it would shrink the squared gap by {per_cent(best.gain)}, but {why}"
-
-
-def _sensors(d: Diagnosis) -> str:
-    fault = d.indications.fault if d.indications else None
-    if d.indications is None or fault is None:
-        return ""
-    times, name = d.indications.fault_departure, fault.fault or fault.check
-    beyond = f", {number(times, 2)} times its tolerance" if times > 1.0 else ", within its tolerance" if sensor_tolerance(name) else ""
-    return f"the sensors' own check, without any dynamics, shows {parameter(name, fault)}{beyond}"

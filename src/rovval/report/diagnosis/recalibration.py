@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from rovval.diagnose.result.diagnosis import Coefficient, Diagnosis, Recalibration
-from rovval.report.common.numbers import per_cent, share
+from rovval.report.common.numbers import share
+from rovval.report.diagnosis.plain import falls, falls_to
 from rovval.report.diagnosis.words import parameter
 
 TITLE = "Many coefficients off at once"
 LEAD = "Not a cause: a badly calibrated vehicle file, or an effect that the library lacks and that many coefficients imitate."
-WRITE = "Write that vehicle and diagnose again with it; `rovval fit` tells a larger shrinkage, along the tangent of one fit to everything:"
+WRITE = "Write that vehicle and diagnose again with it; the shrinkage that `rovval fit` tells is a little larger, as it is of one fit to everything:"
 MOST = 3  # coefficients that fit a sentence
 
 
@@ -20,10 +21,10 @@ def sentence(d: Diagnosis) -> str:
     most = ", ".join(f"{parameter(name, found.parameters[name])} ({times(found.parameters[name])})" for name in found.beyond[:MOST])
     beside = ", ".join(c.effect for c in d.causes)
     tuned = f"{len(found.parameters)} parameters tuned jointly{f', {beside} among them,' if beside else ''}"
-    worse = ", ".join(f"{h.axis} by {per_cent(h.change)}" for h in found.harm)
+    worse = ", ".join(f"in {h.axis} it {falls(-h.change)}" for h in found.harm)
     return (
         f"No one effect{' is shown to explain the rest' if beside else ''}: {len(found.beyond)} coefficients of the vehicle's file are off at once, "
-        f"most of all {most}. With {tuned} the squared gap shrinks by {_share(found)} {held_out(found)}{f' (worse: {worse})' if worse else ''}. "
+        f"most of all {most}. With {tuned} the error {falls_to(found.shrinkage)} {held_out(found)}{f' (worse: {worse})' if worse else ''}. "
         "This may be a badly calibrated file, or an effect that the library lacks and that many coefficients imitate: write that vehicle with "
         "`rovval fit` (the command stands in the report) and diagnose again."
     )
@@ -31,7 +32,7 @@ def sentence(d: Diagnosis) -> str:
 
 def far(found: Recalibration) -> str:
     """How far the gap shrinks with all of them."""
-    return f"Tuned jointly, the squared gap shrinks by {_share(found)} {held_out(found)}."
+    return f"Tuned jointly, the error {falls_to(found.shrinkage)} {held_out(found)} (its square shrinks by {_share(found)})."
 
 
 def off_by(row: Coefficient) -> str:

@@ -6,13 +6,15 @@ import re
 from collections.abc import Sequence
 
 from rovval.diagnose.result.diagnosis import Candidate, Diagnosis
-from rovval.report.common.numbers import per_cent, probability
+from rovval.report.common.numbers import per_cent
+from rovval.report.diagnosis.plain import falls
 
 MOST_CANDIDATES, MOST_RANKED = 8, 16  # of a step of the search, of the screen
 WEIGHED = (
-    "Each was fitted by re-simulation. Bar: the share by which it reduces the squared gap on held-out windows. Evidence: twice the log Bayes factor."
+    "Each effect was simulated with the values that suit this log best. Error: what is left of it (rms) on data not used for the fit. Evidence: how much more "
+    "likely the log is with the effect than without, as twice the natural logarithm of the ratio; above 10 is very strong."
 )
-SCREEN = "Score: the share by which an effect reduces the squared gap on held-out windows, linearised"
+SCREEN = "A first look at all effects, by a straight-line approximation. Score: the share of the squared error that an effect would take away"
 _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 
 
@@ -30,7 +32,7 @@ def screen(d: Diagnosis) -> str:
 
 def harm(d: Diagnosis) -> list[str]:
     """Axes that get worse with the causes."""
-    return [f"{h.axis}: the squared error grows by {per_cent(h.change)} with the effects found" for h in d.harm]
+    return [f"{h.axis}: with the effects found, the error {falls(-h.change)}" for h in d.harm]
 
 
 def not_testable(d: Diagnosis) -> list[tuple[str, str]]:
@@ -56,12 +58,12 @@ def _ranges(reasons: Sequence[str]) -> str:
     return _NUMBER.sub(lambda _: next(spans), reasons[0])
 
 
-def models(d: Diagnosis) -> list[str]:
-    """How probable each kind of model is that was compared; none in a document of before they were written."""
+def models(d: Diagnosis) -> list[tuple[str, float]]:
+    """How probable each kind of model is that was compared, the most probable first; none in a document of before they were written."""
     if d.probabilities is None:
         return []
     kinds = {
-        "causes": "causes of the library", "healthy": "a vehicle as its file has it, within tolerance",
-        "miscalibrated_file": "a file that is off in many numbers", "something_else": "something that the library does not hold",
+        "causes": "one or more effects of the library", "healthy": "nothing: the vehicle is as its file has it, each number within its tolerance",
+        "miscalibrated_file": "a vehicle file that is off in many numbers at once", "something_else": "something that the library does not hold",
     }  # fmt: skip
-    return [f"{kinds[kind]}: {probability(p)}" for kind, p in sorted(d.probabilities.model_dump().items(), key=lambda item: -item[1])]
+    return [(kinds[kind], p) for kind, p in sorted(d.probabilities.model_dump().items(), key=lambda item: -item[1])]

@@ -8,9 +8,10 @@ from rovval import effects
 from rovval.core.units import in_degrees
 from rovval.diagnose.result.diagnosis import AxisGap, Cause, Coefficient, Diagnosis, GapSlice, Parameter, SensorFault, Shrinkage
 from rovval.report.common.numbers import MISSING, estimate, number, per_cent, share
+from rovval.report.diagnosis.plain import falls_to, regime, remaining
 
 SCOPE = "Every number is about this simulator, this log and this library of effects."
-SQUARED = "Shares of the gap, and by how much it shrinks, are of squared errors: 75 % less is half the rms."
+SQUARED = "Errors are told as rms. Shares of the gap are of squared errors, which add up: an error that falls to a half leaves a quarter of them."
 UNMOVED = 0.005  # of the squared gap: a change that rounds to nothing
 
 
@@ -45,15 +46,15 @@ def alone(cause: Cause) -> str:
     if not unmoved(cause.shrinkage):
         return ""
     if sensor_tolerance(cause.effect) is not None:
-        return "seen by the kinematic checks alone; it does not change the simulated motion"
-    return "by itself it leaves the squared gap as it is"
+        return "it is seen by the sensors' own check and does not change the simulated motion"
+    return "by itself it changes the simulated motion too little to see"
 
 
 def shrinks(cause: Cause) -> str:
-    """By how much the squared gap shrinks with a cause, or that it stays as it is."""
+    """To what the error falls with a cause by itself and by how much its square, or that it stays as it is."""
     s = cause.shrinkage
-    held = " on held-out windows" if s.held_out else ""
-    return alone(cause) or f"the squared gap shrinks by {share(s.total, s.low, s.high)}{held}"
+    held = " on data left out of the fit" if s.held_out else ""
+    return alone(cause) or f"by itself, the error {falls_to(s)}{held} (its square shrinks by {share(s.total, s.low, s.high)})"
 
 
 def rms_change(axis: AxisGap | None, less: float) -> str:
@@ -61,17 +62,17 @@ def rms_change(axis: AxisGap | None, less: float) -> str:
     if axis is None:
         return MISSING
     before, unit = in_degrees(axis.rms, axis.unit)
-    return f"{number(before, 2)} to {number(before * max(1.0 - less, 0.0) ** 0.5, 2)} {unit}"
+    return f"{number(before, 2)} to {number(before * remaining(less), 2)} {unit}"
 
 
 def where(diagnosis: Diagnosis, most: int = 5) -> list[str]:
     """The slices of axis and regime that matter most, the worst first."""
-    return [f"{gap_slice(s)} (lift {number(s.lift, 2)})" for s in diagnosis.gap.where[:most]]
+    return [gap_slice(s) for s in diagnosis.gap.where[:most]]
 
 
 def gap_slice(s: GapSlice) -> str:
-    """68 % of the yaw gap is at |r| > 3.6 deg/s, 21 % of the time."""
-    return f"{per_cent(s.share)} of the {s.axis} gap is at {s.regime}, {per_cent(s.time_share)} of the time"
+    """68 % of the yaw gap arises when turning faster than 3.6 deg/s, in 21 % of the time."""
+    return f"{per_cent(s.share)} of the {s.axis} gap arises when {regime(s.regime)}, in {per_cent(s.time_share)} of the time"
 
 
 def changes(diagnosis: Diagnosis) -> str:
@@ -83,5 +84,5 @@ def changes(diagnosis: Diagnosis) -> str:
 def disturbances(diagnosis: Diagnosis) -> str:
     """The forces that nobody logged, as large as every fit allows for; empty where none was fitted."""
     rows = [(axis, p) for axis, p in diagnosis.disturbance.items() if p.rms > 0.0]
-    said = [f"{axis} {number(p.rms, 2)} {p.unit} (correlation time {number(p.memory_s, 2)} s)" for axis, p in rows]
-    return f"Unlogged disturbances that the fit allows for, rms: {', '.join(said)}." if said else ""
+    said = [f"{axis} {number(p.rms, 2)} {p.unit} ({number(p.memory_s, 2)} s)" for axis, p in rows]
+    return f"Forces that nobody logged, as large as every fit allows for (rms; in brackets how long one lasts): {', '.join(said)}." if said else ""

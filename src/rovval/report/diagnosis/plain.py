@@ -1,0 +1,63 @@
+"""What the diagnosis calls things, in words that need no statistics: an effect by its title, a regime by what the vehicle does, an error by its rms."""
+
+from __future__ import annotations
+
+import re
+
+from rovval import effects
+from rovval.diagnose.result.diagnosis import Reduction
+from rovval.report.common.numbers import MISSING, per_cent, per_cents
+
+# a velocity: what the vehicle does when it is positive, negative, of either sign, and small
+MOVING = {
+    "u": ("moving ahead faster than", "moving astern faster than", "moving ahead or astern faster than", "moving ahead or astern slower than"),
+    "v": ("moving to starboard faster than", "moving to port faster than", "moving sideways faster than", "moving sideways slower than"),
+    "w": ("moving down faster than", "moving up faster than", "moving up or down faster than", "moving up or down slower than"),
+    "r": ("turning to starboard faster than", "turning to port faster than", "turning faster than", "turning slower than"),
+}
+_LEVEL = re.compile(r"(\|?)([uvwr])\|? ([<>]) -?([\d.e-]+ \S+)")
+
+
+def title(name: str) -> str:
+    """Axial inflow loss; the name itself of what is not in the library."""
+    effect = name.partition("[")[0].partition(".")[0]
+    return effects.load(effect).title if effect in effects.names() else name
+
+
+def titled(name: str) -> str:
+    """Linear drag differs (linear_drag[yaw])."""
+    said = title(name)
+    return said if said == name else f"{said} ({name})"
+
+
+def regime(name: str) -> str:
+    """When: "u > 0.33 m/s" as moving ahead faster than 0.33 m/s."""
+    found = _LEVEL.fullmatch(name)
+    if not found:
+        return name.replace("time ", "from ", 1) if name.startswith("time ") else name
+    either, channel, sign, level = found.groups()
+    kind = (3 if sign == "<" else 2) if either else 0 if sign == ">" else 1
+    return f"{MOVING[channel][kind]} {level}"
+
+
+def remaining(share: float) -> float:
+    """The part of an rms error that is left when the share ``share`` of its square is gone."""
+    return max(1.0 - share, 0.0) ** 0.5
+
+
+def falls(share: float, low: float | None = None, high: float | None = None) -> str:
+    """falls to 33 % [30, 37]: the rms error when the share ``share`` [low, high] of its square is gone; grows where it does."""
+    verb = "grows" if share < 0 else "falls"
+    if low is None or high is None:
+        return f"{verb} to {per_cent(remaining(share))}"
+    return f"{verb} to {per_cent(remaining(share))} {per_cents(remaining(high), remaining(low)).removesuffix(' %')}"
+
+
+def falls_to(s: Reduction) -> str:
+    """The same of a reduction with its interval."""
+    return falls(s.total, s.low, s.high)
+
+
+def left_of(share: float | None) -> str:
+    """33 %: what is left of an rms error."""
+    return MISSING if share is None else per_cent(remaining(share))
