@@ -94,7 +94,7 @@ def test_a_planted_effect_is_named_with_its_size():
     assert cause["effect"] == "inflow_loss"
     assert cause["parameters"]["loss"]["low"] <= 0.3 <= cause["parameters"]["loss"]["high"]
     assert cause["shrinkage"]["total"] > 0.9
-    assert "inflow_loss" in written(found)["sentence"] and "held-out" in written(found)["sentence"]
+    assert "inflow_loss" in written(found)["sentence"] and "unused data" in written(found)["sentence"]
 
 
 def test_a_healthy_log_has_no_gap_and_nothing_to_mend():
