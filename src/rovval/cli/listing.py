@@ -175,7 +175,7 @@ def _effect(name: str) -> Shown:
         f"literature: {'; '.join(effect.literature)}",
     ]
     lines += [f"needs: {', '.join(effect.needs)}"] if effect.needs else []
-    lines += [] if effect.competes else ["a tolerance that healthy vehicles have: a diagnosis takes it into account and never names it as a cause"]
+    lines += [effect.unnamed] if effect.unnamed else []
     lines += ["", "use: " + ", ".join(uses) + (f"  (per {effect.per}: {', '.join(target)})" if target else "")]
     return "\n".join(lines), lambda: _effect_document(effect)
 

@@ -53,7 +53,7 @@ def _contents(every: list[Effect]) -> list[str]:
 def _section(effect: Effect) -> str:
     """One effect."""
     per = {"": "", "axis": f" One for each axis ({', '.join(effect.axes)}){_together(effect)}.", "thruster": " One for each thruster."}[effect.per]
-    named = "" if effect.competes else " A tolerance of healthy vehicles: it is taken into account and never named as a cause."
+    named = f" {effect.unnamed[0].upper()}{effect.unnamed[1:]}." if effect.unnamed else ""
     needs = f" Needs {', '.join(f'`{c}`' for c in effect.needs)} in the log." if effect.needs else ""
     parts = [
         f"### {effect.name}",

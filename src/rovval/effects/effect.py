@@ -127,7 +127,7 @@ class Effect:
     - ``refines``: parameters that only refine the others, which are tried without them as well; of an effect that is also ``separable`` they say of
       one axis what the others say of all, and are tried one by one only.
     - ``far``: sizes, in typical ones, of initial points well away from the null value, of every parameter in turn.
-    - ``competes`` False: a tolerance that healthy vehicles have, which a diagnosis takes into account and never names.
+    - ``competes`` False: a diagnosis never names it; `unnamed` says why.
     - ``wanders``: its value drifts by nature, so that it does not hold still speaks in no way against it.
     - ``onset_of``: the effect that it is from an onset on.
     - ``continues``: the effect that imitates it as far as that goes, and which it exceeds (a dead thruster is one that is half reversed).
@@ -176,6 +176,15 @@ class Effect:
     def names_of(self, role: Role) -> tuple[str, ...]:
         """Names of the parameters with that role, in order."""
         return tuple(p.name for p in self.parameters if p.role == role)
+
+    @property
+    def unnamed(self) -> str:
+        """Why a diagnosis never names it; "" where it competes."""
+        if self.competes:
+            return ""
+        if any(p.tolerance for p in self.parameters):
+            return "a tolerance of healthy vehicles: a diagnosis takes it into account and never names it as a cause"
+        return "for missions and simulations: no diagnosis names it as a cause"
 
     @property
     def begins(self) -> bool:
