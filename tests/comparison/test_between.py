@@ -47,6 +47,17 @@ def test_the_claim_of_the_thesis_is_checked_and_not_assumed():
     assert "does not hold" in beyond and "surge (20 %)" in beyond
 
 
+def test_the_page_draws_both_motions_of_every_axis_and_what_lies_between_them():
+    """Under one name, too, and with an axis that one of them does not have."""
+    d = between(track("fossen"), track("fossen", surge=0.1))
+    page = report.html(d, "a log")
+    assert page.count("<svg") == 14 and "A: fossen" in page and "B: fossen" in page and report.said(d) in page
+    blind = track("B")
+    blind = Track("B", DT, np.where(np.arange(6) == 1, np.nan, blind.nu), np.full((N, 6), np.nan))
+    page = report.html(between(track("A"), blind), "a log")
+    assert page.count("<svg") == 10 and "Pose, B minus A" not in page
+
+
 def test_an_axis_that_stands_still_in_a_has_no_per_cent():
     still = Track("A", DT, np.zeros((N, 6)), np.zeros((N, 6)))
     assert between(still, track("B")).velocities["surge"].share is None

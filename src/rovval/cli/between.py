@@ -21,7 +21,7 @@ def difference(
     names: tuple[str, str], source: str | None, vehicle: str | None, effects: Sequence[str], profile: str | None,
     between: tuple[float | None, float | None], archive: Path, out: Path | None, as_json: bool, quiet: bool,
 ) -> None:  # fmt: skip
-    """B minus A on stdout; difference.json and difference.md into ``out``, where it is given."""
+    """B minus A on stdout; difference.json, .md and .html into ``out``, where it is given."""
     from rovval.comparison.between import between as subtract
 
     platforms = [name for name in names if name in complete.known("platform")]
@@ -47,7 +47,10 @@ def _told(result: Difference, what: str, out: Path | None, as_json: bool, quiet:
     if out is not None:
         import json
 
-        files = {"difference.json": json.dumps(report.document(result, what), indent=2, allow_nan=False) + "\n", "difference.md": report.markdown(result, what)}
+        files = {
+            "difference.json": json.dumps(report.document(result, what), indent=2, allow_nan=False) + "\n",
+            "difference.md": report.markdown(result, what), "difference.html": report.html(result, what),
+        }  # fmt: skip
         output.say(output.places(write_all(out, files)), quiet)
     output.result_json(report.document(result, what)) if as_json else output.result(report.text(result, what))
 

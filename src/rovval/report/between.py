@@ -1,16 +1,23 @@
-"""Simulator against simulator, as text and as JSON: B minus A of each axis."""
+"""Simulator against simulator, as text, as a page and as JSON: B minus A of each axis."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from rovval.comparison.between import RESOLUTION, ChannelDifference, Difference
-from rovval.core.units import in_degrees, integral_unit
+from rovval.core.channels import AXES, POSE
+from rovval.core.frames import wrap
+from rovval.core.units import DEGREES, in_degrees, integral_unit
+from rovval.report.common.chart import chart
+from rovval.report.common.drawing import Drawing
 from rovval.report.common.markdown import grid
 from rovval.report.common.numbers import MISSING, listed, number, per_cent
+from rovval.report.common.page import render
+from rovval.report.common.versions import versions
 
 CLAIM = 0.10  # thesis 6.1: "a 10% variation in ROV dynamics across the platforms"
 PLATFORMS = ("fossen", "uuv")  # the thesis's two: its Simulink and its ROS model
+LONGEST_LABEL = 20  # characters: two of them, and the axis, stand above a figure
 FOOT = f"of A: integral of |B - A| over that of |A|; a tie: no difference above {RESOLUTION:g} of the fastest motion of its kind, the integration's accuracy"
 HEAD = ("", "unit", "mean", "rms", "largest", "IAE", "of A", "rows", "")
 
@@ -29,6 +36,36 @@ def markdown(difference: Difference, what: str) -> str:
     """The same as Markdown."""
     d = difference
     return "\n\n".join([f"# {d.b.name} minus {d.a.name}", what, said(d), grid(HEAD, lines(d), 2), FOOT]) + "\n"
+
+
+def html(difference: Difference, what: str) -> str:
+    """The same as one page, self-contained, with the figures."""
+    a, b = difference.a, difference.b
+    return render(
+        "difference.html", title=f"{b.name} minus {a.name} · rovval", eyebrow="Simulator against simulator", name=f"{b.name} minus {a.name}", banner="",
+        said=[said(difference)], facts={"driven by": what, "A": a.name, "B": b.name, "length": f"{(len(a.nu) - 1) * a.dt:g} s"},
+        header=HEAD, rows=lines(difference), foot=FOOT, figures=figures(difference), footer=" · ".join(f"{k} {v}" for k, v in versions().items()),
+    )  # fmt: skip
+
+
+def figures(difference: Difference) -> dict[str, list[Drawing]]:
+    """Drawings by their heading: each velocity of both and what lies between them, then the differences of the pose."""
+    a, b = difference.a, difference.b
+    velocities = []
+    for j, axis in enumerate(AXES):
+        if axis in difference.velocities:
+            factor, unit = (1.0, "m/s") if j < 3 else (DEGREES, "deg/s")
+            both = {_label("A", a.name): factor * a.nu[:, j], _label("B", b.name): factor * b.nu[:, j]}
+            velocities += [chart(axis, unit, a.dt, both), chart(f"{axis}, B minus A", unit, a.dt, {"": factor * (b.nu[:, j] - a.nu[:, j])})]
+    place = {name: b.eta[:, j] - a.eta[:, j] for j, name in enumerate(("north", "east", "down")) if POSE[j] in difference.pose}
+    turn = {name: DEGREES * wrap(b.eta[:, 3 + j] - a.eta[:, 3 + j]) for j, name in enumerate(("roll", "pitch", "heading")) if POSE[3 + j] in difference.pose}
+    pose = [chart(title, unit, a.dt, curves) for title, unit, curves in (("position", "m", place), ("attitude", "deg", turn)) if curves]
+    return {title: drawings for title, drawings in (("Velocities", velocities), ("Pose, B minus A", pose)) if drawings}
+
+
+def _label(letter: str, name: str) -> str:
+    """A curve's name; a long one stands at the head of the page alone."""
+    return f"{letter}: {name}" if len(name) <= LONGEST_LABEL else letter
 
 
 def lines(difference: Difference) -> list[tuple[str, ...]]:
