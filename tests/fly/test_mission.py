@@ -48,6 +48,15 @@ def test_planned_speeds_run_linearly_between_their_rows(tmp_path):
     assert speed[40, merlin.thrusters.index("VAC")] == pytest.approx(-1.0) and not speed[:, merlin.thrusters.index("VFP")].any()
 
 
+def test_a_table_of_speeds_is_a_mission_by_itself(tmp_path):
+    """No motion, made up or measured, is asked for beside it."""
+    (tmp_path / "my plan.csv").write_text("t_s,HFP,VAC\n0,0,0\n2,120,-60\n4,120,-60\n")
+    mission, merlin = missions.load(tmp_path / "my plan.csv"), vehicle.load("merlin")
+    [phase] = lay_out(mission, merlin, thrusters_of(merlin, mission.limits))
+    assert mission.name == "my_plan" and phase.end_s == pytest.approx(4.0, abs=0.11)
+    assert phase.speed is not None and phase.speed[20, merlin.thrusters.index("HFP")] == pytest.approx(2.0)
+
+
 def test_a_wrong_table_of_speeds_is_told_with_its_lines(tmp_path):
     (tmp_path / "plan.csv").write_text("t_s,HFP,XYZ\n0,0,0\n1,fast,0\n2,0\n")
     with pytest.raises(UsageProblem) as refused:

@@ -37,8 +37,9 @@ def profiles(incomplete: str) -> list[str]:
 
 
 def missions(incomplete: str) -> list[str]:
-    """Missions that come with rovval, and TOML files."""
-    return _starting(sorted(p.stem for p in (PACKAGE / "fly/missions").glob("*.toml")), incomplete) + _paths(incomplete, ".toml")
+    """Missions that come with rovval, TOML files, and CSV files of thruster speeds."""
+    library = sorted(p.stem for p in (PACKAGE / "fly/missions").glob("*.toml"))
+    return _starting(library, incomplete) + sorted(_paths(incomplete, ".toml") + _paths(incomplete, ".csv"))
 
 
 def yaml_files(incomplete: str) -> list[str]:

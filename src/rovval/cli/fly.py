@@ -19,7 +19,10 @@ if TYPE_CHECKING:
 def command(
     mission: Annotated[
         str,
-        typer.Argument(metavar="MISSION", help="A mission file, or one that comes with rovval: protocol, steps, survey.", autocompletion=complete.missions),
+        typer.Argument(
+            metavar="MISSION", autocompletion=complete.missions,
+            help="A mission file, a CSV of t_s and each thruster's rpm, or a mission that comes with rovval: protocol, steps, survey.",
+        ),
     ],
     vehicle: Annotated[
         str | None,
@@ -58,6 +61,7 @@ def command(
       rovval fly survey --effect inflow_loss:loss=0.3 --out archive/survey
       rovval fly my_mission.toml --vehicle minerva --draws 1000
       rovval fly my_mission.toml --dry-run
+      rovval fly speeds.csv --vehicle merlin
     """
     from rovval.fly import mission as missions
     from rovval.vehicle import load

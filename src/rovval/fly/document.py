@@ -23,6 +23,7 @@ points. Units stand in the names; depth is positive down, heading from north ove
     rovval fly survey --out archive/survey         flies it; the run is a log like any other
     rovval compare archive/survey                  the simulator beside its own flight: zero, but for rounding and what the filter has wrong
     rovval fly steps --vehicle minerva --draws 1000 --effect current_constant:east=0.2
+    rovval fly speeds.csv --vehicle merlin         planned thruster speeds alone: t_s and the rpm of each thruster, as in a leg of kind "speeds"
 
 How it flies: the platform (`--model`) moves on 0.1 s at a time, thrusters turning linearly between samples. With a `[sensors]` table instruments measure
 the true motion, with noise, bias, delay and drop-outs, and an INS-like Kalman filter closes the loop and is what the run holds; without it, or with

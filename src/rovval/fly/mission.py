@@ -5,6 +5,7 @@ Units are those of the file: metres, degrees, seconds, rpm. ``docs/missions.md``
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
@@ -183,12 +184,14 @@ def names() -> tuple[str, ...]:
 
 
 def load(name_or_path: str | Path) -> Mission:
-    """A mission of the library by its name, or of a TOML file. Raises UsageProblem, which names every problem at once."""
+    """A mission of the library by its name, of a TOML file, or of a CSV of thruster speeds alone. Raises UsageProblem, which names every problem at once."""
     path = FOLDER / f"{name_or_path}.toml" if str(name_or_path) in names() else Path(name_or_path)
     if not path.is_file():
         raise UsageProblem(
             f"{name_or_path}: no such mission file", f"missions that come with rovval: {', '.join(names())}; docs/missions.md says how to write one"
         )
+    if path.suffix.lower() == ".csv":
+        return parse({"name": re.sub(r"[^A-Za-z0-9._-]", "_", path.stem), "leg": [{"kind": "speeds", "file": path.name}]}, path)
     try:
         return parse(tomllib.loads(path.read_text(encoding="utf-8")), path)
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
