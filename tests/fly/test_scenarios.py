@@ -68,8 +68,18 @@ def test_a_document_follows_the_thesis_figure_by_figure(tmp_path):
     assert (tmp_path / "two" / "scenario-2-fossen.rrd").stat().st_size > 1000
 
 
-def test_scenario_3_closes_the_loop_round_way_points():
-    checks = json.loads(run("scenario", "3", "--json").stdout)["checks"]
+@pytest.mark.parametrize(
+    ("name", "model"),
+    [("merlin", "fossen"), *(pytest.param(*both, marks=pytest.mark.slow) for both in (("merlin", "uuv"), ("minerva", "fossen"), ("bluerov2", "uuv")))],
+)
+def test_scenario_3_closes_the_loop_round_way_points(name, model):
+    checks = json.loads(run("scenario", "3", "--vehicle", name, "--model", model, "--json").stdout)["checks"]
     closed = [c for c in checks if c["expected"].startswith("closed loop")]
     assert len(closed) == 4 and all(c["holds"] for c in closed)
-    assert not [c for c in json.loads(run("scenario", "3", "--model", "uuv", "--json").stdout)["checks"] if c["expected"].startswith("closed loop")]
+
+
+def test_scenarios_4_and_5_of_another_vehicle_have_a_log_of_its_own():
+    """Synthetic, with an effect in it that the simulator beside it does not know; its name says what it is."""
+    document = json.loads(run("scenario", "5", "--vehicle", "bluerov2_heavy", "--json").stdout)
+    assert document["run"] == "SYNTHETIC_bluerov2_heavy_protocol" and document["vehicle"] == "bluerov2_heavy"
+    assert abs(document["table_6_2"]["surge"]["mean_error"]) > 1e-4

@@ -25,7 +25,10 @@ def command(
     ],
     source: Annotated[
         str | None,
-        typer.Argument(metavar="[LOG|RUN]", help="For 4 and 5. Default: the sample log.", autocompletion=complete.sources),
+        typer.Argument(
+            metavar="[LOG|RUN]", help="For 4 and 5. Default: the sample log; of another vehicle the protocol flown with sensors.",
+            autocompletion=complete.sources,
+        ),
     ] = None,
     vehicle: options.VehicleOption = None,
     model: Annotated[
@@ -64,7 +67,7 @@ def command(
         raise UsageProblem(f"scenario {number} takes no log: it commands the thrusters itself", "leave the log out")
     judged = model.value if model else THESIS[0]
     models = (judged,) if model or out is None else THESIS
-    run = _log(source, profile, archive, quiet, (start_s, end_s)) if set(numbers) & set(NEED_A_LOG) else None
+    run = _log(source, vehicle, rpm, profile, archive, quiet, (start_s, end_s)) if set(numbers) & set(NEED_A_LOG) else None
     outcomes = {(n, m): _outcome(n, vehicle, m, rpm, run) for n in numbers for m in (("",) if n == 4 else (judged,) if n == 5 else models)}
     documents = [_document(outcome) for outcome in outcomes.values()]
     if out is not None:
@@ -91,10 +94,18 @@ def _numbers(number: str) -> tuple[int, ...]:
     raise UsageProblem(f"no scenario {number!r}", "give 1 to 5, or all")
 
 
-def _log(source: str | None, profile: str | None, archive: Path, quiet: bool, between: tuple[float | None, float | None]) -> Run:
+def _log(
+    source: str | None, vehicle: str | None, rpm: float | None, profile: str | None, archive: Path, quiet: bool, between: tuple[float | None, float | None]
+) -> Run:
+    """The log that was given; else the sample dive, which is Merlin's, or the same of another vehicle. Both are synthetic."""
+    if source is not None:
+        return logs.opened(source, profile, archive, quiet, *between)
     from rovval import demo
+    from rovval.fly.scenarios.stand_in import stand_in
+    from rovval.vehicle import load
 
-    return demo.sample() if source is None else logs.opened(source, profile, archive, quiet, *between)
+    sample, nominal = demo.sample(), load(vehicle or "merlin")
+    return sample if nominal.name == sample.vehicle else stand_in(nominal, rpm)
 
 
 def _outcome(number: int, vehicle: str | None, model: str, rpm: float | None, run: Run | None) -> Outcome:

@@ -14,7 +14,6 @@ from rovval.fly.scenarios import Check, Outcome
 from rovval.fly.scenarios.speed import COUNTS, scenario_rpm
 from rovval.fly.scenarios.still_water import swim
 from rovval.fly.scenarios.way_points import closed_loop
-from rovval.plant import platforms
 from rovval.vehicle.model import Vehicle, allocation
 
 MOVE_S, REST_S = 30.0, 30.0
@@ -60,7 +59,7 @@ def movements(vehicle: Vehicle, model: str, rpm: float | None = None) -> Outcome
             said = " ".join(f"{s:+.0f}" if s else "0" for s in signs)
             checks.append(Check(f"{axis} {sign:+d}: thrusters push as in thesis 6.4", said, agrees))
         rows.append({"axis": axis, "sign": sign, "rpm": speeds[k * length].tolist(), "thrust_n": thrust.tolist(), f"reached_{unit}": reached})
-    loop, closed = ((), None) if platforms.load(model).engine else closed_loop(vehicle, model)  # thesis 4.4: way points in Simulink alone
+    loop, closed = closed_loop(vehicle, model)  # the thesis steers by way points in Simulink alone (4.4)
     return Outcome(
         3, "movement protocol in open loop, way points in closed loop", vehicle.name, model, (*checks, *loop),
         document={"thrusters": list(vehicle.thrusters), "fastest_rpm": float(np.abs(speeds).max()), "movements": rows}, motion=sim, closed=closed,
