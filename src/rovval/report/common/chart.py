@@ -13,6 +13,7 @@ from rovval.report.common.drawing import Curve, Dot, Drawing, Line, Shape, Text,
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 560.0, 200.0, 54.0, 10.0, 34.0, 24.0  # pixels
 POINTS = 350  # along the width: of what lies between two, the lowest and the highest are drawn
 LEVELS = 4  # lines across
+ROUNDING = 1e-9  # m, deg, N, rpm: what moves less lies still
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +35,7 @@ def chart(title: str, unit: str, dt: float, curves: Mapping[str, Array]) -> Draw
     known = [v[np.isfinite(v)] for v in curves.values()]
     low, high = (min((float(v.min()) for v in known if len(v)), default=0.0), max((float(v.max()) for v in known if len(v)), default=0.0))
     low, high = min(low, 0.0), max(high, 0.0)
-    step = round_up(max(high - low, 1e-12) / LEVELS)
+    step = round_up((high - low if high - low > ROUNDING else 1.0) / LEVELS)
     low, high = step * np.floor(low / step + 1e-9), step * np.ceil(high / step - 1e-9)
     if high <= low:
         high = low + step
