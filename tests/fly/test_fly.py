@@ -49,6 +49,14 @@ def test_a_step_is_held_after_a_minute(rov, sensors, times):
     assert 1e-3 < believed < 1.0 if sensors else believed == 0.0
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_half_a_turn_has_no_overshoot_of_half_a_turn(way):
+    """180 degrees are asked for, to either side of which the error jumps from one sign to the other."""
+    flight = flown("merlin", {"kind": "hold", "for_s": 40.0, "heading_deg": 180.0}, start={"heading_deg": 1e-3 * way}, water={"surface": False})
+    [held] = flight.held
+    assert abs(held.step) == pytest.approx(np.pi, abs=1e-3) and held.overshoot < np.radians(5.0) and held.settled_s is not None
+
+
 @pytest.mark.parametrize("rov", ["bluerov2_heavy", *(pytest.param(rov, marks=pytest.mark.slow) for rov in ("merlin", "minerva"))])
 def test_way_points_are_passed_within_a_length(rov):
     length = vehicle.load(rov).body.size[0]

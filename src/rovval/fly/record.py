@@ -79,7 +79,7 @@ class Record:
                 asked = values[rows]
                 if len(asked) and np.isfinite(asked).all() and np.ptp(asked) == 0.0 and not isinstance(phase.leg, WayPoints):
                     off = channels[ASKED[name]][rows] - asked
-                    found.append(_held(phase, name, float(asked[0]), wrap(off) if name == "heading" else off, dt, self._ends.get((phase.first, name))))
+                    found.append(_held(phase, name, float(asked[0]), _turned(off) if name == "heading" else off, dt, self._ends.get((phase.first, name))))
         return tuple(found)
 
     def passed(self, dt: float) -> tuple[Passed, ...]:
@@ -89,6 +89,12 @@ class Record:
             for p in self._phases if isinstance(p.leg, WayPoints) and np.isfinite(self._nearest[p.first][0]).any()
             for i, point in enumerate(p.leg.points)
         )  # fmt: skip
+
+
+def _turned(off: Array) -> Array:
+    """Errors of a heading (n,) without jumps at half a turn, the last one within it: a turn of 180 degrees is one to the side that it went."""
+    followed = np.unwrap(off)
+    return np.asarray(followed - followed[-1] + wrap(followed[-1]))
 
 
 def _held(phase: Phase, name: str, asked: float, off: Array, dt: float, draws: Array | None) -> Held:

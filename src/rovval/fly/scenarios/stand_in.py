@@ -15,5 +15,5 @@ EFFECT = "inflow_loss:loss=0.3"  # what the simulator beside it does not know, a
 def stand_in(vehicle: Vehicle, rpm: float | None = None) -> Run:
     """The protocol of table 4.6 by platform fossen with `EFFECT`, the fastest thruster at ``rpm`` (default `scenario_rpm`), as its sensors see it."""
     leg = {"kind": "protocol", "rpm": scenario_rpm(vehicle, rpm)}
-    plan = {"name": f"SYNTHETIC_{vehicle.name}_protocol", "start": {"depth_m": DEPTH_M}, "sensors": {}, "leg": [leg]}
+    plan = {"name": f"SYNTHETIC_{vehicle.name}_protocol", "start": {"depth_m": DEPTH_M}, "water": {"surface": False}, "sensors": {}, "leg": [leg]}
     return fly(Mission.model_validate(plan), vehicle, "fossen", (EFFECT,)).run(str(plan["name"]))

@@ -27,7 +27,8 @@ def square(vehicle: Vehicle) -> Mission:
     a, down = SIDE * length, DEPTH_M + DEEPER * length
     points = [(a, 0.0, DEPTH_M), (a, a, down), (0.0, a, down), (0.0, 0.0, DEPTH_M)]
     leg = {"kind": "way_points", "for_s": 30.0 + 8.0 * a / SPEED, "speed_m_s": SPEED, "points": points}
-    return Mission.model_validate({"name": "scenario-3-closed", "title": "Way points", "start": {"depth_m": DEPTH_M}, "leg": [leg]})
+    plan = {"name": "scenario-3-closed", "title": "Way points", "start": {"depth_m": DEPTH_M}, "water": {"surface": False}, "leg": [leg]}
+    return Mission.model_validate(plan)
 
 
 def closed_loop(vehicle: Vehicle, model: str) -> tuple[tuple[Check, ...], SimResult]:
