@@ -27,7 +27,7 @@ def difference(
     platforms = [name for name in names if name in complete.known("platform")]
     if not platforms and source is not None:
         raise UsageProblem(f"{source}: two files need no log", f"leave it out, or give platforms: {', '.join(complete.known('platform'))}")
-    if source is not None and (source.endswith(".toml") or source in complete.missions(source)):
+    if source is not None and (source.endswith(".toml") or source in _missions()):
         a, b = (_flown(source, vehicle, name, effects) if name in platforms else _track(name, None, effects, profile, archive, quiet) for name in names)
         result, what = subtract(a, b), f"mission {source}"
         _told(result, what, out, as_json, quiet)
@@ -37,6 +37,13 @@ def difference(
     result = subtract(a, b)
     what = "as recorded in the files" if driven is None else f"{driven[1].name}, {driven[0].source or PROTOCOL}"
     _told(result, what, out, as_json, quiet)
+
+
+def _missions() -> tuple[str, ...]:
+    """Missions that come with rovval: a CSV is a log here, whatever it might plan elsewhere."""
+    from rovval.fly import mission
+
+    return mission.names()
 
 
 def _told(result: Difference, what: str, out: Path | None, as_json: bool, quiet: bool) -> None:
