@@ -37,7 +37,7 @@ ROOMS = (
 INSIDE = {
     "diagnose": (("",), ("result",), ("decision",), ("search",), ("hypotheses",), ("inference",), ("problem",), ("residuals",), ("windows",), ("criteria",)),
     "blind": (("",), ("scoring",), ("sealed",), ("baselines", "cases"), ("second",), ("planted",), ("missions",), ("plant",)),
-    "report": (("scenario",), ("",), ("batch", "blind", "diagnosis", "flight", "recording"), ("comparison",), ("common",)),
+    "report": (("scenario",), ("",), ("recording",), ("batch", "blind", "diagnosis", "flight"), ("comparison",), ("common",)),
     "effects": (("library",), ("",)),
     "pipeline": (("",), ("keeping",), ("execution",), ("planning",), ("steps", "tolerances")),
     "plant": (("reference",), ("",), ("codegen",), ("platforms",)),

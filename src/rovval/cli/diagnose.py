@@ -10,7 +10,9 @@ import typer
 from rovval.cli import logs, options, output
 
 if TYPE_CHECKING:
+    from rovval.core.data import Run
     from rovval.diagnose import Diagnosis
+    from rovval.vehicle.model import Vehicle
 
 JsonFile = Annotated[
     Path | None,
@@ -80,7 +82,7 @@ def command(
     for line in found.runs_left_out:
         output.say(f"left out: {line}", quiet)
     _print(found, json_, quiet)
-    _write(found, _folder(out, json_, runs[0].id), write_vehicle, quiet)
+    _write(found, runs[0], nominal, _folder(out, json_, runs[0].id), write_vehicle, quiet)
 
 
 def _folder(out: Path | None, json_: Path | None, run: str) -> Path | None:
@@ -114,13 +116,17 @@ def _print(found: Diagnosis, json_: Path | None, quiet: bool) -> None:
         output.say(f"written: {json_}", quiet)
 
 
-def _write(found: Diagnosis, folder: Path | None, mended: Path | None, quiet: bool) -> None:
-    """The report and the mended vehicle, each where it was asked for."""
+def _write(found: Diagnosis, run: Run, nominal: Vehicle, folder: Path | None, mended: Path | None, quiet: bool) -> None:
+    """The report with the recording of the first run, and the mended vehicle, each where it was asked for."""
     from rovval import report
+    from rovval.comparison import compare
+    from rovval.simulation import simulate
     from rovval.storage.atomic import write_text
 
     if folder is not None:
-        report.write_diagnosis(found, folder)
+        comparison = compare(run, simulate(run, nominal, found.model))
+        corrected = simulate(run, nominal, found.model, found.settings) if found.settings else None
+        report.write_diagnosis(found, folder, comparison, nominal, corrected)
         output.say(f"written: {folder}", quiet)
     if mended is not None and not found.vehicle_fixed:
         output.say(f"{mended} not written: no cause was found that could be added to the vehicle")

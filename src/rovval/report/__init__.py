@@ -41,7 +41,7 @@ def write_diagnosis(
 ) -> Mapping[str, Path]:
     """Write diagnosis.json, diagnosis.md and diagnosis.html into ``folder``, whole or not at all; name -> path.
 
-    With a comparison and its vehicle it also writes run.rrd, with the corrected simulation as its third trace.
+    With a comparison and its vehicle it also writes run.rrd, which carries the diagnosis, with the corrected simulation as its third trace.
     """
     from rovval.report.common.files import Writer, write_all
     from rovval.report.comparison import json
@@ -59,7 +59,7 @@ def write_diagnosis(
         "diagnosis.html": diagnosis_html.text(diagnosis, comparison is not None and vehicle is not None),
     }
     if comparison is not None and vehicle is not None:
-        files["run.rrd"] = lambda path: recording.write(comparison, path, vehicle, corrected)
+        files["run.rrd"] = lambda path: recording.write(comparison, path, vehicle, corrected, diagnosis)
     return write_all(Path(folder), files)
 
 

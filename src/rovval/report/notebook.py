@@ -16,6 +16,7 @@ from rovval.report import fit
 from rovval.report.common import curves
 from rovval.report.common.curves import Place
 from rovval.report.common.files import write_all
+from rovval.report.common.hues import hues
 from rovval.report.common.numbers import duration, number
 from rovval.report.common.page import render
 from rovval.report.common.versions import versions
@@ -84,8 +85,7 @@ def _simulation(sim: SimResult) -> str:
             unit = channel(name).unit
             pair = (("free", "free run", free), ("windowed", "windows", windowed))
             shown[title] = (unit, [curves.series(key, label, _drawn(values[:, j], unit)) for key, label, values in pair])
-    hues = [round(360 * j / len(sim.thrusters) + 15) % 360 for j in range(len(sim.thrusters))]
-    speeds = zip(sim.thrusters, sim.thruster_speed.T * 60.0, hues, strict=True)
+    speeds = zip(sim.thrusters, sim.thruster_speed.T * 60.0, hues(len(sim.thrusters)), strict=True)
     shown["thruster speed"] = ("rpm", [curves.series("thruster", name, values, hue=hue) for name, values, hue in speeds])
     facts = {"vehicle": sim.vehicle, "model": sim.model, "effects": ", ".join(sim.effects), "driven by": sim.input_source}
     said = [f"Free run, and windows of {number(sim.window_s)} s restarted from the measured state."]

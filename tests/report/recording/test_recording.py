@@ -10,12 +10,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from report_cases import make_run, make_sim
+from report_cases import diagnosis, make_run, make_sim
 
 from rovval import vehicle
 from rovval.comparison import compare
+from rovval.core.channels import AXES
 from rovval.core.data import Array, Comparison
 from rovval.report.recording import write as recording
+from rovval.report.recording.diagnosed import holds
 
 MERLIN = vehicle.load("merlin")
 
@@ -117,3 +119,26 @@ def test_a_recording_that_could_not_be_written_is_said(tmp_path: Path, monkeypat
         with pytest.raises(OSError, match="writer stopped") as refused:
             recording.write(compare(run, make_sim(run)), tmp_path / "run.rrd", MERLIN)
         assert refused.value.errno == code
+
+
+def test_the_recording_carries_the_diagnosis(tmp_path: Path) -> None:
+    """Its words, lanes of what holds when, and per axis the force that is missing."""
+    run = make_run(300, holes={"psi": slice(50, 60)})
+    d = diagnosis()
+    scalars, entities, notes, _ = read(compare(run, make_sim(run)), tmp_path / "run.rrd", diagnosis=d)
+    assert "One effect explains part of the gap: Axial inflow loss" in notes
+    lanes = {"/state/cause/inflow_loss", "/state/where/surge_u_0_6_m_s", "/state/where/yaw_r_8_deg_s", "/state/gap_level", "/state/log/psi"}
+    assert {"/log", *(f"/force/{axis}" for axis in AXES)} | lanes <= entities
+    assert scalars["/force/surge"].shape[1] == 1 and np.isfinite(scalars["/force/surge"]).any()
+
+
+@pytest.mark.parametrize(
+    ("name", "when"), [("u > 0.5 m/s", "u > 0.5"), ("|r| < 8 deg/s", "r < 8"), ("time 3 to 5 s", "t"), ("HFP turning forward", ""), ("depth > 12 m", "z")]
+)
+def test_when_a_regime_holds_is_read_off_the_log(name: str, when: str) -> None:
+    run = make_run(100)
+    known = {
+        "u > 0.5": run.get("u") > 0.5, "r < 8": np.abs(np.degrees(run.get("r"))) < 8.0, "t": (run.t >= 3.0) & (run.t < 5.0), "z": run.get("z") > 12.0,
+    }  # fmt: skip
+    found = holds(run, name)
+    assert (found is None) if not when else (found is not None and (found == known[when]).all())

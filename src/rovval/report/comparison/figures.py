@@ -17,6 +17,7 @@ from rovval.core.units import in_degrees
 from rovval.report.common import curves
 from rovval.report.common.curves import Place
 from rovval.report.common.drawing import Curve, Dot, Drawing, Line, Shape, Text, round_up
+from rovval.report.common.hues import hues
 from rovval.report.common.numbers import number, quantity
 from rovval.report.comparison.words import TITLES
 
@@ -62,9 +63,9 @@ def thrusters(c: Comparison) -> tuple[list[dict[str, Any]], list[Place], dict[st
     names = c.sim.thrusters
     if not names or not np.isfinite(c.sim.thruster_speed).any():
         return [], [], {}
-    hues = {name: round(360 * j / len(names) + 15) % 360 for j, name in enumerate(names)}
-    drawn = [curves.series("thruster", name, c.sim.thruster_speed[:, j] * 60.0, hue=hues[name]) for j, name in enumerate(names)]
-    return [curves.plot("thrusters", drawn)], [Place("thrusters", "thruster speed", "rpm", css="short")], hues
+    shades = dict(zip(names, hues(len(names)), strict=True))
+    drawn = [curves.series("thruster", name, c.sim.thruster_speed[:, j] * 60.0, hue=shades[name]) for j, name in enumerate(names)]
+    return [curves.plot("thrusters", drawn)], [Place("thrusters", "thruster speed", "rpm", css="short")], shades
 
 
 def growth_panels(c: Comparison) -> list[Drawing]:

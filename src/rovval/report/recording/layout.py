@@ -11,7 +11,7 @@ from rovval.report.comparison import words
 EYE = (-1.6, -1.4, -1.1)  # of the vehicle's longest side: from astern, to port and above, with room for its arrows (chosen)
 
 
-def blueprint(comparison: Comparison, body: str, corrected: bool, longest: float) -> Any:
+def blueprint(comparison: Comparison, body: str, corrected: bool, longest: float, diagnosed: bool = False) -> Any:
     """World, vehicle with its thrusts (the ``body`` that they are drawn on, ``longest`` m) and notes left; the curves in tabs right."""
     import rerun.blueprint as rrb
 
@@ -29,6 +29,10 @@ def blueprint(comparison: Comparison, body: str, corrected: bool, longest: float
     if c.sim.thrusters:
         thrusters = [_curves("/thruster/speed", "speed, rpm"), _curves("/thruster/force", "force, N")]
         tabs.append(rrb.Vertical(*thrusters, name="Thrusters"))
+    if diagnosed:
+        lanes, log = rrb.StateTimelineView(origin="/state", name="What holds when"), rrb.TextLogView(origin="/log", name="In words")
+        forces = [_curves(f"/force/{a}", f"{a}: missing force") for a in measured]
+        tabs = [rrb.Vertical(lanes, log, name="Diagnosis"), rrb.Grid(*forces, grid_columns=2, name="Missing force"), *tabs]
     third = ", corrected (green)" if corrected else ""
     tracks = "Measured (white), windows (orange), free run (blue)" if body == "measured" else "Free run (blue)"
     world = rrb.Spatial3DView(origin="/world", name=f"{tracks}{third}: north-east-down")

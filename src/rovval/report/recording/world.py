@@ -9,6 +9,7 @@ import numpy as np
 from rovval.core.channels import POSE
 from rovval.core.data import Array, Comparison, SimResult
 from rovval.core.frames import quaternion_from_euler
+from rovval.report.common.hues import hues, rgb
 from rovval.report.common.numbers import listed
 from rovval.report.comparison import words
 
@@ -50,6 +51,7 @@ def draw(stream: Any, clock: list[Any], c: Comparison, vehicle: Vehicle, correct
         bodies = {"measured": measured, **bodies}
         if corrected is not None:
             tracks["corrected"] = corrected.windowed.eta[:, :3]
+            bodies["corrected"] = corrected.windowed.eta
     else:
         missing = [n for n in ("x", "y", "z") if not run.measured(n)]
         notes.append(f"{listed(missing)} not measured: 3-D shows the simulated free run alone.")
@@ -121,8 +123,9 @@ def _thrusts(stream: Any, clock: list[Any], path: str, sim: SimResult, vehicle: 
     force = np.nan_to_num(sim.thrust[:, columns])
     longest = float(np.abs(force).max()) or 1.0
     vectors = force[:, :, None] * directions * (ARROW_SHARE * max(vehicle.body.size) / longest)
+    shades = hues(len(sim.thrusters))
     origins = [known[sim.thrusters[j]].position for j in columns]
-    still = rr.Arrows3D.from_fields(origins=origins, colors=[(255, 90, 80)], radii=[0.015])
+    still = rr.Arrows3D.from_fields(origins=origins, colors=[rgb(shades[j]) for j in columns], radii=[0.015], labels=[sim.thrusters[j] for j in columns])
     stream.log(path, still, static=True)
     lanes = np.full(len(force), len(columns))
     stream.send_columns(path, clock, rr.Arrows3D.columns(vectors=vectors.reshape(-1, 3)).partition(lanes))

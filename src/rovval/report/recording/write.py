@@ -16,23 +16,29 @@ import numpy as np
 from rovval.core.channels import AXES, POSE, VELOCITIES
 from rovval.core.data import Array, Comparison, SimResult
 from rovval.core.units import DEGREES
+from rovval.report.common.hues import hues, rgb
 from rovval.report.comparison import words
-from rovval.report.recording import world
+from rovval.report.diagnosis.first_screen import first_screen
+from rovval.report.recording import diagnosed, world
 from rovval.report.recording.layout import blueprint
 
 if TYPE_CHECKING:
+    from rovval.diagnose.result.diagnosis import Diagnosis
     from rovval.vehicle.model import Vehicle
 
 ROOM = 1 << 20  # bytes; rerun does not say why it could not write, and on a disk with less room than a small recording needs that is why
 
 
-def write(comparison: Comparison, path: Path, vehicle: Vehicle, corrected: SimResult | None = None) -> None:
-    """Write the recording to ``path``; ``corrected`` is a second simulation, with the effects that a diagnosis found."""
+def write(
+    comparison: Comparison, path: Path, vehicle: Vehicle, corrected: SimResult | None = None, diagnosis: Diagnosis | None = None
+) -> None:
+    """Write the recording to ``path``; ``corrected`` is a second simulation, with the effects that a ``diagnosis`` found, which is told beside it."""
     import rerun as rr
 
     c, run = comparison, comparison.run
     stream = rr.RecordingStream("rovval", recording_id=run.id, send_properties=False)
-    stream.save(path, default_blueprint=blueprint(c, "measured" if world.is_placed(c) else "free run", corrected is not None, max(vehicle.body.size)))
+    layout = blueprint(c, "measured" if world.is_placed(c) else "free run", corrected is not None, max(vehicle.body.size), diagnosis is not None)
+    stream.save(path, default_blueprint=layout)
     banner = " SYNTHETIC" if words.synthetic(c) else ""
     stream.send_recording_name(f"{run.id} ({c.sim.model}){banner}")
     clock = [rr.TimeColumn("run_time", duration=run.t)]
@@ -42,7 +48,10 @@ def write(comparison: Comparison, path: Path, vehicle: Vehicle, corrected: SimRe
     _curves(stream, clock, c, corrected)
     _thrusters(stream, clock, c.sim)
     notes = world.draw(stream, clock, c, vehicle, corrected)
-    lines = [f"# {run.id}", words.synthetic(c), *words.sentences(c), *(f"- {n}" for n in notes)]
+    told = list(first_screen(diagnosis)) if diagnosis else []
+    if diagnosis:
+        diagnosed.draw(stream, c, diagnosis, vehicle)
+    lines = [f"# {run.id}", words.synthetic(c), *told, *words.sentences(c), *(f"- {n}" for n in notes)]
     document = rr.TextDocument("\n\n".join(line for line in lines if line), media_type=rr.MediaType.MARKDOWN)
     stream.log("/notes", document, static=True)
     try:
@@ -95,5 +104,6 @@ def _thrusters(stream: Any, clock: list[Any], sim: SimResult) -> None:
     if not sim.thrusters:
         return
     for path, values, unit in (("speed", sim.thruster_speed * 60.0, "rpm"), ("force", sim.thrust, "N")):
-        stream.log(f"/thruster/{path}", rr.SeriesLines(names=[f"{t}, {unit}" for t in sim.thrusters]), static=True)
+        colours = [rgb(hue) for hue in hues(len(sim.thrusters))]
+        stream.log(f"/thruster/{path}", rr.SeriesLines(colors=colours, names=[f"{t}, {unit}" for t in sim.thrusters]), static=True)
         stream.send_columns(f"/thruster/{path}", clock, rr.Scalars.columns(scalars=values))
