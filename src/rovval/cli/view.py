@@ -23,6 +23,7 @@ def command(
     open_: Annotated[
         bool, typer.Option("--open/--no-open", help="Start the viewer; otherwise only write the recording.")
     ] = True,
+    web: Annotated[bool, typer.Option("--web", help="Serve it to a browser, where there is no display; Ctrl-C ends it.")] = False,
     quiet: options.QuietOption = False,
 ) -> None:
     """Open a run and its simulation in the rerun viewer: velocities, errors, thrusters, both trajectories in 3-D.
@@ -31,6 +32,7 @@ def command(
     Example:
       rovval view dive.csv --profile merlin
       rovval view dive.csv --no-open --out /tmp/view
+      rovval view dive.csv --web
     """
     import subprocess
     import sys
@@ -45,5 +47,6 @@ def command(
     files = report.write(comparison, out or Path("reports") / run.id, nominal)
     output.result(str(files["run.rrd"]))
     if open_:
-        output.say("opening the viewer; close it to return", quiet)
-        raise typer.Exit(subprocess.run([sys.executable, "-m", "rerun", str(files["run.rrd"])], check=False).returncode and 70)
+        output.say("serving the viewer to a browser; Ctrl-C ends it" if web else "opening the viewer; close it to return", quiet)
+        how = ["--serve-web"] if web else []
+        raise typer.Exit(subprocess.run([sys.executable, "-m", "rerun", *how, str(files["run.rrd"])], check=False).returncode and 70)
