@@ -124,6 +124,7 @@ VARIATIONS = (0.2, 0.8)  # of its size, from window to window: by how much a cau
 GROUP_PROBABILITY = 0.90  # of a confusion group
 NEGLIGIBLE = 0.01  # probability of a model beside the best one, below which it is not sought after (chosen)
 MOST_CAUSES = 3  # at once (chosen)
+SETS_WEIGHED = 3  # sets of causes, the most probable, beside which something else or further numbers of the file are weighed (chosen)
 MOST_CANDIDATES = 10  # hypotheses that are re-simulated in a step (chosen)
 SCREENED_EVIDENCE = 0.15  # share of the best linearised evidence: with less, a hypothesis is not re-simulated (chosen),
 LEAST_SCREENED = 4  # unless it is among so many of the first (chosen)

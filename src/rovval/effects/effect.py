@@ -130,6 +130,7 @@ class Effect:
     - ``competes`` False: a diagnosis never names it; `unnamed` says why.
     - ``wanders``: its value drifts by nature, so that it does not hold still speaks in no way against it.
     - ``onset_of``: the effect that it is from an onset on.
+    - ``held``: it pulls towards a point as a tether does that is caught there, so that its search begins where a spring would hold the vehicle, too.
     - ``continues``: the effect that imitates it as far as that goes, and which it exceeds (a dead thruster is one that is half reversed).
     - ``family``: the name by which `rovval fit` tunes it along with others of its kind.
     - ``in_file``: whether it is a number of the vehicle's file that is off, rather than something that no file holds.
@@ -158,6 +159,7 @@ class Effect:
     competes: bool = True
     wanders: bool = False
     onset_of: str = ""
+    held: bool = False
     continues: str = ""
     family: Family = ""
     absent_in: tuple[str, ...] = ()

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import Any
-
 import numpy as np
 import pytest
 
@@ -17,8 +14,9 @@ NAMES = ("waves", "dvl_scale", "thrust_lag", "time_offset", "cross_drag")
 
 
 def belief(
-    evidence: dict[tuple[str, ...], float], file: float = -100.0, forces: float = -np.inf, beside: float = -np.inf, varying: float = -np.inf
-) -> Probabilities:
+    evidence: dict[tuple[str, ...], float], file: float = -100.0, forces: float = -np.inf, beside: float = -np.inf, varying: float = -np.inf,
+    filed: float | None = None,
+) -> Probabilities:  # fmt: skip
     """Probabilities where sets of causes have some evidence over the healthy vehicle."""
     prior = ModelPrior.of([Hypothesis(n, n, (), (), ()) for n in NAMES])
     models = []
@@ -26,8 +24,8 @@ def belief(
         causes = tuple(Hypothesis(n, n, (), (), ()) for n in names)
         models.append(Model(causes, None, worth, prior.log_mass(causes)))
     best = max(models, key=lambda m: m.log_posterior)
-    selection: Any = SimpleNamespace(models=tuple(models), best=best)
-    return probabilities(selection, file, forces, {best.names: beside} if best.causes else {}, varying)
+    files = {frozenset[str](): file} | ({best.names: filed} if filed is not None else {})
+    return probabilities(models, files, forces, {best.names: beside} if best.causes else {}, {best.names: varying} if best.causes else {})
 
 
 @pytest.mark.parametrize("worth", [0.0, 8.0, 40.0, 4000.0])
@@ -75,3 +73,11 @@ def test_a_cause_that_would_have_to_vary_is_something_else():
 
 def test_a_file_off_in_many_numbers_is_believed_where_it_explains_more():
     assert belief({("waves",): 80.0}, file=200.0).file > 0.99
+
+
+def test_causes_are_at_work_whatever_else_of_the_file_is_off():
+    """Causes with a file that is off in further numbers are those causes; what more is off is told beside them."""
+    found = belief({("waves",): 80.0}, file=100.0, filed=120.0)
+    assert found.causes > 0.99 and found.of("waves") > 0.99 and found.off_beside(frozenset({"waves"}))
+    assert found.healthy + found.causes + found.file + found.something_else == pytest.approx(1.0)
+    assert not belief({("waves",): 80.0}, filed=70.0).off_beside(frozenset({"waves"}))

@@ -36,6 +36,17 @@ def test_a_slack_spring_is_a_steady_pull_and_not_evident():
     assert [h.evident for h in hypotheses(parts, hints=Hints(springs=springs))[0] if h.name == "tether_snag"] == [True, False, False]
 
 
+def test_what_has_held_the_vehicle_all_along_may_pull_steadily():
+    """A steady pull is searched from where a spring would hold the vehicle, too: towards that point, as strong as the spring is on average."""
+    parts, _ = cut([own((), 5, 200.0)], merlin(), "fossen", 10.0)
+    spring = {"stiffness": 50.0, "north": 30.0, "east": 40.0, "down": 25.0, "radius": 0.0, "x": -0.8, "z": 0.0, "onset": 8.0, "pull": 60.0, "share": 0.0}
+    [held] = [h for h in hypotheses(parts, hints=Hints(springs=[spring]))[0] if h.label == "tether_tension@held0"]
+    at = {parts[0].plant.slots[s].parameter.name: value for s, value in held.at}
+    depth = at["depth"]
+    assert np.array([at["north"], at["east"], at["down"]]) == pytest.approx(60.0 * np.array([30.0, 40.0, 25.0 - depth]) / np.hypot(50.0, 25.0 - depth))
+    assert at["nearness"] == pytest.approx(1.0 / np.hypot(50.0, 25.0 - depth)) and at["x"] == -0.8
+
+
 def test_a_spring_is_found_in_the_forces_that_are_missing():
     """Forces of a known spring from 60 s on, tied 0.6 m astern, on a vehicle that circles and turns; and none that would have to push."""
     rng, onset, point, radius, stiffness, tie = np.random.default_rng(3), 60.0, np.array([2.0, -1.0, 6.0]), 1.2, 40.0, np.array([-0.6, 0.0, -0.1])
@@ -53,7 +64,9 @@ def test_a_spring_is_found_in_the_forces_that_are_missing():
     worth, found = fitted_spring(lack, onset, place[6, 0, 0], 1.0)
     assert worth == pytest.approx(float(np.einsum("wi,wij,wj->", wrench, A, wrench)), rel=0.01)
     want = {"north": 2.0, "east": -1.0, "down": 6.0, "radius": radius, "stiffness": stiffness, "x": -0.6, "z": -0.1, "onset": onset}
-    assert found == pytest.approx(want, rel=0.1, abs=0.15)
+    assert {name: found[name] for name in want} == pytest.approx(want, rel=0.1, abs=0.15)
+    away = np.linalg.norm(point - place[t >= onset], axis=-1)
+    assert found["pull"] == pytest.approx(float(stiffness * np.maximum(away - radius, 0.0).mean()), rel=0.2)
     assert replace(lack, b=-lack.b).explained(onset, point, radius)[0] == 0.0
 
 

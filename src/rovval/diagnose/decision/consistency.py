@@ -21,8 +21,8 @@ RATES = {"roll": ("phi", "p"), "pitch": ("theta", "q"), "yaw": ("psi", "r")}
 
 @dataclass(frozen=True, slots=True)
 class Inconsistency:
-    """The channels ``angle`` and ``rate`` of a ``run`` (its id) drift apart within a window by ``drift`` (rms, rad), whatever faults of sensors are
-    assumed."""
+    """The channels ``angle`` and ``rate`` of a ``run`` (its id) drift apart within half of the windows by ``drift`` (rms, rad), whatever faults of
+    sensors are assumed."""
 
     run: str
     angle: str
@@ -44,8 +44,8 @@ def inconsistencies(problem: Problem, weight: Mapping[str, float]) -> list[Incon
 
 
 def _drift(check: ParityResiduals, angle: str) -> float:
-    """What all faults of sensors leave of the drift, rms in rad; 0 where the log does not check it."""
-    return check.sigma[check.relations.index(angle)] if angle in check.relations else 0.0
+    """What all faults of sensors leave of the drift in half of the windows, rms in rad; 0 where the log does not check it."""
+    return check.left[check.relations.index(angle)] if angle in check.relations else 0.0
 
 
 def _rate_error(problem: Problem, windows: Windows, check: ParityResiduals, angle: str, rate: str) -> float:

@@ -56,4 +56,6 @@ def more_probable(late: Finding, whole: Finding, onset: Onset) -> bool:
     if not late.decision.causes or not late.decision.fit or late.is_event:
         return False
     evidence = evidence_with_onset(whole.problem, late.decision.fit, onset.time, whole.selection.healthy) - onset_cost(whole.problem)
-    return late.selection.best.log_prior + 0.5 * evidence > whole.selection.best.log_posterior
+    names = frozenset(h.name for h in late.decision.causes)
+    mass = max(m.log_prior for m in late.selection.models if m.names == names)
+    return mass + 0.5 * evidence > whole.selection.log_posterior

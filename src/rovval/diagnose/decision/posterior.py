@@ -7,12 +7,11 @@ beside causes (model discrepancy: Kennedy and O'Hagan 2001).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, log
 
 from rovval.diagnose.criteria import GROUP_PROBABILITY, PRIOR_FILE, PRIOR_HEALTHY, PRIOR_SOMETHING_ELSE
-from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.search.model import Model
 
 Names = frozenset[str]
@@ -25,13 +24,15 @@ class Probabilities:
     Attributes:
         sets: of each set of causes on a healthy vehicle, by their names; the empty set is the healthy vehicle.
         beside: of sets of causes with something else beside them.
-        file: of a file that is off in many numbers.
+        filed: of sets of causes with a file that is off in further numbers beside them.
+        file: of a file that is off in many numbers, and of no cause.
         something_else: of something else alone, or of what comes near to a set of causes whose sizes would have to vary along the log.
         varying: the latter part of it.
     """
 
     sets: Mapping[Names, float]
     beside: Mapping[Names, float]
+    filed: Mapping[Names, float]
     file: float
     something_else: float
     varying: float
@@ -43,14 +44,23 @@ class Probabilities:
 
     @property
     def causes(self) -> float:
-        """Of causes, alone or with something else beside them."""
-        return sum(p for names, p in self.sets.items() if names) + sum(self.beside.values())
+        """Of causes, whatever is beside them."""
+        return sum(self._whole().values())
 
     @property
     def best(self) -> Names:
         """The most probable set of causes, whatever is beside it; empty where there is none."""
+        return next(iter(self.ranked), frozenset())
+
+    @property
+    def ranked(self) -> list[Names]:
+        """The sets of causes, the most probable first, whatever is beside them."""
         whole = self._whole()
-        return max(whole, key=lambda names: whole[names], default=frozenset())
+        return sorted(whole, key=lambda names: -whole[names])
+
+    def of_set(self, names: Names) -> float:
+        """Of a set of causes, whatever is beside it."""
+        return self._whole().get(names, 0.0)
 
     def of(self, name: str) -> float:
         """That a cause is at work."""
@@ -58,7 +68,11 @@ class Probabilities:
 
     def partly(self, names: Names) -> bool:
         """Whether something else is more likely beside these causes than not."""
-        return self.beside.get(names, 0.0) > self.sets.get(names, 0.0)
+        return self.beside.get(names, 0.0) > self.sets.get(names, 0.0) + self.filed.get(names, 0.0)
+
+    def off_beside(self, names: Names) -> bool:
+        """Whether further numbers of the file are more likely off beside these causes than not."""
+        return self.filed.get(names, 0.0) > self.sets.get(names, 0.0) + self.beside.get(names, 0.0)
 
     def group(self, name: str) -> tuple[tuple[str, float], ...]:
         """The confusion group of a cause of the most probable set: the fewest names that hold `GROUP_PROBABILITY` of the probability of sets that
@@ -73,37 +87,42 @@ class Probabilities:
         return tuple(kept)
 
     def _whole(self) -> dict[Names, float]:
-        return {n: self.sets.get(n, 0.0) + self.beside.get(n, 0.0) for n in {*self.sets, *self.beside} if n}
+        parts = self.sets, self.beside, self.filed
+        return {n: sum(part.get(n, 0.0) for part in parts) for n in {*self.sets, *self.beside, *self.filed} if n}
 
 
-def probabilities(selection: Selection, file_evidence: float, forces: float, beside: Mapping[Names, float], varying: float) -> Probabilities:
+def probabilities(
+    models: Sequence[Model], file: Mapping[Names, float], forces: float, beside: Mapping[Names, float], varying: Mapping[Names, float]
+) -> Probabilities:
     """Probabilities of the models that a search met.
 
     Args:
-        selection: what the search met.
-        file_evidence: of a file that is off in many numbers, twice the log Bayes factor over the vehicle as its file has it.
+        models: those that the search met, the healthy vehicle among them.
+        file: of a file that is off in many numbers, twice the log Bayes factor over the vehicle as its file has it: beside no cause, and beside sets
+            of causes.
         forces: evidence of something else on the healthy vehicle, over it; its prior among such forces included.
         beside: the same of something else beside sets of causes, over these.
-        varying: the same of a cause of the best set that varies along the log, over that set.
+        varying: the same of a cause that varies along the log, over the set that it is of.
     """
-    best = _best_of_each_set(selection.models)
+    best = _best_of_each_set(models)
     doubt = log(PRIOR_SOMETHING_ELSE / PRIOR_HEALTHY)
     nothing = best[frozenset()]
     known = {("sets", names): m.log_posterior for names, m in best.items()}
     known |= {("beside", names): best[names].log_posterior + doubt + 0.5 * more for names, more in beside.items()}
-    known["file", frozenset()] = log(PRIOR_FILE) + 0.5 * file_evidence
+    filed = log(PRIOR_FILE / PRIOR_HEALTHY)
+    known |= {("filed", names): best[names].log_prior + filed + 0.5 * evidence for names, evidence in file.items()}
     known["else", frozenset()] = nothing.log_posterior + doubt + 0.5 * forces
-    if selection.best.causes:
-        known["varying", frozenset()] = selection.best.log_posterior + doubt + 0.5 * varying
+    known |= {("varying", names): best[names].log_posterior + doubt + 0.5 * more for names, more in varying.items()}
     top = max(known.values())
     weight = {key: exp(value - top) for key, value in known.items()}
     total = sum(weight.values())
     share = {key: value / total for key, value in weight.items()}
+    inconstant = sum(p for (kind, _), p in share.items() if kind == "varying")
     return Probabilities(
         sets={names: p for (kind, names), p in share.items() if kind == "sets"},
         beside={names: p for (kind, names), p in share.items() if kind == "beside"},
-        file=share["file", frozenset()], varying=share.get(("varying", frozenset()), 0.0),
-        something_else=share["else", frozenset()] + share.get(("varying", frozenset()), 0.0),
+        filed={names: p for (kind, names), p in share.items() if kind == "filed" and names},
+        file=share.get(("filed", frozenset()), 0.0), varying=inconstant, something_else=share["else", frozenset()] + inconstant,
     )  # fmt: skip
 
 

@@ -9,20 +9,21 @@ from typing import Literal
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import FILE_WIDTH, MOST_CAUSES
+from rovval.diagnose.criteria import NEGLIGIBLE, SETS_WEIGHED
 from rovval.diagnose.decision.consistency import inconsistencies
 from rovval.diagnose.decision.constancy import variation
 from rovval.diagnose.decision.indications import Indications, indications
+from rovval.diagnose.decision.miscalibration import file_evidence
 from rovval.diagnose.decision.posterior import Names, Probabilities, probabilities
 from rovval.diagnose.decision.unexplained import Accounted, Unexplained, accounted, open_gap, unexplained
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.gap import weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
-from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.sensor_faults import FittedFault
 from rovval.diagnose.search.discrepancy import GenericForces, generic_forces, nominal_forces
 from rovval.diagnose.search.forward import Selection
+from rovval.diagnose.search.joint import refitted
 from rovval.diagnose.search.model import Model
 
 Verdict = Literal["no_gap", "explained", "partly_explained", "unknown"]
@@ -67,25 +68,33 @@ class Decision:
 
 def decide(problem: Problem, selection: Selection, residuals: list[Array], faults: Sequence[FittedFault]) -> Decision:
     """The verdict on what a search met; ``residuals`` are the nominal vehicle's, ``faults`` of sensors those that parity residuals show."""
-    instead = generic_forces(problem, selection.healthy)
-    best = selection.best
-    beside = generic_forces(problem, best.fit.posterior) if best.fit else instead
-    evidence, more = instead.sparse()[0], beside.sparse()[0] if best.fit else 0.0
-    varies = variation(problem, best.fit.posterior, best.causes) if best.fit else 0.0
-    belief = probabilities(selection, _file_evidence(problem, selection), evidence, {best.names: more} if best.fit else {}, varies)
+    instead, file = generic_forces(problem, selection.healthy), file_evidence(problem, selection)
+    leading = _leading(problem, selection, probabilities(selection.models, file, -np.inf, {}, {}))
+    beside = {one.names: generic_forces(problem, one.fit.posterior) for one in leading if one.fit}
+    more = {names: forces.sparse()[0] for names, forces in beside.items()}
+    varies = {one.names: variation(problem, one.fit.posterior, one.causes) for one in leading if one.fit}
+    evidence = instead.sparse()[0]
+    belief = probabilities(selection.models, file, evidence, more, varies)
+    best = next((one for one in leading if one.names == belief.best), selection.models[0])
     known = accounted(problem, selection.healthy)
     over = best.evidence - selection.models[0].evidence
-    found = Decision("no_gap", belief, (), None, {}, {}, {}, over, max(evidence, 0.0), max(more, 0.0), selection.healthy.largest_departure(), known, None)
+    generic = max(evidence, 0.0), max(more.get(best.names, 0.0), 0.0)
+    found = Decision("no_gap", belief, (), None, {}, {}, {}, over, *generic, selection.healthy.largest_departure(), known, None)
     contradicted = any(h.effect.place != "sensor" for h in best.causes) and _contradicted(problem, residuals)
     if best.fit and belief.causes > max(belief.healthy, belief.file, belief.something_else) and not contradicted:
-        return _named(problem, selection, found, best, best.fit, beside)
-    first = selection.steps[0] if selection.steps else ()
-    found = replace(found, indications=indications(first, known, faults))
+        return _named(problem, selection, found, best, best.fit, beside[best.names])
+    found = replace(found, indications=indications(selection.steps[0] if selection.steps else (), known, faults))
     if belief.healthy > max(belief.file, belief.something_else, belief.causes):
         rest = open_gap(problem, replace(known, departure=0.0), residuals)  # it is believed, so what its coefficients account for counts
         return replace(found, verdict="unknown" if rest else "no_gap", unexplained=rest)
     inconstant = [h.name for h in best.causes] if belief.varying > 0.5 * belief.something_else else []
     return replace(found, verdict="unknown", unexplained=unexplained(problem, nominal_forces(problem), selection.healthy, inconstant))
+
+
+def _leading(problem: Problem, selection: Selection, belief: Probabilities) -> list[Model]:
+    """The most probable sets of causes, `SETS_WEIGHED` at most, fitted with care; none where they are not worth a thought (`NEGLIGIBLE`)."""
+    found = [max((m for m in selection.models if m.names == names), key=lambda m: m.evidence) for names in belief.ranked[:SETS_WEIGHED]]
+    return [refitted(problem, m) for m in found if belief.of_set(m.names) > NEGLIGIBLE * max(belief.of_set(found[0].names), belief.healthy)]
 
 
 def _named(problem: Problem, selection: Selection, found: Decision, best: Model, fit: HypothesisFit, beside: GenericForces) -> Decision:
@@ -115,36 +124,3 @@ def _contradicted(problem: Problem, residuals: list[Array]) -> bool:
 def _evidence_without(selection: Selection, rest: Names) -> float:
     """Evidence of a set of causes; of the healthy vehicle where it was not fitted."""
     return max((m.evidence for m in selection.models if m.names == rest), default=selection.models[0].evidence)
-
-
-def _file_evidence(problem: Problem, selection: Selection) -> float:
-    """Twice the log Bayes factor, over the file as it is, of one that is off (`FILE_WIDTH`) in more numbers than there may be causes, or in a few that no
-    effect which competes is about."""
-    plant = problem.plant
-    of_file = [s for s in problem.tolerance.sd if (own := plant.slots[s].parameter.tolerance) and own.calibrated]
-    compete = {s for name, _ in selection.ranking for s in plant.hypotheses[name]}
-    many = departures(problem, selection.healthy, of_file)[MOST_CAUSES:]
-    few = departures(problem, selection.healthy, [s for s in of_file if s not in compete])
-    return max((*many, *few), default=-np.inf)
-
-
-def departures(problem: Problem, healthy: Posterior, among: Sequence[int]) -> list[float]:
-    """Twice the log Bayes factor, over the file as it is, of one of which one, two, three ... of the numbers ``among`` (slots) are off by as much as
-    `FILE_WIDTH` has it: those that explain most, and which they are is paid for. It ends where one more explains no more. One step from the ``healthy``
-    fit (automatic relevance determination; MacKay 1992)."""
-    columns, found = [healthy.columns.index(s) for s in among], list[float]()
-    while columns:
-        freed = {i: replace(healthy, precision=_divided(healthy.precision, i)) for i in columns}
-        worth = {i: laplace_evidence(problem, one) - 2.0 * (len(found) + 1) * float(np.log(len(among))) for i, one in freed.items()}
-        best = max(worth, key=lambda i: worth[i])
-        if len(found) > MOST_CAUSES and worth[best] <= found[-1]:
-            break
-        found.append(worth[best])
-        healthy = freed[best]
-        columns.remove(best)
-    return found
-
-
-def _divided(precision: Array, i: int) -> Array:
-    """The precision of priors with the ``i``-th number as wide as a file that is off has it."""
-    return np.where(np.arange(len(precision)) == i, precision / FILE_WIDTH**2, precision)

@@ -23,8 +23,8 @@ from rovval.diagnose.criteria import (
     TRAIN_START,
     WHOLE_STARTS,
 )
-from rovval.diagnose.hypotheses.hypothesis import START_SCALE, Hypothesis, displaced, from_nothing
-from rovval.diagnose.hypotheses.snag import from_springs, mid_log_spring
+from rovval.diagnose.hypotheses.hypothesis import START_SCALE, Hypothesis, columns_of, displaced, from_nothing
+from rovval.diagnose.hypotheses.snag import from_pulls, from_springs, mid_log_spring
 from rovval.diagnose.problem.prior import prior_mean
 from rovval.diagnose.windows.windows import Windows
 from rovval.plant import Plant
@@ -71,7 +71,10 @@ def initial_points(target: Target, windows: Sequence[Windows], hints: Hints, nex
     if not grids:
         far = _away_from_no_effect(target, next_id)
         plain = [replace(h, at=tuple(placed.items())) for h in (*_from_no_effect(target, placed), *_one_at_a_time(target))]
-        return [*plain, *far, *_with_levers(target, placed, next_id + len(far))]
+        levers = _with_levers(target, placed, next_id + len(far))
+        held = [(s, depth) for s, depth in placed.items() if effect.held and target.parameter(s).role == "level"]
+        pulls = from_pulls(plant, name, slots, hints.springs, held[0][1], next_id + len(columns_of([*far, *levers]).displaced)) if held else []
+        return [*plain, *far, *levers, *pulls]
     free = tuple(s for s in slots if s not in grids and s not in placed and target.parameter(s).name not in effect.refines) or (START_SCALE,)
     points = [dict(zip(grids, point, strict=True)) for point in product(*grids.values())]
     most = WHOLE_STARTS if free == (START_SCALE,) else MOST_STARTS

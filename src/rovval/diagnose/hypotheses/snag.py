@@ -32,10 +32,11 @@ HALVES = 2  # of a window, in each of which what is missing is one constant forc
 EVERY_S = 0.5  # s between the places along a half at which the spring pulls
 RADII = (0.2, 0.5, 0.8)  # radii tried, as shares of how far the vehicle gets from the point
 EVALUATIONS, PASSES = 150, 2  # of the loss of a spring, and how often it is fitted, each time from where the one before is tied
+LEAST_DISTANCE = 1.0  # m: a point that is nearer to the log's origin leads a pull in no one direction
 LEVER_X = np.array([[0, 0, 0], [0, 0, -1], [0, 1, 0]])  # moment of a force that acts 1 m ahead of the origin
 LEVER_Z = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 0]])  # and of one that acts 1 m below it
 
-Spring = dict[str, float]  # parameters by the names of the effect `tether_snag`, and "share": of the gap, that it takes by its stretch
+Spring = dict[str, float]  # parameters by the names of the effect `tether_snag`, "pull" (N): its mean, and "share": of the gap, that it takes by its stretch
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,8 +130,10 @@ def fitted_spring(lack: MissingWrench, onset: float, point: Array, radius: float
         at[3] = abs(at[3])
         reduction, best = tied.explained(onset, at[:3], float(at[3]))
         tie = np.array([best[1], 0.0, best[2]]) / best[0] if reduction > 0 else np.zeros(3)
-    names = ("north", "east", "down", "radius", "stiffness", "x", "z", "onset")
-    return reduction, dict(zip(names, (*at.tolist(), float(best[0]), float(tie[0]), float(tie[2]), onset), strict=True))
+    names = ("north", "east", "down", "radius", "stiffness", "x", "z", "onset", "pull")
+    away = np.linalg.norm(at[:3] - lack.place[lack.t >= onset], axis=-1)
+    pull = float(best[0] * np.maximum(away - at[3], 0.0).mean()) if away.size else 0.0
+    return reduction, dict(zip(names, (*at.tolist(), float(best[0]), float(tie[0]), float(tie[2]), onset, pull), strict=True))
 
 
 def _simplex(at: Array) -> Array:
@@ -144,6 +147,21 @@ def from_springs(plant: Plant, name: str, slots: tuple[int, ...], found: Sequenc
     at = [tuple((slot, float(np.clip(spring[p.name], p.low, p.high))) for slot, p in own if p.name in spring) for spring in found]
     begun = [displaced(plant, f"{name}@{i}", slots, (START_SCALE,), one, next_id + i) for i, one in enumerate(at)]
     return [replace(h, evident=spring.get("share", 0.0) >= SPRING_EVIDENT_SHARE) for h, spring in zip(begun, found, strict=True)]
+
+
+def from_pulls(plant: Plant, name: str, slots: tuple[int, ...], found: Sequence[Mapping[str, float]], depth: float, next_id: int) -> list[Hypothesis]:
+    """One hypothesis of a steady pull towards the point of each spring that was ``found``, as strong as that pulls on average, its components those at the
+    log's origin at a ``depth`` (m): what has held the vehicle since before the log began has no onset, and may well be no spring."""
+    begun = list[Hypothesis]()
+    for i, spring in enumerate(one for one in found if one.get("pull", 0.0) > 0.0):
+        to = np.array([spring["north"], spring["east"], spring["down"] - depth])
+        far = max(float(np.linalg.norm(to)), LEAST_DISTANCE)
+        values = dict(zip(("north", "east", "down"), (spring["pull"] * to / far).tolist(), strict=True))
+        values |= {"nearness": 1.0 / far, "depth": depth, "x": spring["x"], "z": spring["z"]}
+        own = [(slot, plant.slots[slot].parameter) for slot in slots]
+        at = tuple((slot, float(np.clip(values[p.name], p.low, p.high))) for slot, p in own if p.name in values)
+        begun.append(displaced(plant, f"{name}@held{i}", slots, (START_SCALE,), at, next_id + i))
+    return begun
 
 
 def mid_log_spring(windows: Sequence[Windows], plant: Plant, slots: tuple[int, ...]) -> Spring:

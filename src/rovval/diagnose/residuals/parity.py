@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.data import Array, Flags
-from rovval.diagnose.criteria import DEAD_RECKONED_SHARE, PARITY_LEAST_SD
+from rovval.diagnose.criteria import DEAD_RECKONED_SHARE, OUTLIER_SIGMA, PARITY_LEAST_SD
 from rovval.diagnose.residuals.dead_reckoning import (
     RELATIONS,
     fully_measured,
@@ -42,6 +42,8 @@ class ParityResiduals:
         columns: the plant's slot numbers of the k parameters.
         relations: the components of the pose that could be checked, of ``x y z phi theta psi``.
         sigma: standard error of each relation, m or rad.
+        left: what all faults of sensors together leave of each relation in half of the windows (rms within a window, m or rad): few windows in which an
+            instrument lost its way say nothing of the others.
         design_effect: of the autocorrelation of the residuals.
         notes: why a relation was left out.
         motion: the measured motion that signatures are computed of; None where nothing could be checked.
@@ -55,6 +57,7 @@ class ParityResiduals:
     columns: tuple[int, ...]
     relations: tuple[str, ...]
     sigma: tuple[float, ...]
+    left: tuple[float, ...]
     design_effect: float
     notes: tuple[str, ...]
     motion: FaultSignatures | None
@@ -138,16 +141,23 @@ def _weighted(motion: FaultSignatures, nominal: Array, signatures: Array, column
     notes: list[str] = []
     left = nominal[..., keep]
     for _ in range(2 if len(free) else 0):  # noise from what the joint fit leaves, the fit weighted by that noise
+        size = np.sqrt((left**2).mean(axis=1) / sigma**2).max(axis=1)  # of a window, in which an instrument may have lost its way
+        sane = size <= OUTLIER_SIGMA * np.median(size[size > 0.0]) if size.any() else size == 0.0
         G = signatures[..., keep, :][..., free] / sigma[:, None]
-        X = G.reshape(-1, len(free))
-        y = (nominal[..., keep] / sigma).reshape(-1)
+        X = G[sane].reshape(-1, len(free))
+        y = (nominal[..., keep] / sigma)[sane].reshape(-1)
         typical = np.array([slots[i].parameter.typical for i in free])
         fitted = np.linalg.lstsq(np.vstack([X, np.diag(0.1 / typical)]), np.concatenate([y, np.zeros(len(free))]), rcond=None)[0]
         left = (nominal[..., keep] / sigma - G @ fitted) * sigma
-        sigma = np.maximum(left.std(axis=(0, 1)), [PARITY_LEAST_SD[i] for i in keep])
+        sigma = np.maximum(left[sane].std(axis=(0, 1)), [PARITY_LEAST_SD[i] for i in keep])
+    if len(free):
+        sigma = np.maximum(left.std(axis=(0, 1)), sigma)  # what such a window says is worth little, and is not left out
+    before = keep
     keep, sigma = _independent(windows, keep, sigma, notes)
     if not keep:
         return _none(m, columns, tuple(notes))
+    checked = np.abs(left).max(axis=(1, 2)) > 0.0
+    half = np.median(np.sqrt((left[checked] ** 2).mean(axis=1)), axis=0)[[before.index(i) for i in keep]] if checked.any() else np.zeros(len(keep))
     rows = (nominal[..., keep] / sigma).reshape(m, -1)
     scaled = (signatures[..., keep, :] / sigma[:, None]).reshape(m, rows.shape[1], k)
     design_effect = _design_effect(rows, scaled, free)
@@ -156,7 +166,7 @@ def _weighted(motion: FaultSignatures, nominal: Array, signatures: Array, column
     is_delay = np.array([slots[i].parameter.error == "delay" for i in seen], dtype=bool)
     return ParityResiduals(
         rows, scaled, equations, is_factor, is_delay, columns, relations=tuple(RELATIONS[i] for i in keep), sigma=tuple(sigma.tolist()),
-        design_effect=design_effect, notes=tuple(notes), motion=motion,
+        left=tuple(half.tolist()), design_effect=design_effect, notes=tuple(notes), motion=motion,
     )  # fmt: skip
 
 
@@ -164,7 +174,7 @@ def _none(m: int, columns: tuple[int, ...], notes: tuple[str, ...]) -> ParityRes
     """No residuals, of a log that nothing can be checked of."""
     rows, signatures = np.zeros((m, 0)), np.zeros((m, 0, len(columns)))
     nothing = np.zeros(0, dtype=bool)
-    return ParityResiduals(rows, signatures, _equations(rows, signatures[..., :0], ()), nothing, nothing, columns, (), (), 1.0, notes, None)
+    return ParityResiduals(rows, signatures, _equations(rows, signatures[..., :0], ()), nothing, nothing, columns, (), (), (), 1.0, notes, None)
 
 
 def _equations(rows: Array, signatures: Array, columns: tuple[int, ...]) -> NormalEquations:

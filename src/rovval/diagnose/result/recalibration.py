@@ -90,9 +90,11 @@ def departing(problem: Problem, point: Posterior, limit: float) -> list[int]:
 
 
 def _asked(problem: Problem, selection: Selection, decision: Decision) -> bool:
-    """Whether something is surely at work that the causes leave unexplained, and enough coefficients depart."""
+    """Whether something is surely at work that the causes leave unexplained, or the file is off beside them, and enough coefficients depart."""
     rest, point = decision.unexplained, decision.fit.posterior if decision.fit else selection.healthy
-    if rest is None or rest.accounted is not None or problem.window_count < FEW_WINDOWS:
+    left = rest is not None and rest.accounted is None
+    off = decision.probabilities.off_beside(frozenset(h.name for h in decision.causes))
+    if not (left or off) or problem.window_count < FEW_WINDOWS:
         return False
     return len(departing(problem, point, OUT_OF_TOLERANCE)) >= RECALIBRATION_LEAST
 

@@ -15,6 +15,7 @@ from rovval.diagnose.criteria import (
     MOST_COHERENT,
     MOST_REFITTED,
     MOST_RELINEARISED,
+    OUT_OF_TOLERANCE,
     REFITTED_EVIDENCE,
     SCREENED_ANYWAY,
     SCREENED_EVIDENCE,
@@ -24,6 +25,7 @@ from rovval.diagnose.criteria import (
 )
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of, wide_prior
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, fit_hypothesis, fit_quickly
+from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.inference.map_fit import progressive_start, tangent_slots
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.coherence import coherence
@@ -68,9 +70,10 @@ def candidates(
             start = _beyond(problem, h, start)
         if h.evident:
             start = progressive_start(problem, alone(h, slots), slots)
-        quick = fit_quickly(problem, start, slots, base.whitened).without_sensitivities()
-        if h.name not in fits or quick.evidence > fits[h.name][1].evidence:
-            fits[h.name] = h, quick
+        for begin in (start, *_departed(problem, base, h, start)):
+            quick = fit_quickly(problem, begin, slots, base.whitened).without_sensitivities()
+            if h.name not in fits or quick.evidence > fits[h.name][1].evidence:
+                fits[h.name] = h, quick
 
     tries = Counter[str]()
     for h in ordered:
@@ -93,6 +96,15 @@ def _like_the_best(data: NormalEquations, ordered: list[Hypothesis], fits: Fits)
     twins = [h for h in ordered if h.name not in fits and coherence(data, best.columns, h.columns) > COHERENT]
     further = [h for h in ordered if h.effect.continues and f"{h.effect.continues}{h.of}" in fits]
     return [*twins[:MOST_COHERENT], *further]
+
+
+def _departed(problem: Problem, base: Posterior, h: Hypothesis, start: Array) -> list[Array]:
+    """The start with the parameters of ``h`` where the baseline has them, if it has one of them far beyond its tolerance: what the fit of a healthy vehicle
+    has walked to lies nearer than where one step of the linearisation leads."""
+    beyond = [s for s in h.slots if s in problem.tolerance.sd and abs(base.beta[s] - problem.origin[s]) > OUT_OF_TOLERANCE * problem.tolerance.sd[s]]
+    there = start.copy()
+    there[list(h.slots)] = base.beta[list(h.slots)]
+    return [there] if beyond else []
 
 
 def _has_local_minima(h: Hypothesis) -> bool:

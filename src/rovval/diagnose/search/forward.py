@@ -36,7 +36,7 @@ class Selection:
 
     Attributes:
         models: every model that was fitted, the healthy vehicle first.
-        best: the most probable of them, its fit with sensitivities.
+        best: the most probable set of causes, its fit with sensitivities; the healthy vehicle where beside that none is worth a thought (`NEGLIGIBLE`).
         healthy: the fit of coefficients within tolerance, without causes.
         ranking: every hypothesis with the reduction of the gap that it makes by itself, held out: the causes first, then by that.
         steps: candidates of each step that had any.
@@ -49,6 +49,11 @@ class Selection:
     ranking: tuple[tuple[str, float], ...]
     steps: tuple[tuple[Row, ...], ...]
     onset: Onset | None
+
+    @property
+    def log_posterior(self) -> float:
+        """That of the most probable model."""
+        return max(m.log_posterior for m in self.models)
 
 
 def search(
@@ -80,6 +85,7 @@ def search(
             break
     progress("weighing the causes beside each other", 0.7)
     healthy, models, best = _reconsidered(problem, prior, healthy, models, best, tried)
+    best = _leading(problem, models, best)
     rows = tuple(tuple((c.hypothesis.name, c.evidence, c.gain) for c in step) for step in tried)
     return Selection(tuple(models), best, healthy, _ranking(problem, library, best, rows), rows, onset)
 
@@ -98,6 +104,12 @@ def _extended(
     if not any(h.evident or promised[h.label] > needed[h.label] for h in open_now):
         return [], onset
     return [c for c in candidates(problem, data, open_now, promised, baseline, chosen) if plausible(problem, c)], onset
+
+
+def _leading(problem: Problem, models: Sequence[Model], best: Model) -> Model:
+    """The most probable set of causes among ``models``, or ``best``, the most probable of all, where that is a healthy vehicle and no set comes near it."""
+    near = [m for m in models if m.fit and m.log_posterior > best.log_posterior + log(NEGLIGIBLE)]
+    return best if best.fit or not near else refitted(problem, max(near, key=lambda m: m.log_posterior))
 
 
 def _model(prior: ModelPrior, front: Model, one: Candidate) -> Model:

@@ -33,7 +33,7 @@ EFFECT = Effect(
     parameters=(
         Parameter("gain", "N", -60.0, 60.0, 0.0, 6.0, "chosen: up to half of the weight of the water that the jets move", "weight"),
         Parameter(
-            "height", "m", 0.05, 5.0, 0.5, 0.3, "two to three propeller diameters (Bhattacharyya 2016) to 1 m (chosen)", role="extent", starts=(0.2, 0.5, 1.5),
+            "height", "m", 0.05, 1.5, 0.5, 0.3, "two to three propeller diameters (Bhattacharyya 2016) to 1 m (chosen)", role="extent", starts=(0.2, 0.5, 1.5),
         ),
         Parameter("drag", "1", -0.9, 30.0, 0.0, 1.0, "drag of a body that sinks onto a wall, some times that in open water (JMSE 2025)"),
         Parameter(

@@ -38,6 +38,8 @@ EFFECT = Effect(
     signature="a force fixed to north and east, or to a point, also when the vehicle lies still; a moment if it is attached aft",
     confused_with=("current_constant", "buoyancy_error", "cg_offset"),
     separates="a current's force depends on the vehicle's own speed, a pull's does not: two speeds on two headings",
+    held=True,
+    wanders=True,  # what is paid out, hauled and swept by the water changes it along the log (McLain and Rock 1992: from slack to 600 lbf)
     literature=("McLain and Rock 1992: measured tension of an ROV's tether, up to 600 lbf", "Driscoll 2000: dynamics of an ROV's tether"),
 )
 ROWS = ("north", "east", "down", "nearness", "depth", "ax", "az")

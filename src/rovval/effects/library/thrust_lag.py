@@ -25,7 +25,6 @@ EFFECT = Effect(
         Parameter("tau", "s", 0.0, 3.0, 0.0, 0.15, "0.02 to 0.5 s (chosen); T200: 50 to 76 ms (von Benzon 2022)"),
         Parameter(
             "dead", "s", 0.0, 1.5, 0.0, 0.1, "bus and speed controller: 0 to 0.2 s (chosen); of a lag of third order, about half of its mean delay",
-            role="extent",
         ),
     ),
     signature="follows every change of thrust, on all axes at once, gyro included",

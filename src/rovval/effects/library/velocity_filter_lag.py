@@ -28,7 +28,7 @@ EFFECT = Effect(
     parameters=(
         Parameter("tau", "s", 0.0, 3.0, 0.0, 0.2, "0.1 to 1 s (chosen)", tolerance=Tolerance(0.05, "s: half a sample at 10 Hz", calibrated=False)),
         # No tolerance: the time offset of the velocity log has it.
-        Parameter("dead", "s", 0.0, 1.5, 0.0, 0.1, "of a filter of second order, about a quarter of its mean delay; averaging and telemetry", role="extent"),
+        Parameter("dead", "s", 0.0, 1.5, 0.0, 0.1, "of a filter of second order, about a quarter of its mean delay; averaging and telemetry"),
     ),
     signature="u v w late and rounded, p q r and attitude not",
     confused_with=("thrust_lag", "time_offset", "added_mass"),
