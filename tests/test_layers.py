@@ -40,6 +40,10 @@ INSIDE = {
     "report": (("scenario",), ("",), ("recording",), ("batch", "blind", "diagnosis", "flight"), ("comparison",), ("common",)),
     "effects": (("library",), ("",)),
     "pipeline": (("",), ("keeping",), ("execution",), ("planning",), ("steps", "tolerances")),
+    "ingest": (
+        ("documentation",), ("inspection",), ("",), ("formats",), ("autopilot",), ("assembly",), ("clocks",), ("contents",), ("table",),
+        ("profile", "bags", "files"),
+    ),
     "plant": (("reference",), ("",), ("codegen",), ("platforms",)),
 }
 DEEPEST = 4  # files in the longest chain of imports inside a room of `diagnose`

@@ -10,7 +10,7 @@ from merlin_case import columns, text, write
 
 from rovval.core.errors import BadInput
 from rovval.ingest import read
-from rovval.ingest.clock import increasing_stamps
+from rovval.ingest.clocks.clock import increasing_stamps
 from rovval.ingest.formats.csv_log import read as read_csv
 from rovval.ingest.profile import load_profile, parse_profile
 from rovval.storage.archive import open_run

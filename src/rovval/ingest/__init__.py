@@ -1,9 +1,9 @@
-"""File -> `RawLog`. A reader is one file of this folder without leading underscore; it is imported when a log needs it.
+"""File -> `RawLog`. A reader is one file of ``formats``; it is imported when a log needs it.
 
 A reader has ``SUFFIXES`` (lower case, with dot), ``sniff(path) -> bool``, ``missing(path, profile) -> tuple[str, ...]`` (what the
 profile requires and the log has not), ``read(path, profile) -> RawLog`` and ``contents(path) -> Iterator[Block]`` (all that the log holds,
 without a profile: for `rovval inspect` and `rovval profile propose`), and ``ALSO``, the formats whose profiles it reads beside its own: what
-is a column of a CSV is one of a workbook, too. `rovval.ingest.topics` reads by profile whatever yields blocks. A source is one TOML file of
+is a column of a CSV is one of a workbook, too. `rovval.ingest.assembly.topics` reads by profile whatever yields blocks. A source is one TOML file of
 ``profiles``.
 """
 
@@ -17,12 +17,12 @@ from typing import Protocol, cast
 
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, RovvalError, UsageProblem
-from rovval.ingest import compression, formats
-from rovval.ingest.compression import is_compressed
+from rovval.ingest import formats
+from rovval.ingest.contents.block import Block
 from rovval.ingest.dive import read_dive
-from rovval.ingest.dive_file import is_dive
-from rovval.ingest.files import refuse_unusable
-from rovval.ingest.inspection.block import Block
+from rovval.ingest.files import compression, refuse_unusable
+from rovval.ingest.files.compression import is_compressed
+from rovval.ingest.files.dive_file import is_dive
 from rovval.ingest.profile import Profile, load_profile, profiles
 
 __all__ = ["Profile", "Reader", "formats_of", "load_profile", "profiles", "read", "reader", "readers"]
@@ -49,7 +49,7 @@ class Reader(Protocol):
 
     def contents(self, path: Path) -> Iterator[Block]:
         """All that the file holds, without a profile, as logged: blocks in the order of the file, a topic's as often as it needs (so that
-        memory stays bounded). `Block` says what stands in one, `rovval.ingest.inspection.flatten.flat` and `Collector` make them of decoded
+        memory stays bounded). `Block` says what stands in one, `rovval.ingest.contents.flatten.flat` and `Collector` make them of decoded
         messages. Damage is a finding of a block where something can be read, else `BadInput`."""
         ...
 

@@ -16,8 +16,8 @@ import numpy as np
 
 from rovval.core.data import RawLog, Series
 from rovval.core.errors import BadInput, UsageProblem, all_at_once
-from rovval.ingest.dive_file import Dive, DiveLog, load_dive, parts_of
 from rovval.ingest.files import sha256
+from rovval.ingest.files.dive_file import Dive, DiveLog, load_dive, parts_of
 from rovval.ingest.profile import FOLDER
 
 Reading = Callable[[Path, str | None, str | None], RawLog]  # `rovval.ingest.read`

@@ -19,11 +19,11 @@ import numpy as np
 
 from rovval.core.data import Array, RawLog
 from rovval.core.errors import BadInput, Finding, RovvalError, UsageProblem, all_at_once
-from rovval.ingest.ardusub import other_frame, turned
-from rovval.ingest.clock import increasing_stamps
+from rovval.ingest.autopilot.ardusub import other_frame, turned
+from rovval.ingest.clocks.clock import increasing_stamps
+from rovval.ingest.contents.block import Block, Collector
+from rovval.ingest.contents.flatten import flat
 from rovval.ingest.files import sha256
-from rovval.ingest.inspection.block import Block, Collector
-from rovval.ingest.inspection.flatten import flat
 from rovval.ingest.profile import ATTITUDE, Profile, Source
 
 SUFFIXES = (".bin", ".tlog")

@@ -10,15 +10,15 @@ import numpy as np
 
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, Finding
-from rovval.ingest import text_table
-from rovval.ingest.clock import DAY_S, increasing_stamps
-from rovval.ingest.columns import clock_columns, columns_of, unused, wanted
-from rovval.ingest.compression import opened
+from rovval.ingest.assembly.columns import clock_columns, columns_of, unused, wanted
+from rovval.ingest.clocks.clock import DAY_S, increasing_stamps
+from rovval.ingest.contents.block import Block
 from rovval.ingest.files import sha256
-from rovval.ingest.header import header_of
-from rovval.ingest.inspection.block import Block
+from rovval.ingest.files.compression import opened
 from rovval.ingest.profile import Profile
-from rovval.ingest.text_rows import TextRows
+from rovval.ingest.table import text_table
+from rovval.ingest.table.header import header_of
+from rovval.ingest.table.text_rows import TextRows
 
 SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".log", ".asc")
 ALSO: tuple[str, ...] = ()  # formats whose profiles this reads beside its own
@@ -43,8 +43,8 @@ def missing(path: Path, profile: Profile) -> tuple[str, ...]:
 def read(path: Path, profile: Profile) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming every missing column, or what else makes the file useless."""
     from rovval.ingest.assembly import Signal, build
-    from rovval.ingest.number_columns import NumberColumns
-    from rovval.ingest.stamps import stamps, written
+    from rovval.ingest.clocks.stamps import stamps, written
+    from rovval.ingest.table.number_columns import NumberColumns
 
     header, at, separator = _header(path, profile)
     where = columns_of(path, profile, header)
@@ -83,7 +83,7 @@ def read(path: Path, profile: Profile) -> RawLog:
 
 def contents(path: Path) -> Iterator[Block]:
     """The table's columns, numbers or text as their cells are. Raises `BadInput` where the file holds no table with a header."""
-    from rovval.ingest.cells import cells_of, numbers_and_texts
+    from rovval.ingest.table.cells import cells_of, numbers_and_texts
 
     text, _ = text_table.decode(path, HEAD)
     names = header_of(re.split(r"\r\n|\n|\r", text))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, Finding, UsageProblem
-from rovval.ingest.inspection.block import Block
+from rovval.ingest.contents.block import Block
 from rovval.ingest.profile import Profile
 
 if TYPE_CHECKING:
@@ -30,14 +30,14 @@ def sniff(path: Path) -> bool:
 
 def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     """Required columns (or sheets, of a profile that names topics) that the workbook has not, and `absent` ones that it has."""
-    from rovval.ingest.topics import missing_in
+    from rovval.ingest.assembly.topics import missing_in
 
     return missing_in({b.topic: (*b.numbers, *b.texts) for b in contents(path)}, profile)
 
 
 def read(path: Path, profile: Profile) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming every missing column, `UsageProblem` without fastexcel."""
-    from rovval.ingest.topics import read_blocks
+    from rovval.ingest.assembly.topics import read_blocks
 
     return read_blocks(path, profile, contents(path))
 
@@ -59,9 +59,9 @@ def contents(path: Path) -> Iterator[Block]:
 
 def _block(book: Any, name: str) -> Block:
     """The rows below the sheet's header, which may have a banner above it."""
-    from rovval.ingest.frame_block import block_of
-    from rovval.ingest.header import header_of
-    from rovval.ingest.text_table import HEADER_WITHIN
+    from rovval.ingest.contents.frame_block import block_of
+    from rovval.ingest.table.header import header_of
+    from rovval.ingest.table.text_table import HEADER_WITHIN
 
     head = book.load_sheet(name, header_row=None, skip_rows=0, n_rows=HEADER_WITHIN, dtypes="string").to_polars()
     lines = ["\t".join(" ".join(cell.split()) if cell else "" for cell in row) for row in head.iter_rows()]

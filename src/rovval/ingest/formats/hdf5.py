@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from rovval.core.data import RawLog
-from rovval.ingest.inspection.block import Block
+from rovval.ingest.contents.block import Block
 from rovval.ingest.profile import Profile
 
 SUFFIXES = (".h5", ".hdf5", ".hdf", ".he5")
@@ -22,22 +22,22 @@ def sniff(path: Path) -> bool:
 
 def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     """Required columns or groups of ``profile`` that the file has not, and `absent` ones that it has."""
-    from rovval.ingest.topics import missing_in
+    from rovval.ingest.assembly.topics import missing_in
 
     return missing_in({b.topic: (*b.numbers, *b.texts) for b in contents(path)}, profile)
 
 
 def read(path: Path, profile: Profile) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming everything that is missing, `UsageProblem` without h5py."""
-    from rovval.ingest.topics import read_blocks
+    from rovval.ingest.assembly.topics import read_blocks
 
     return read_blocks(path, profile, contents(path))
 
 
 def contents(path: Path) -> Iterator[Block]:
     """A block for each group, and for each length of arrays in it. Raises `BadInput` for a damaged file, `UsageProblem` without h5py."""
-    from rovval.ingest.hdf5_arrays import nested, opened
-    from rovval.ingest.nested_arrays import blocks_of
+    from rovval.ingest.contents.hdf5_arrays import nested, opened
+    from rovval.ingest.contents.nested_arrays import blocks_of
 
     with opened(path) as file:
         arrays, units = nested(file)

@@ -14,7 +14,7 @@ import numpy as np
 
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput
-from rovval.ingest.inspection.block import Block
+from rovval.ingest.contents.block import Block
 from rovval.ingest.profile import Profile
 
 SUFFIXES = (".mat",)
@@ -32,21 +32,21 @@ def sniff(path: Path) -> bool:
 
 def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     """Required columns or structures of ``profile`` that the workspace has not, and `absent` ones that it has."""
-    from rovval.ingest.topics import missing_in
+    from rovval.ingest.assembly.topics import missing_in
 
     return missing_in({b.topic: (*b.numbers, *b.texts) for b in contents(path)}, profile)
 
 
 def read(path: Path, profile: Profile) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming everything that is missing, `UsageProblem` without h5py for version 7.3."""
-    from rovval.ingest.topics import read_blocks
+    from rovval.ingest.assembly.topics import read_blocks
 
     return read_blocks(path, profile, contents(path))
 
 
 def contents(path: Path) -> Iterator[Block]:
     """A block for the variables, for each structure, and for each length of arrays among them."""
-    from rovval.ingest.nested_arrays import blocks_of
+    from rovval.ingest.contents.nested_arrays import blocks_of
 
     with path.open("rb") as file:
         new = file.read(len(HDF5_SINCE)) == HDF5_SINCE
@@ -54,7 +54,7 @@ def contents(path: Path) -> Iterator[Block]:
 
 
 def _of_hdf5(path: Path) -> dict[str, Any]:
-    from rovval.ingest.hdf5_arrays import nested, opened
+    from rovval.ingest.contents.hdf5_arrays import nested, opened
 
     with opened(path) as file:
         return nested(file, matlab=True)[0]

@@ -15,8 +15,8 @@ from typing import Any
 
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, Finding, UsageProblem
-from rovval.ingest.inspection.block import Block, Collector
-from rovval.ingest.inspection.flatten import flat
+from rovval.ingest.contents.block import Block, Collector
+from rovval.ingest.contents.flatten import flat
 from rovval.ingest.profile import Profile
 
 SUFFIXES = (".mcap",)
@@ -51,14 +51,14 @@ def holds_other_messages(path: Path) -> bool:
 
 def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     """Required topics of ``profile`` that the file has not, and `absent` ones that it has."""
-    from rovval.ingest.topics import missing_in
+    from rovval.ingest.assembly.topics import missing_in
 
     return missing_in(dict.fromkeys(_topics(path), ()), profile)
 
 
 def read(path: Path, profile: Profile) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming everything that is missing, `UsageProblem` without what decodes its messages."""
-    from rovval.ingest.topics import member_of, read_blocks
+    from rovval.ingest.assembly.topics import member_of, read_blocks
 
     patterns = {p for s in profile.channels.values() for p in s.topics}
     return read_blocks(path, profile, _blocks(path, lambda topic: any(member_of(p, topic) is not None for p in patterns)))

@@ -13,10 +13,10 @@ from typing import Any
 
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, Finding, UsageProblem
-from rovval.ingest.inspection.block import Block, Collector
-from rovval.ingest.inspection.flatten import flat
+from rovval.ingest.contents.block import Block, Collector
+from rovval.ingest.contents.flatten import flat
 from rovval.ingest.profile import Profile
-from rovval.ingest.stamped_lines import lines_of
+from rovval.ingest.table.stamped_lines import lines_of
 
 SUFFIXES = (".nmea", ".nme", ".log", ".txt")
 ALSO: tuple[str, ...] = ()
@@ -35,14 +35,14 @@ def sniff(path: Path) -> bool:
 
 def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     """Required sentences of ``profile`` that the log has not, and `absent` ones that it has."""
-    from rovval.ingest.topics import missing_in_blocks
+    from rovval.ingest.assembly.topics import missing_in_blocks
 
     return missing_in_blocks(contents(path), profile)
 
 
 def read(path: Path, profile: Profile) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming everything that is missing, `UsageProblem` without pynmeagps."""
-    from rovval.ingest.topics import read_blocks
+    from rovval.ingest.assembly.topics import read_blocks
 
     return read_blocks(path, profile, contents(path))
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput
-from rovval.ingest.inspection.block import Block
+from rovval.ingest.contents.block import Block
 from rovval.ingest.profile import Profile
 
 SUFFIXES = (".parquet", ".pq")
@@ -23,7 +23,7 @@ def sniff(path: Path) -> bool:
 
 def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     """Required columns of ``profile`` that the file has not, and `absent` ones that it has."""
-    from rovval.ingest.topics import missing_in
+    from rovval.ingest.assembly.topics import missing_in
 
     block = next(_blocks(path, rows=0))
     return missing_in({"": (*block.numbers, *block.texts)}, profile)
@@ -31,7 +31,7 @@ def missing(path: Path, profile: Profile) -> tuple[str, ...]:
 
 def read(path: Path, profile: Profile) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming every missing column, or what makes the file useless."""
-    from rovval.ingest.topics import read_blocks
+    from rovval.ingest.assembly.topics import read_blocks
 
     return read_blocks(path, profile, contents(path))
 
@@ -44,7 +44,7 @@ def contents(path: Path) -> Iterator[Block]:
 def _blocks(path: Path, rows: int | None = None) -> Iterator[Block]:
     import polars as pl
 
-    from rovval.ingest.frame_block import block_of
+    from rovval.ingest.contents.frame_block import block_of
 
     try:
         frame = pl.read_parquet(path, n_rows=rows, use_pyarrow=False, glob=False)

@@ -21,11 +21,11 @@ from rovval.ingest.bags.block import Connection, Index
 from rovval.ingest.bags.columns import Columns, Layouts, header_ns, types_of
 from rovval.ingest.bags.layout import Layout
 from rovval.ingest.bags.recording import Recording
-from rovval.ingest.clock import increasing_stamps
+from rovval.ingest.clocks.clock import increasing_stamps
+from rovval.ingest.contents.block import MOST_MEMBERS, Block
+from rovval.ingest.contents.flatten import LONGEST_TEXT
 from rovval.ingest.files import sha256
 from rovval.ingest.formats.mcap import holds_other_messages
-from rovval.ingest.inspection.block import MOST_MEMBERS, Block
-from rovval.ingest.inspection.flatten import LONGEST_TEXT
 from rovval.ingest.profile import ATTITUDE, Profile, Source
 
 SUFFIXES = (*recording.SUFFIXES, "")  # "": a folder

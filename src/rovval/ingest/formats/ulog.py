@@ -13,7 +13,7 @@ import numpy as np
 
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, Finding, UsageProblem
-from rovval.ingest.inspection.block import Block
+from rovval.ingest.contents.block import Block
 from rovval.ingest.profile import Profile
 
 SUFFIXES = (".ulg", ".ulog")
@@ -30,14 +30,14 @@ def sniff(path: Path) -> bool:
 
 def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     """Required messages of ``profile`` that the log has not, and `absent` ones that it has."""
-    from rovval.ingest.topics import missing_in
+    from rovval.ingest.assembly.topics import missing_in
 
     return missing_in({_topic(data): tuple(data.data) for data in _opened(path, _names(profile)).data_list}, profile)
 
 
 def read(path: Path, profile: Profile) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming everything that is missing, `UsageProblem` without pyulog."""
-    from rovval.ingest.topics import read_blocks
+    from rovval.ingest.assembly.topics import read_blocks
 
     return read_blocks(path, profile, _blocks(path, _names(profile)))
 

@@ -10,7 +10,7 @@ from rovval.core.data import RawLog
 from rovval.ingest.inspection.matches import Match, match
 from rovval.ingest.inspection.summary import Contents, summarised
 from rovval.ingest.profile import Profile
-from rovval.ingest.text_table import fits
+from rovval.ingest.table.text_table import fits
 
 
 @dataclass(frozen=True, slots=True)

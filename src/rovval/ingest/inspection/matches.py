@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
-from rovval.ingest import text_table
 from rovval.ingest.inspection.summary import Contents
 from rovval.ingest.profile import ATTITUDE, Profile, Source
+from rovval.ingest.table import text_table
 
 QUATERNIONS = ([".w", ".x", ".y", ".z"], ["[0]", "[1]", "[2]", "[3]"], ["1", "2", "3", "4"])  # how the formats name the members of one
 

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rovval.core.units import SI
-from rovval.ingest.columns import SPELLINGS
-from rovval.ingest.text_table import stated_unit
+from rovval.ingest.assembly.columns import SPELLINGS
+from rovval.ingest.table.text_table import stated_unit
 
 COMMAND = {"cmd", "command", "commanded", "setpoint", "sp", "set", "desired", "target", "demand", "ref", "reference", "soll"}
 SPEED = {"vel", "velocity", "speed", "linvel", "geschwindigkeit", "fahrt"}

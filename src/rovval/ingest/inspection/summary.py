@@ -9,7 +9,7 @@ import numpy as np
 
 from rovval.core.data import Array
 from rovval.core.errors import Finding
-from rovval.ingest.inspection.block import Block
+from rovval.ingest.contents.block import Block
 
 EXAMPLES = 5  # values of a field that are shown: enough to see what it is
 EPOCH_S = 946_684_800.0  # 2000-01-01 UTC: a stamp below it counts from some start, not from 1970

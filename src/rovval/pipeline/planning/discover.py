@@ -10,8 +10,8 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from rovval.core.errors import BadInput, all_at_once
-from rovval.ingest.compression import suffix
-from rovval.ingest.dive_file import files_of_dive, is_dive
+from rovval.ingest.files.compression import suffix
+from rovval.ingest.files.dive_file import files_of_dive, is_dive
 
 SUFFIXES = (
     ".csv", ".tsv", ".txt", ".xlsx", ".xls", ".xlsm", ".xlsb", ".ods", ".parquet", ".pq", ".mat", ".h5", ".hdf5", ".hdf", ".he5",

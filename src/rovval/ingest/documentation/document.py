@@ -1,4 +1,4 @@
-"""docs/profiles.md, written out of the model and the examples: ``python -m rovval.ingest.profile.document > docs/profiles.md``."""
+"""docs/profiles.md, written out of the model and the examples: ``python -m rovval.ingest.documentation.document > docs/profiles.md``."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pydantic.fields import FieldInfo
 from rovval import ingest
 from rovval.core.channels import CHANNELS
 from rovval.core.units import SI
-from rovval.ingest.profile.examples import Example, examples
+from rovval.ingest.documentation.examples import Example, examples
 from rovval.ingest.profile.model import Clock, Profile, Source
 
 INTRO = """# Profiles
@@ -20,7 +20,7 @@ INTRO = """# Profiles
 A profile is one TOML file that says, for one source of logs, which column or topic is which channel, in which unit and frame. Nothing is guessed: a
 channel without a unit is refused, an unknown key is refused, and all that is wrong with a profile is said at once.
 
-Written by `python -m rovval.ingest.profile.document` out of `src/rovval/ingest/profile`; change that.
+Written by `python -m rovval.ingest.documentation.document` out of `src/rovval/ingest/profile`; change that.
 
 For a new source:
 

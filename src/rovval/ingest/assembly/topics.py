@@ -16,13 +16,13 @@ import numpy as np
 
 from rovval.core.data import Array, RawLog
 from rovval.core.errors import BadInput, Finding, all_at_once
-from rovval.ingest import text_table
 from rovval.ingest.assembly import Signal, build
-from rovval.ingest.clock import DAY_S, Index, increasing_stamps
-from rovval.ingest.columns import columns_of, unused, wanted
+from rovval.ingest.assembly.columns import columns_of, unused, wanted
+from rovval.ingest.clocks.clock import DAY_S, Index, increasing_stamps
+from rovval.ingest.contents.block import Block
 from rovval.ingest.files import sha256
-from rovval.ingest.inspection.block import Block
 from rovval.ingest.profile import ATTITUDE, Profile, Source
+from rovval.ingest.table import text_table
 
 UNIX_TIME_S = 1e9  # stamps before 2001 count from a start of their own, not from 1970
 MESSAGE_CLOCKS = ("header", "record")
@@ -245,7 +245,7 @@ def _logged(path: Path, profile: Profile, topic: Topic, findings: list[Finding])
 def _column_stamps(path: Path, profile: Profile, topic: Topic) -> tuple[Array, int | None]:
     import polars as pl
 
-    from rovval.ingest.stamps import stamps
+    from rovval.ingest.clocks.stamps import stamps
 
     names = {}
     for column in profile.time.columns:

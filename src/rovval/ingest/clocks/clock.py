@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from rovval.core.data import Array
 from rovval.core.errors import BadInput, Finding
-from rovval.ingest.text_table import first_few
+from rovval.ingest.table.text_table import first_few
 
 SLIP_ROWS = 10  # rows: more than these behind or ahead are not a slip of one message
 STEPS, STEP_SHARE = 3, 0.01  # a clock is stepped back now and then, hardly ever more often than both of these

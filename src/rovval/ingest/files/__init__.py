@@ -7,7 +7,7 @@ import os
 from pathlib import Path
 
 from rovval.core.errors import BadInput
-from rovval.ingest.dive_file import files_of_dive, is_dive
+from rovval.ingest.files.dive_file import files_of_dive, is_dive
 
 
 def files_of(path: Path) -> tuple[Path, ...]:

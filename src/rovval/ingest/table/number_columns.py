@@ -1,6 +1,6 @@
 """Rows of text -> columns of numbers, block by block: what is blank is missing, what is neither is counted and named.
 
-A block whose cells are all numbers or empty is read in one step; any other cell by cell (`rovval.ingest.cells`).
+A block whose cells are all numbers or empty is read in one step; any other cell by cell (`rovval.ingest.table.cells`).
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ import polars as pl
 
 from rovval.core.data import Array
 from rovval.core.errors import BadInput, Finding, all_at_once
-from rovval.ingest.cells import BLANK, DECIMAL_COMMA, cells_of, shown
-from rovval.ingest.text_rows import Index, Rows, Tally
-from rovval.ingest.text_table import first_few
+from rovval.ingest.table.cells import BLANK, DECIMAL_COMMA, cells_of, shown
+from rovval.ingest.table.text_rows import Index, Rows, Tally
+from rovval.ingest.table.text_table import first_few
 
 POINT = r"\d\.\d"
 

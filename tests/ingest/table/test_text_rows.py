@@ -7,8 +7,8 @@ import pytest
 from merlin_case import columns, text
 
 from rovval.core.errors import BadInput
-from rovval.ingest.number_columns import NumberColumns
-from rovval.ingest.text_rows import TextRows
+from rovval.ingest.table.number_columns import NumberColumns
+from rovval.ingest.table.text_rows import TextRows
 
 HEADER = ("t", "a", "b")
 LINES = ["0,1,2", "1,,2.5", "2, 3 ,nan", '3,"4",5', "4,x,6", "5,6", "# a note", "", "6,7,8,9", "6,7,8", "6,7,8", "t,a,b", "7,1e3,-", "8,5,6,", "9,1,1"]

@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from rovval.core.errors import Finding
-from rovval.ingest.compression import lost_of, opened
+from rovval.ingest.files.compression import lost_of, opened
 
 LEAST_EPOCH_S, MOST_EPOCH_S = 1e9, 1e11  # numbers between are seconds since 1970 (2001 to the year 5138); milliseconds are beyond
 

@@ -11,8 +11,8 @@ import pytest
 
 from rovval.core.errors import BadInput, UsageProblem
 from rovval.ingest import read, reader
+from rovval.ingest.clocks.wall_clock import date_orders, nanoseconds, seconds_of_day
 from rovval.ingest.profile import parse_profile
-from rovval.ingest.wall_clock import date_orders, nanoseconds, seconds_of_day
 
 MOMENT = datetime(2024, 5, 3, 14, 3, 22, 125000)
 BERLIN = ZoneInfo("Europe/Berlin")

@@ -10,9 +10,9 @@ import polars as pl
 from rovval.core.data import Array
 from rovval.core.errors import BadInput
 from rovval.core.units import to_si
-from rovval.ingest.clock import over_midnight, time_of_day
+from rovval.ingest.clocks.clock import over_midnight, time_of_day
+from rovval.ingest.clocks.wall_clock import nanoseconds, seconds_of_day
 from rovval.ingest.profile import Clock, Profile
-from rovval.ingest.wall_clock import nanoseconds, seconds_of_day
 
 # Seconds from the start of 1970 back to what an epoch counts from: Excel's day 0 is 1899-12-30, LabVIEW's second 0 is 1904-01-01, Matlab's datenum of
 # 1970-01-01 is 719529 (their documentations).

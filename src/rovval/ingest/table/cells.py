@@ -9,7 +9,7 @@ import numpy as np
 import polars as pl
 
 from rovval.core.data import Array
-from rovval.ingest.text_table import cells
+from rovval.ingest.table.text_table import cells
 
 BLANK = ("", "nan", "-", "--", "null", "none", "n/a", "na", "#n/a", "-nan", "nan(ind)", "-nan(ind)")
 LONGEST_EXAMPLE = 40  # characters of a cell that a message shows

@@ -13,9 +13,9 @@ from rovval.core.data import Array, Flags, RawLog, Series
 from rovval.core.errors import BadInput, Finding
 from rovval.core.frames import ENU_TO_NED, FLU_TO_FSD, euler_from_quaternion, rotation_from_euler, wrap
 from rovval.core.units import to_si
-from rovval.ingest.heading import with_heading_zero
+from rovval.ingest.assembly.heading import with_heading_zero
+from rovval.ingest.assembly.thruster_speeds import signed_by_command, without_spikes
 from rovval.ingest.profile import ATTITUDE, GEODETIC, WORLD_VELOCITY, Profile, Source
-from rovval.ingest.thruster_speeds import signed_by_command, without_spikes
 
 SIDEWAYS_OR_DOWN = ("v", "w", "q", "r", "vdot", "wdot")  # change sign between forward-left-up and forward-starboard-down
 TO_NED = {"ned": np.eye(3), "enu": ENU_TO_NED, "nwu": FLU_TO_FSD}

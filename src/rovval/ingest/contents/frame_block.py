@@ -6,8 +6,8 @@ import numpy as np
 import polars as pl
 
 from rovval.core.data import Array
-from rovval.ingest.cells import numbers_and_texts
-from rovval.ingest.inspection.block import MOST_MEMBERS, Block
+from rovval.ingest.contents.block import MOST_MEMBERS, Block
+from rovval.ingest.table.cells import numbers_and_texts
 
 DAY, TIME = "%Y-%m-%d", "%H:%M:%S%.f"
 

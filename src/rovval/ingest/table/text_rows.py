@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval.core.errors import BadInput, Finding
-from rovval.ingest.compression import lost_of, opened
-from rovval.ingest.text_table import HEAD, byte_order, cells, first_few
+from rovval.ingest.files.compression import lost_of, opened
+from rovval.ingest.table.text_table import HEAD, byte_order, cells, first_few
 
 BLOCK = 1 << 24  # bytes of the file that are read at a time; a line that is longer is no row of it
 Index = NDArray[np.int64]

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rovval.ingest.inspection.block import BLOCK_ROWS, MOST_MEMBERS, Collector
-from rovval.ingest.inspection.flatten import flat
+from rovval.ingest.contents.block import BLOCK_ROWS, MOST_MEMBERS, Collector
+from rovval.ingest.contents.flatten import flat
 
 
 @dataclass

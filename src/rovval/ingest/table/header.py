@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from rovval.ingest.text_table import HEADER_WITHIN, SEPARATORS, cells
+from rovval.ingest.table.text_table import HEADER_WITHIN, SEPARATORS, cells
 
 ROWS_BELOW = 5  # rows below a header that have to be rows of its table: a banner has no table below it
 NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?")

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from rovval.core.errors import BadInput, all_at_once
 from rovval.core.units import SI
-from rovval.ingest import text_table
 from rovval.ingest.profile import Profile, Source
+from rovval.ingest.table import text_table
 
 Columns = dict[str, tuple[Source, dict[str, int]]]  # channel -> its source and columns (name -> position in the header)
 

@@ -15,16 +15,16 @@ from conftest import ROOT
 from rovval.core.channels import CHANNELS
 from rovval.core.units import SI
 from rovval.ingest import read, readers
+from rovval.ingest.documentation.document import text
+from rovval.ingest.documentation.examples import examples
 from rovval.ingest.profile import Clock, Profile, Source
-from rovval.ingest.profile.document import text
-from rovval.ingest.profile.examples import examples
 
 PAGE = ROOT / "docs" / "profiles.md"
 EXAMPLES = {e.title: e for e in examples()}
 
 
 def test_the_page_is_current():
-    assert PAGE.read_text(encoding="utf-8") == text(), "write it anew: python -m rovval.ingest.profile.document > docs/profiles.md"
+    assert PAGE.read_text(encoding="utf-8") == text(), "write it anew: python -m rovval.ingest.documentation.document > docs/profiles.md"
 
 
 def test_every_key_channel_unit_and_format_is_explained():

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rovval.core.errors import BadInput, Finding
-from rovval.ingest.compression import lost_of, opened
+from rovval.ingest.files.compression import lost_of, opened
 
 SEPARATORS = (",", ";", "\t", "|")
 HEADER_WITHIN = 200  # lines of banner above the header that are looked through

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.ingest.inspection.block import MOST_MEMBERS, Block
+from rovval.ingest.contents.block import MOST_MEMBERS, Block
 
 LEAST_ROWS = 2  # of which a log consists: single values are facts
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rovval.ingest.inspection.block import MOST_MEMBERS
+from rovval.ingest.contents.block import MOST_MEMBERS
 
 LONGEST_TEXT = 64  # characters: a stamp, a mode, a name; more is no field to read a value from
 

@@ -1,0 +1,1 @@
+"""Autopilots of the ArduPilot family: what their logs say of the vehicle."""

@@ -1,0 +1,1 @@
+"""Stamps as logged -> seconds that rise, and the moment that they count from."""

@@ -1,0 +1,1 @@
+"""Tables of text, however exported: encoding, header, rows, cells."""
