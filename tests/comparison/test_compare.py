@@ -171,6 +171,13 @@ def test_a_comparison_of_less_than_a_tenth_of_the_rows_is_refused(every: int, en
         compare(run, sparse)
 
 
+def test_velocities_of_a_few_rows_are_no_comparison_however_much_of_the_pose_there_is() -> None:
+    """Five rows of 1800 made "better than no motion on every axis", exit 0, since depth and attitude were there throughout."""
+    run = make_run(1200, holes=dict.fromkeys(VELOCITIES, slice(60, None)))
+    with pytest.raises(BadInput, match=r"\d\.\d % of its 1200 rows can be compared"):
+        compare(run, identical(run))
+
+
 def test_rows_that_every_stretch_starts_on_are_no_comparison() -> None:
     """Of a log at 1 Hz every row was the start of its own stretch: skill +1.00 on every axis."""
     run = make_run(1200)

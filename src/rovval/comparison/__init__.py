@@ -80,7 +80,8 @@ def compare(
 
 def _refuse_sparse(run: Run, sim: SimResult) -> None:
     """Raises `BadInput` where hardly a row was both measured and simulated for longer than the sample that it was started from."""
-    measured = np.any([run.ok(n) for n in (*VELOCITIES, *POSE_COMPARED)], axis=0)
+    told = [n for n in VELOCITIES if run.measured(n)] or list(POSE_COMPARED)  # what the answer is about: where there is a velocity, the velocities
+    measured = np.any([run.ok(n) for n in told], axis=0)
     share = max(float((measured & t.ok & ~_starts(t.stretch)).mean()) for t in (sim.free, sim.windowed))
     if share >= LEAST_COVERAGE:
         return
