@@ -12,20 +12,22 @@ from __future__ import annotations
 import importlib
 import pkgutil
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Protocol, cast
 
 from rovval.core.data import RawLog
-from rovval.core.errors import BadInput, RovvalError, UsageProblem
+from rovval.core.errors import BadInput, Finding, RovvalError, UsageProblem
 from rovval.ingest import formats
 from rovval.ingest.contents.block import Block
 from rovval.ingest.dive import read_dive
-from rovval.ingest.files import compression, refuse_unusable
+from rovval.ingest.files import compression, refuse_unusable, sha256
 from rovval.ingest.files.compression import is_compressed
 from rovval.ingest.files.dive_file import is_dive
 from rovval.ingest.profile import Profile, load_profile, profiles
 
-__all__ = ["Profile", "Reader", "formats_of", "load_profile", "profiles", "read", "reader", "readers"]
+__all__ = ["Profile", "Reader", "formats_of", "load_profile", "plain", "profiles", "read", "reader", "readers"]
 OF_TEXT = ("csv_log", "json_lines", "nmea")  # readers of text: they read it compressed, too
 
 
@@ -86,6 +88,24 @@ def read(path: Path, profile: str | None = None, timezone: str | None = None) ->
     refuse_unusable(path)
     if is_dive(path):
         return read_dive(path, read, profile, timezone)
+    with plain(path) as (whole, lost):
+        raw = _read(whole, profile, timezone)
+    return raw if whole == path else replace(raw, source=str(path), sha256=sha256(path), findings=(*lost, *raw.findings))
+
+
+@contextmanager
+def plain(path: Path) -> Iterator[tuple[Path, tuple[Finding, ...]]]:
+    """The file that readers are given, and what is lost of it: a log as it is, a compressed one unpacked for as long as it is read. Readers of
+    text unpack for themselves, while they read."""
+    of_text = {s for name in OF_TEXT for s in reader(name).SUFFIXES}
+    if path.is_dir() or compression.suffix(path) in of_text:
+        yield path, ()
+        return
+    with compression.unpacked(path) as (whole, lost):
+        yield whole, lost
+
+
+def _read(path: Path, profile: str | None, timezone: str | None) -> RawLog:
     chosen = (load_profile(profile) if profile is not None else _the_one_that_fits(path)).in_zone(timezone)
     able = [name for name in readers() if _able(name, path)]
     chosen_reader = reader(next(iter(_of_profile(chosen, able)), chosen.format))
@@ -128,9 +148,7 @@ def _of_no_format(path: Path) -> BadInput:
     if path.is_dir():
         hint = f"give one of the logs in it, or put all of them into the archive: `rovval ingest {path}`"
         return BadInput(f"{path}: of no known format: a folder that holds no bag", hint)
-    if (packed := is_compressed(path)) and not any(compression.suffix(path) in reader(name).SUFFIXES for name in OF_TEXT):
-        return BadInput(f"{path}: of no known format: compressed, and only logs of text are read so", "unpack it first")
-    if packed or path.suffix.lower() in known:
+    if is_compressed(path) or path.suffix.lower() in known:
         said = f"its name ends in {path.suffix}, and it does not begin as such a file does"
         return BadInput(f"{path}: of no known format: {said}", "is the file whole, and is it what its name says?")
     return BadInput(f"{path}: of no known format (known: {', '.join(known)})", "give --profile if the file has an unusual name")

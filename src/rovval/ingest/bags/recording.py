@@ -16,6 +16,7 @@ from rovval.ingest.bags import mcap_file, rosbag1, sqlite_file
 from rovval.ingest.bags.block import Block, Connection, Container
 
 SUFFIXES = (".bag", ".active", ".db3", ".mcap")  # a recorder calls a bag that it has not closed NAME.bag.active
+ZSTANDARD = b"\x28\xb5\x2f\xfd"  # RFC 8878, 3.1.1: magic of a frame
 MAGIC = (rosbag1.MAGIC[:12], sqlite_file.MAGIC, mcap_file.MAGIC)
 
 
@@ -34,7 +35,7 @@ class Recording:
         """The messages on ``topics``, many at a time."""
         for container in self.containers:
             for block in container.blocks(topics):
-                yield _unpacked(block) if self.packed else block
+                yield _unpacked(block) if self.packed or _packed(block) else block
 
     def foreign(self) -> dict[str, str]:
         """Topics whose messages are not serialised as ROS does, and how they are."""
@@ -144,6 +145,12 @@ def _of_whole_pages(file: Path, scratch: Path) -> Path:
     with copy.open("r+b") as opened:
         opened.truncate(file.stat().st_size // size * size)
     return copy
+
+
+def _packed(block: Block) -> bool:
+    """Whether messages are compressed one by one, as a file without its metadata.yaml does not say: none in CDR begins so."""
+    first = int(block.start[0]) if len(block.start) else 0
+    return block.connection.encoding == "cdr" and block.data[first : first + len(ZSTANDARD)].tobytes() == ZSTANDARD
 
 
 def _unpacked(block: Block) -> Block:

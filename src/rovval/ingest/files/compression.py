@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 import bz2
+import errno
 import io
 import lzma
+import shutil
+import tempfile
 import zlib
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, BinaryIO, cast
 
-from rovval.core.errors import Finding
+from rovval.core.errors import BadInput, Finding
 
-BLOCK = 1 << 16  # bytes of the packed file that are read at a time, and lost where the stream is damaged in one of them
-SUFFIXES = (".gz", ".bz2", ".xz", ".zst")
+BLOCK = 1 << 16  # bytes of the packed file that are read at a time
+PIECE = 1 << 10  # bytes of it that are unpacked at a time, and lost where the stream is damaged in one of them
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
+SUFFIXES = (".gz", ".bz2", ".xz", ".zst", ".zstd")
 ENDS_IN_THE_MIDDLE = "ends in the middle of its compressed stream"
 
 
@@ -65,7 +71,44 @@ def lost_of(file: BinaryIO, path: Path) -> tuple[Finding, ...]:
     raw = getattr(file, "raw", None)
     if not isinstance(raw, Unpacked) or not raw.lost:
         return ()
-    return (Finding("cut_file", path.name, f"{raw.lost}; the {raw.size} bytes before are read"),)
+    code = "cut_file" if ENDS_IN_THE_MIDDLE in raw.lost else "damaged_file"
+    return (Finding(code, path.name, f"{raw.lost}; the {raw.size:,} bytes before are read"),)
+
+
+@contextmanager
+def unpacked(path: Path) -> Iterator[tuple[Path, tuple[Finding, ...]]]:
+    """The content of a compressed file as a file of its own, which is gone afterwards, and what is lost of it; any other path as it is.
+
+    What is refused meanwhile names the compressed file. Raises `BadInput` where nothing of it can be unpacked, or no room is left for it.
+    """
+    if not is_compressed(path):
+        yield path, ()
+        return
+    with scratch_folder(path) as scratch:
+        plain = scratch / (path.stem if path.suffix.lower() in SUFFIXES else path.name)
+        with opened(path) as packed, plain.open("wb") as file:
+            shutil.copyfileobj(packed, file, BLOCK)
+            lost = lost_of(packed, path)
+        if not plain.stat().st_size:
+            raise BadInput(f"{path}: {lost[0].detail if lost else 'holds nothing'}", "is the file whole? fetch or export it again")
+        yield plain, lost
+
+
+@contextmanager
+def scratch_folder(path: Path) -> Iterator[Path]:
+    """A folder for copies of what is read of ``path``, gone afterwards. What is refused meanwhile names ``path``, not its copy. Raises `BadInput` where
+    there is no room for one."""
+    with tempfile.TemporaryDirectory(prefix="rovval-") as folder:
+        try:
+            yield Path(folder)
+        except BadInput as error:
+            said = error.message.replace(str(Path(folder) / path.name), str(path)).replace(str(Path(folder) / path.stem), str(path))
+            raise BadInput(said, error.hint) from None
+        except OSError as error:
+            if error.errno not in NO_ROOM:
+                raise
+            hint = f"it is copied into {tempfile.gettempdir()} to be read: make room there, or set TMPDIR"
+            raise BadInput(f"{path}: {error.strerror}", hint) from None
 
 
 class Unpacked(io.RawIOBase):
@@ -99,18 +142,20 @@ class Unpacked(io.RawIOBase):
         import zstandard
 
         stream, begun = self.unpacker(), False
-        block = self.packed.read(BLOCK)
-        while block:
-            try:
-                yield bytes(stream.decompress(block))
-            except (zlib.error, OSError, EOFError, lzma.LZMAError, zstandard.ZstdError) as error:
-                self.lost = f"its compressed stream ({self.kind}) is damaged: {error}"
-                return
-            begun, block = not stream.eof, b""
-            if stream.eof:
-                block, stream = stream.unused_data, self.unpacker()
-            block = block or self.packed.read(BLOCK)
-            if not begun:
-                block = block.lstrip(b"\0")  # a tape is filled up with zeros behind the last stream
+        for piece in self._pieces():
+            piece = piece if begun else piece.lstrip(b"\0")  # a tape is filled up with zeros behind the last stream
+            while piece:
+                try:
+                    yield bytes(stream.decompress(piece))
+                except (zlib.error, OSError, EOFError, lzma.LZMAError, zstandard.ZstdError) as error:
+                    self.lost = f"its compressed stream ({self.kind}) is damaged: {error}"
+                    return
+                begun, piece = not stream.eof, b""
+                if stream.eof:
+                    piece, stream = stream.unused_data.lstrip(b"\0"), self.unpacker()
         if begun:
             self.lost = f"the file {ENDS_IN_THE_MIDDLE} ({self.kind})"
+
+    def _pieces(self) -> Iterator[bytes]:
+        while block := self.packed.read(BLOCK):
+            yield from (block[at : at + PIECE] for at in range(0, len(block), PIECE))

@@ -29,7 +29,8 @@ def checked(profile: str, path: Path, timezone: str | None = None) -> Check:
     `BadInput` for a log that it cannot read, each with every problem at once."""
     raw = ingest.read(Path(path), profile, timezone)
     loaded = ingest.load_profile(profile)
-    contents = summarised(ingest.reader(loaded.format).contents(Path(path)))
+    with ingest.plain(Path(path)) as (whole, _):
+        contents = summarised(ingest.reader(loaded.format).contents(whole))
     matched = match(loaded, contents)
     used = {place for places in matched.found.values() for place in places}
     left = [(topic.name, a) for topic in contents.topics.values() for a in topic.fields if (topic.name, a) not in used]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from rovval import ingest
@@ -44,6 +44,12 @@ def inspect(path: Path) -> Inspection:
     """Everything that the log holds, by the reader whose format it is. Raises `BadInput` for a file that no reader reads."""
     path = Path(path)
     refuse_unusable(path)
+    with ingest.plain(path) as (whole, lost):
+        found = _inspected(whole)
+    return found if whole == path else replace(found, path=path, contents=replace(found.contents, findings=(*lost, *found.findings)))
+
+
+def _inspected(path: Path) -> Inspection:
     refused: list[BadInput] = []
     for name in ingest.formats_of(path):
         try:
