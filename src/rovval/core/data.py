@@ -66,12 +66,20 @@ class Series:
 
 
 @dataclass(frozen=True, slots=True)
+class Marker:
+    """A moment of a log that it names itself: ``t_s`` s after its start, what stands there."""
+
+    t_s: float
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
 class RawLog:
     """A log as logged: channels by their name of `rovval.core.channels`, already SI, forward-starboard-down and north-east-down.
 
     ``t0_ns`` is the UTC epoch of t = 0 in ns where the log knows it; ``properties`` are facts beside the channels (latitude of
     the origin, topics read). ``vehicle`` is the profile's vehicle name or "". ``rules`` is what the profile says of a channel's
-    resampling otherwise than the channel table.
+    resampling otherwise than the channel table. ``markers`` are in the order of time.
     """
 
     source: str
@@ -83,6 +91,7 @@ class RawLog:
     findings: tuple[Finding, ...] = ()
     properties: Mapping[str, str] = field(default_factory=dict)
     rules: Mapping[str, Rule] = field(default_factory=dict)
+    markers: tuple[Marker, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "channels", MappingProxyType(dict(self.channels)))
@@ -123,7 +132,8 @@ class ClockReport:
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """A log on the 10 Hz grid. ``values[name]`` (n,) in SI with NaN under the mask, ``reasons[name]`` (n,) `Reason` codes."""
+    """A log on the 10 Hz grid. ``values[name]`` (n,) in SI with NaN under the mask, ``reasons[name]`` (n,) `Reason` codes. ``markers`` are in the
+    order of time, s since the first grid point."""
 
     id: str
     source: str
@@ -138,6 +148,7 @@ class Run:
     clock: ClockReport
     findings: tuple[Finding, ...] = ()
     properties: Mapping[str, str] = field(default_factory=dict)
+    markers: tuple[Marker, ...] = ()
 
     def __post_init__(self) -> None:
         sizes = {v.shape for v in self.values.values()} | {r.shape for r in self.reasons.values()}

@@ -18,6 +18,7 @@ from rovval.ingest import read, readers
 from rovval.ingest.documentation.document import text
 from rovval.ingest.documentation.examples import examples
 from rovval.ingest.profile import Clock, Profile, Source
+from rovval.ingest.profile.model import Markers
 
 PAGE = ROOT / "docs" / "profiles.md"
 EXAMPLES = {e.title: e for e in examples()}
@@ -29,7 +30,7 @@ def test_the_page_is_current():
 
 def test_every_key_channel_unit_and_format_is_explained():
     page = PAGE.read_text(encoding="utf-8")
-    for model in (Profile, Clock, Source):
+    for model in (Profile, Clock, Source, Markers):
         for name, info in model.model_fields.items():
             assert info.description and f"| `{name}` |" in page, name
     assert all(f"`{name}" in page for name in (*CHANNELS, *SI, *readers()))

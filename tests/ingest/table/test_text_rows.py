@@ -7,6 +7,7 @@ import pytest
 from merlin_case import columns, text
 
 from rovval.core.errors import BadInput
+from rovval.ingest.table.header import Header
 from rovval.ingest.table.number_columns import NumberColumns
 from rovval.ingest.table.text_rows import TextRows
 
@@ -21,7 +22,7 @@ WRITINGS = {
 
 
 def read(path, size, separator=",", texts=None):
-    table = TextRows(path, HEADER, 1, separator, size)
+    table = TextRows(path, Header(HEADER, 1, separator), size)
     columns = NumberColumns({"time.t": 0, "a": 1, "b": 2}, texts or {}, separator, 3)
     for rows in table.blocks():
         columns.take(rows)
@@ -78,7 +79,7 @@ def test_a_log_of_many_blocks_is_read_as_one(tmp_path):
     path.write_text("\n" + text(cells := columns()))
     header = tuple(cells)
     places = {name: at for at, name in enumerate(header)}
-    table, read_ = TextRows(path, header, 1, ",", 1000), NumberColumns(places, {}, ",", len(header))
+    table, read_ = TextRows(path, Header(tuple(header), 1, ","), 1000), NumberColumns(places, {}, ",", len(header))
     for rows in table.blocks():
         read_.take(rows)
     values, _, lines, again = read_.arrays()

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from rovval.core.channels import Rule
-from rovval.core.data import Array, Flags, RawLog, Series
+from rovval.core.data import Array, Flags, Marker, RawLog, Series
 from rovval.core.errors import BadInput, Finding
 from rovval.core.frames import ENU_TO_NED, FLU_TO_FSD, euler_from_quaternion, rotation_from_euler, wrap
 from rovval.core.units import to_si
@@ -37,21 +37,25 @@ class Signal:
 
 def build(
     profile: Profile,
-    signals: Mapping[str, Signal],
+    signals: Iterable[tuple[str, Signal]],
     path: Path,
     sha256: str,
     t0_ns: int | None,
     findings: Sequence[Finding],
     properties: Mapping[str, str],
+    markers: Sequence[Marker] = (),
 ) -> RawLog:
-    """The log out of its signals (channel name -> signal). Raises `BadInput` when no signal holds a value."""
+    """The log out of its signals, (channel name, signal) one after the other: who makes them on the way holds each once. Raises `BadInput` when
+    no signal holds a value."""
     found = list(findings)
     if profile.draft:
         detail = "its units, frames and channels are guesses that nobody has reviewed: confirm them and delete the line `draft`"
         found.insert(0, Finding("draft_profile", profile.name, detail))
     facts = {"profile_sha256": profile.sha256, **properties}
     series: dict[str, Series] = {}
-    for name, signal in signals.items():
+    sources: dict[str, Source] = {}
+    for name, signal in signals:
+        sources[name] = signal.source
         present: Flags = np.asarray(np.isfinite(signal.values.reshape(len(signal.t), -1)).all(axis=1))
         if signal.source.missing:
             present = present & ~np.isin(signal.values, signal.source.missing)
@@ -76,7 +80,8 @@ def build(
     ordered = {name: _angles(name, series[name], found) for name in _in_order(profile, series)}
     return RawLog(
         source=str(path), sha256=sha256, profile=profile.name, vehicle=profile.vehicle_file, t0_ns=t0_ns, channels=ordered,
-        findings=tuple(found), properties=facts, rules={n: r for n in ordered if (r := _rule(profile, signals, n)) is not None},
+        findings=tuple(found), properties=facts, rules={n: r for n in ordered if (r := _rule(sources, n)) is not None},
+        markers=tuple(markers),
     )  # fmt: skip
 
 
@@ -203,10 +208,9 @@ def _angles(name: str, series: Series, found: list[Finding]) -> Series:
     return Series(series.t[~spike], values[~spike], series.stamp)
 
 
-def _rule(profile: Profile, signals: Mapping[str, Signal], name: str) -> Rule | None:
-    signal = signals.get(ATTITUDE if name in EULER and name not in signals else name)
-    if signal is None:
+def _rule(sources: Mapping[str, Source], name: str) -> Rule | None:
+    s = sources.get(ATTITUDE if name in EULER and name not in sources else name)
+    if s is None:
         return None
-    s = signal.source
     rule = Rule(s.resampling, s.longest_gap_s, s.stuck_s)
     return rule if rule != Rule() else None

@@ -8,16 +8,11 @@ from pathlib import Path
 
 from rovval.core.errors import BadInput, all_at_once
 from rovval.core.units import SI
-from rovval.ingest.profile import Profile, Source
+from rovval.ingest.profile import GEODETIC, Profile, Source
 from rovval.ingest.table import text_table
+from rovval.ingest.table.unit_names import unit_of
 
 Columns = dict[str, tuple[Source, dict[str, int]]]  # channel -> its source and columns (name -> position in the header)
-
-SPELLINGS = {
-    "°": "deg", "degrees": "deg", "degree": "deg", "°/s": "deg/s", "dps": "deg/s", "m/s^2": "m/s2", "m/s²": "m/s2",
-    "1/min": "rpm", "r/min": "rpm", "metre": "m", "meter": "m", "metres": "m", "meters": "m", "mps": "m/s", "v": "V", "knots": "knot",
-    "radps": "rad/s", "radians": "rad", "kn": "knot", "kt": "knot",
-}  # fmt: skip
 
 
 def wanted(profile: Profile, required: bool = False) -> list[str]:
@@ -75,8 +70,8 @@ def _near(column: str, header: Sequence[str]) -> str:
 
 def _unit_clash(cell: str, source: Source) -> str:
     stated = (text_table.stated_unit(cell) or "").strip()
-    unit = stated if stated in SI else SPELLINGS.get(stated.casefold(), stated)
-    if unit not in SI or source.unit not in SI or SI[unit] == SI[source.unit]:
+    unit = unit_of(stated)
+    if unit not in SI or source.unit not in SI or SI[unit] == SI[source.unit] or (unit, source.unit) == ("deg", GEODETIC):
         return ""
     return f"column {cell!r} says {stated!r}, the profile says {source.unit!r}"
 

@@ -13,7 +13,7 @@ from rovval import ingest
 from rovval.core.channels import CHANNELS
 from rovval.core.units import SI
 from rovval.ingest.documentation.examples import Example, examples
-from rovval.ingest.profile.model import Clock, Profile, Source
+from rovval.ingest.profile.model import Clock, Markers, Profile, Source
 
 INTRO = """# Profiles
 
@@ -52,7 +52,8 @@ Inside, the body is forward-starboard-down, the world north-east-down, everythin
 
 def text() -> str:
     """The page."""
-    parts = [INTRO, _keys(Profile, "## Keys of a profile"), _keys(Clock, "## Keys of `[time]`"), _keys(Source, "## Keys of a channel"), _channels(), AXES]
+    keys = ((Profile, "a profile"), (Clock, "`[time]`"), (Source, "a channel"), (Markers, "`[markers]`"))
+    parts = [INTRO, *(_keys(model, f"## Keys of {of}") for model, of in keys), _channels(), AXES]
     parts += [_units(), _formats(), "## Worked examples\n", *(_example(i, e) for i, e in enumerate(examples(), 1))]
     return "\n".join(parts)
 

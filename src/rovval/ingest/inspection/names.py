@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rovval.core.units import SI
-from rovval.ingest.assembly.columns import SPELLINGS
 from rovval.ingest.table.text_table import stated_unit
+from rovval.ingest.table.unit_names import unit_of
 
 COMMAND = {"cmd", "command", "commanded", "setpoint", "sp", "set", "desired", "target", "demand", "ref", "reference", "soll"}
 SPEED = {"vel", "velocity", "speed", "linvel", "geschwindigkeit", "fahrt"}
@@ -64,7 +64,7 @@ def words(name: str) -> list[str]:
 def unit_said(name: str, stated: str) -> str | None:
     """The unit that the log or the name says, in the words of a profile; None where neither does."""
     for said in (stated, stated_unit(name) or ""):
-        unit = said if said in SI else SPELLINGS.get(said.casefold(), said)
+        unit = unit_of(said)
         if unit in SI and unit != "1":
             return "pwm_us" if unit == "us" else unit
     said_words = words(name)

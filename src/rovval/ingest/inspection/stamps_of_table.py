@@ -10,12 +10,12 @@ import polars as pl
 
 from rovval.core.errors import BadInput
 from rovval.core.units import SI, TIME_UNITS
-from rovval.ingest.assembly.columns import SPELLINGS
 from rovval.ingest.clocks.clock import time_of_day
 from rovval.ingest.clocks.stamps import BEFORE_1970_S
 from rovval.ingest.clocks.wall_clock import date_orders, nanoseconds, seconds_of_day
 from rovval.ingest.inspection.summary import FieldSummary, Rhythm, TopicSummary, rhythm
 from rovval.ingest.table.text_table import plain_name, stated_unit
+from rovval.ingest.table.unit_names import unit_of
 
 NAMES = ("t", "time", "timestamp", "stamp", "zeit", "zeitstempel", "elapsed", "elapsedtime", "seconds", "secs", "sec", "datetime", "datum", "date", "uhrzeit")
 PARTS = (("hour", "hours", "h", "hh", "stunde"), ("minute", "minutes", "min", "mm"), ("second", "seconds", "sec", "ss", "s", "sekunde"),
@@ -117,7 +117,7 @@ def _likely(r: Rhythm) -> bool:
 def _stated(field: FieldSummary) -> str | None:
     """The unit of time that the column's name or the log says."""
     said = field.unit or stated_unit(field.address) or ""
-    unit = SPELLINGS.get(said.casefold(), said)
+    unit = unit_of(said)
     if unit in TIME_UNITS:
         return unit
     return next((u for suffix, u in SUFFIXES.items() if field.address.casefold().endswith(suffix)), None)

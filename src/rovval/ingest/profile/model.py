@@ -74,6 +74,19 @@ class Source(BaseModel):
         return () if self.topic is None else (self.topic,) if isinstance(self.topic, str) else self.topic
 
 
+class Markers(BaseModel):
+    """Where the log names moments itself: an operator's notes, modes, the beginning of a manoeuvre. `--from` and `--to` take such a name."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+
+    column: str | None = None
+    """The column of a table; where its cell begins to say something, or something else, stands a marker."""
+    topic: str | None = None
+    """The topic of a bag, or the message type of an autopilot (`MSG`, `STATUSTEXT`): each message is a marker."""
+    field: str | None = None
+    """The field of the topic that names it: `data`, `Message`, `text`."""
+
+
 class Clock(BaseModel):
     """Where the stamps come from."""
 
@@ -99,7 +112,7 @@ class Clock(BaseModel):
 
 
 # Keys that came after the first archives: they count for the digest where they are set, so that the ids of runs stay as they were.
-LATER = {"source": ("sign_from", "world"), "time": ("since", "date_order", "timezone"), "profile": ("ardusub_frame", "draft")}
+LATER = {"source": ("sign_from", "world"), "time": ("since", "date_order", "timezone"), "profile": ("ardusub_frame", "draft", "header", "markers")}
 
 
 class Profile(BaseModel):
@@ -132,6 +145,10 @@ class Profile(BaseModel):
     """Where the stamps come from: the keys of `[time]`."""
     channels: dict[str, Source] = Field(min_length=1)
     """Channel -> source: the keys of `[channels]`."""
+    markers: Markers | None = None
+    """Where the log names moments itself: the keys of `[markers]`."""
+    header: Strings = ()
+    """Of a table of text without a line of names: the names of all its columns, in order. Every line is a row then."""
     absent: Strings = ()
     """Columns or topics whose presence says that a log is *not* of this source."""
     ardusub_frame: Literal["vectored", "vectored_6dof"] | None = None

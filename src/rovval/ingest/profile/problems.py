@@ -19,6 +19,12 @@ def problems(profile: Profile) -> list[str]:
         found.append(f"ardusub_frame is for autopilot logs, not {profile.format}")
     if profile.format != "ros_bag" and (several := [n for n, s in profile.channels.items() if len(s.topics) > 1]):
         found.append(f"{', '.join(several)}: a list of topics is for bags; {profile.format} takes one name")
+    if profile.header and profile.format != "csv_log":
+        found.append(f"header is for tables of text (csv_log), not {profile.format}")
+    if twice := sorted({n for n in profile.header if profile.header.count(n) > 1}):
+        found.append(f"header: {', '.join(map(repr, twice))} stand there twice")
+    if (m := profile.markers) is not None and ((m.column is None) == (m.topic is None) or (m.topic is None) != (m.field is None)):
+        found.append("markers: needs either column, or topic and field")
     lacking = {s.sign_from for s in profile.channels.values() if s.sign_from} - {n.partition(":")[0] for n in profile.channels}
     found += [f"sign_from = {family!r}: no channel {family}:THRUSTER is mapped" for family in sorted(lacking)]
     geodetic = [n for n in ("x", "y") if n in profile.channels and profile.channels[n].unit == GEODETIC]

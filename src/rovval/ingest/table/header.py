@@ -4,11 +4,46 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 
-from rovval.ingest.table.text_table import HEADER_WITHIN, SEPARATORS, cells
+from rovval.ingest.table.text_table import HEADER_WITHIN, SEPARATORS, cells, header_place
+from rovval.ingest.table.unit_names import NUMBER, are_units, with_units
 
 ROWS_BELOW = 5  # rows below a header that have to be rows of its table: a banner has no table below it
-NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?")
+
+
+@dataclass(frozen=True, slots=True)
+class Header:
+    """The ``names`` of a table's columns, the line that holds them (``at``, counted from 0; -1 where none does), how many lines ``below`` it are
+    no rows (its units), and the ``separator``."""
+
+    names: tuple[str, ...]
+    at: int
+    separator: str
+    below: int = 0
+
+
+def header_with(text: str, wanted: Sequence[str]) -> Header | None:
+    """The header of the line that fits most of the ``wanted`` column patterns, with the units of the line below where that holds units; None where
+    no line fits any."""
+    place = header_place(text, wanted)
+    if place is None:
+        return None
+    names, at, separator = place
+    lines = re.split(r"\r\n|\n|\r", text)
+    below = cells(lines[at + 1], separator) if at + 1 < len(lines) else []
+    if len(below) == len(names) and are_units(below):
+        return Header(with_units(names, below), at, separator, 1)
+    return Header(names, at, separator)
+
+
+def stated_header(text: str, names: Sequence[str]) -> Header | None:
+    """The header of a table without a line of names: its separator is the one by which most lines have as many cells as there are ``names``; None
+    where none has."""
+    lines = [line for line in re.split(r"\r\n|\n|\r", text)[:HEADER_WITHIN] if line.strip()]
+    fitting = {separator: sum(len(cells(line, separator)) == len(names) for line in lines) for separator in SEPARATORS}
+    separator = max(fitting, key=lambda s: fitting[s])
+    return Header(tuple(names), -1, separator) if fitting[separator] else None
 
 
 def header_of(lines: Sequence[str]) -> tuple[str, ...] | None:

@@ -6,7 +6,7 @@ A block is checked as a whole: where every line of it is a row, it stays as it i
 from __future__ import annotations
 
 import codecs
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from rovval.core.errors import BadInput, Finding
 from rovval.ingest.files.compression import lost_of, opened
+from rovval.ingest.table.header import Header
 from rovval.ingest.table.text_table import HEAD, byte_order, cells, first_few
 
 BLOCK = 1 << 24  # bytes of the file that are read at a time; a line that is longer is no row of it
@@ -31,28 +32,29 @@ class Rows:
 
 
 class TextRows:
-    """The rows below a header: ``header`` is its cells, ``at`` its line, counted from 0; ``size`` bytes of the file are read at a time.
-    `findings` are whole once `blocks` is through."""
+    """The rows below a header; ``size`` bytes of the file are read at a time. `findings` are whole once `blocks` is through."""
 
-    def __init__(self, path: Path, header: Sequence[str], at: int, separator: str, size: int = BLOCK) -> None:
-        self.path, self.at, self.separator, self.width, self.size = path, at, separator, len(header), size
+    def __init__(self, path: Path, header: Header, size: int = BLOCK) -> None:
+        self.path, self.header, self.size = path, header, size
+        self.separator, self.width = header.separator, len(header.names)
         self._short, self._long, self._last = Tally(), Tally(), 0
         self._lost: tuple[Finding, ...] = ()
         self._count = 0
 
     def blocks(self) -> Iterator[Rows]:
         """The rows, block by block. Raises `BadInput` for a file that cannot be read."""
-        header = b""
+        again: frozenset[bytes] = frozenset()  # the lines of the header, which may be there again where files were joined
+        at = self.header.at + self.header.below  # the last line that is no row
         number = 0  # lines before the block
         with opened(self.path) as file:
             try:
                 for block in _texts(file, self.size):
                     count = block.count(b"\n")
-                    if number <= self.at < number + count:
-                        before = block.split(b"\n", self.at - number + 1)
-                        header, block = before[-2], before[-1]
-                        number, count = self.at + 1, block.count(b"\n")
-                    if number > self.at and block and (rows := self._rows(block, header, number)) is not None:
+                    if number <= at < number + count:
+                        *before, block = block.split(b"\n", at - number + 1)
+                        again = frozenset(before[-1 - self.header.below :]) - {b""}
+                        number, count = at + 1, block.count(b"\n")
+                    if number > at and block and (rows := self._rows(block, again, number)) is not None:
                         self._last = int(rows.lines[-1])
                         yield rows
                     number += count
@@ -63,6 +65,8 @@ class TextRows:
     def findings(self) -> tuple[Finding, ...]:
         """What was lost: the end of the file, rows of another length."""
         found = list(self._lost)
+        if self.header.below:
+            found.append(Finding("units_row", f"line {self.header.at + 2}", "holds units, no values; they are held against the profile"))
         cut = self._short.last == self._count > self._last > 0
         if cut:
             found.append(Finding("cut_line", f"line {self._count}", "the last line is cut; dropped"))
@@ -72,14 +76,14 @@ class TextRows:
             found.append(Finding("ragged_row", where, f"{ragged} rows have not the header's {self.width} cells; dropped"))
         return tuple(found)
 
-    def _rows(self, block: bytes, header: bytes, number: int) -> Rows | None:
-        if self._all_whole(block, header):
+    def _rows(self, block: bytes, again: frozenset[bytes], number: int) -> Rows | None:
+        if self._all_whole(block, again):
             return Rows(block, np.arange(number + 1, number + 1 + block.count(b"\n"), dtype=np.int64))
         rows: list[str] = []
         lines: list[int] = []
-        separator, again = self.separator, header.decode()
+        separator, header = self.separator, {line.decode() for line in again}
         for line_number, line in enumerate(block.decode()[:-1].split("\n"), number + 1):
-            if not line.strip(f"{separator} \t") or line.startswith("#") or line == again:  # a line of separators alone is a blank one
+            if not line.strip(f"{separator} \t") or line.startswith("#") or line in header:  # a line of separators alone is a blank one
                 continue
             count = line.count(separator) + 1 if '"' not in line else len(cells(line, separator))
             if (over := count - self.width) > 0 and line.endswith(separator * over):
@@ -91,7 +95,7 @@ class TextRows:
                 (self._short if count < self.width else self._long).add(line_number)
         return Rows("".join(f"{row}\n" for row in rows).encode(), np.array(lines, dtype=np.int64)) if rows else None
 
-    def _all_whole(self, block: bytes, header: bytes) -> bool:
+    def _all_whole(self, block: bytes, again: frozenset[bytes]) -> bool:
         """Whether every line is a row: no quotes, comments and repeated headers, and every ``width``-th separator or line end is a line end."""
         if b'"' in block or self.width < 2:
             return False
@@ -102,7 +106,8 @@ class TextRows:
         if len(marks) != self.width * block.count(b"\n") or not (content[ends] == newline).all():
             return False
         firsts = content[np.concatenate(([0], ends[:-1] + 1))]
-        return not (np.isin(firsts, (ord("#"), newline, ord(self.separator))).any() or ((firsts == header[0]).any() and header in block))
+        headers = any((firsts == line[0]).any() and line in block for line in again)
+        return not (headers or np.isin(firsts, (ord("#"), newline, ord(self.separator))).any())
 
 
 class Tally:
