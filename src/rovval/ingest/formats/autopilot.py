@@ -20,6 +20,7 @@ import numpy as np
 from rovval.core.data import Array, RawLog
 from rovval.core.errors import BadInput, Finding, RovvalError, UsageProblem, all_at_once
 from rovval.ingest.autopilot.ardusub import other_frame, turned
+from rovval.ingest.autopilot.packets import DATAFLASH, MAVLINK, STAMP, whole_packets
 from rovval.ingest.clocks.clock import increasing_stamps
 from rovval.ingest.contents.block import Block, Collector
 from rovval.ingest.contents.flatten import flat
@@ -28,8 +29,6 @@ from rovval.ingest.profile import ATTITUDE, Profile, Source
 
 SUFFIXES = (".bin", ".tlog")
 ALSO: tuple[str, ...] = ()  # formats whose profiles this reads beside its own
-DATAFLASH = b"\xa3\x95"  # every DataFlash packet begins so
-MAVLINK = (0xFE, 0xFD)  # first byte of a MAVLink 1 and 2 packet, after the 8 bytes of stamp that a .tlog adds
 PARAMETER = {"PARM": ("Name", "Value"), "PARAM_VALUE": ("param_id", "param_value")}  # message type -> fields of name and value
 LOOKED_AT = 20_000  # messages looked at to say which types a log has
 
@@ -37,15 +36,15 @@ LOOKED_AT = 20_000  # messages looked at to say which types a log has
 def sniff(path: Path) -> bool:
     """Whether the file begins as DataFlash or as a .tlog does."""
     with path.open("rb") as file:
-        head = file.read(9)
-    return head.startswith(DATAFLASH) or (len(head) == 9 and head[8] in MAVLINK)
+        head = file.read(STAMP + 1)
+    return head.startswith(DATAFLASH) or (len(head) > STAMP and head[STAMP] in MAVLINK)
 
 
 def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     """Required message types of ``profile`` that the beginning of the log has not."""
     seen: set[str] = set()
     parameters: dict[str, float] = {}
-    with _opened(path) as log:
+    with _opened(path) as (log, _):
         for _ in range(LOOKED_AT):
             message = log.recv_match()
             if message is None:
@@ -60,19 +59,20 @@ def missing(path: Path, profile: Profile) -> tuple[str, ...]:
 def read(path: Path, profile: Profile) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming every missing message and field, `UsageProblem` without pymavlink."""
     from rovval.ingest.assembly import Signal, build
+    from rovval.ingest.assembly.markers import markers_of, not_there
 
     wanted: dict[tuple[str, str], _Messages] = {}
     for name, source in profile.channels.items():
         wanted.setdefault(_type(source), _Messages()).channels[name] = source
     parameters: dict[str, float] = {}
-    bad = _collect(path, wanted, profile, parameters)
+    notes = _Notes(profile)
+    findings = _collect(path, wanted, profile, parameters, notes)
     if frame := other_frame(profile, parameters):
         hint = "give the profile of that frame (`rovval list profile`): its motors are other thrusters"
         raise BadInput(f"{path}: profile {profile.name!r} reads {frame}", hint)
     gone = [_address(kind, i) for (kind, i), m in wanted.items() if not m.record and not all(s.optional for s in m.channels.values())]
     if gone:
         raise BadInput(all_at_once(gone, f"{path}: missing messages of profile {profile.name!r}"), "see `rovval show profile`, or give another")
-    findings = [Finding("bad_packet", str(path), f"{bad} packets are damaged; left out")] if bad else []
     logged = {key: m for key, m in wanted.items() if m.record}
     lead = [r - b for m in logged.values() for r, b in zip(m.record, m.boot, strict=True) if np.isfinite(b)]
     offset = float(np.median(lead)) if lead else 0.0
@@ -93,8 +93,11 @@ def read(path: Path, profile: Profile) -> RawLog:
             signals[name] = Signal(t, column[rows], stamp, source)
     t0_ns = round(t0 * 1e9) if t0 > 1e9 else None  # smaller: seconds since the autopilot started
     signals, told = turned(profile, signals, parameters)
+    clock = np.where(np.isfinite(notes.boot), np.array(notes.boot) + offset, notes.record) if own else np.array(notes.record)
+    markers = markers_of(profile, clock - t0, notes.texts)
+    told += [not_there(profile)] if profile.markers and not markers else []
     facts = {"messages": ", ".join(k for k, _ in logged), **({"stamp_s_at_start": repr(t0)} if t0_ns is None else {})}
-    return build(profile, signals, path, sha256(path), t0_ns, [*findings, *told], facts)
+    return build(profile, signals.items(), path, sha256(path), t0_ns, [*findings, *told], facts, markers)
 
 
 def contents(path: Path) -> Iterator[Block]:
@@ -102,7 +105,7 @@ def contents(path: Path) -> Iterator[Block]:
 
     Raises `BadInput` for a damaged log, `UsageProblem` without pymavlink."""
     collector, bad = Collector(), 0
-    with _opened(path) as log:
+    with _opened(path) as (log, lost):
         while (message := log.recv_match()) is not None:
             kind = message.get_type()
             if kind == "BAD_DATA":
@@ -113,8 +116,12 @@ def contents(path: Path) -> Iterator[Block]:
             if block := collector.add(_address(kind, _instance(message)), kind, clocks, fields, left_out):
                 yield block
     yield from collector.rest()
-    if bad:
-        yield Block("", findings=(Finding("bad_packet", str(path), f"{bad} packets are damaged; left out"),))
+    if lost or bad:
+        yield Block("", findings=(*lost, *_bad(path, bad)))
+
+
+def _bad(path: Path, count: int) -> list[Finding]:
+    return [Finding("bad_packet", path.name, f"{count:,} packets do not fit their CRC, or are not what their type says; left out")] if count else []
 
 
 @dataclass(slots=True)
@@ -127,16 +134,36 @@ class _Messages:
     columns: dict[str, list[Any]] = field(default_factory=dict)
 
 
-def _collect(path: Path, wanted: dict[tuple[str, str], _Messages], profile: Profile, parameters: dict[str, float]) -> int:
-    """Fill ``wanted`` and ``parameters`` from the log; returns the number of damaged packets. Raises `BadInput` with every unknown field."""
+class _Notes:
+    """What the message type of a profile's markers says, and when by both clocks (s)."""
+
+    def __init__(self, profile: Profile) -> None:
+        self.kind, self.field = (profile.markers.topic or "", profile.markers.field or "") if profile.markers else ("", "")
+        self.boot: list[float] = []
+        self.record: list[float] = []
+        self.texts: list[str] = []
+
+    def take(self, message: Any) -> None:
+        """Append a message of that type."""
+        self.boot.append(_boot(message))
+        self.record.append(float(message._timestamp))
+        self.texts.append(str(getattr(message, self.field, "")))
+
+
+def _collect(
+    path: Path, wanted: dict[tuple[str, str], _Messages], profile: Profile, parameters: dict[str, float], notes: _Notes
+) -> list[Finding]:
+    """Fill ``wanted``, ``parameters`` and ``notes`` from the log; returns what is damaged. Raises `BadInput` with every unknown field."""
     count: Counter[str] = Counter()
     wrong: dict[str, None] = {}
-    types = [*{kind for kind, _ in wanted}, *PARAMETER, "BAD_DATA"]
-    with _opened(path) as log:
+    types = [*{kind for kind, _ in wanted}, *PARAMETER, "BAD_DATA", *filter(None, [notes.kind])]
+    with _opened(path) as (log, lost):
         while (message := log.recv_match(type=types)) is not None:
             kind = message.get_type()
             count[kind] += 1
             _note_parameter(message, parameters)
+            if kind == notes.kind:
+                notes.take(message)
             if (messages := wanted.get((kind, _instance(message)))) is None:
                 continue
             values, unknown = _values(message, messages)
@@ -148,7 +175,7 @@ def _collect(path: Path, wanted: dict[tuple[str, str], _Messages], profile: Prof
                     messages.columns.setdefault(name, []).append(value)
     if wrong:
         raise BadInput(all_at_once(list(wrong), f"{path}: fields that profile {profile.name!r} names"), "mend the profile's field")
-    return count["BAD_DATA"]
+    return [*lost, *_bad(path, count["BAD_DATA"])]
 
 
 def _note_parameter(message: Any, parameters: dict[str, float]) -> None:
@@ -199,19 +226,19 @@ def _boot(message: Any) -> float:
 
 
 @contextlib.contextmanager
-def _opened(path: Path) -> Iterator[Any]:
-    """pymavlink's reader, silent: it prints of damage where results are printed; a refusal says it instead."""
+def _opened(path: Path) -> Iterator[tuple[Any, list[Finding]]]:
+    """pymavlink's reader of the whole packets, and what is lost. It is silent: it prints of damage where results are printed."""
     try:
         from pymavlink import DFReader, mavutil
     except ImportError:
         raise UsageProblem(f"{path}: an autopilot log needs pymavlink", "pip install 'rovval[autopilot]'") from None
     log = None
     try:
-        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-            with path.open("rb") as file:
+        with whole_packets(path) as (whole, lost), contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+            with whole.open("rb") as file:
                 dataflash = file.read(2) == DATAFLASH
-            log = DFReader.DFReader_binary(str(path)) if dataflash else mavutil.mavlogfile(str(path))
-            yield log
+            log = DFReader.DFReader_binary(str(whole)) if dataflash else mavutil.mavlogfile(str(whole))
+            yield log, lost
     except (RovvalError, KeyboardInterrupt):
         raise
     except Exception as error:

@@ -1,0 +1,146 @@
+"""The packets of an autopilot's log, whole or damaged: what of a file is whole goes to the format's own library, what is lost is told.
+
+The libraries stop at damage, or read on from the wrong byte with the wrong stamp. DataFlash: every message is A3 95, its type and as many bytes as
+an FMT message says of that type, without a checksum (ArduPilot, libraries/AP_Logger/README.md). A .tlog: 8 bytes of stamp (us since 1970, big
+endian), then a MAVLink packet with its own CRC (mavlink.io, serialization), which the library checks.
+"""
+
+from __future__ import annotations
+
+import mmap
+import struct
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+
+from rovval.core.errors import Finding
+from rovval.ingest.files.compression import scratch_folder
+
+DATAFLASH = b"\xa3\x95"  # every DataFlash packet begins so
+FORMAT, FORMAT_SIZE, COLUMNS = 0x80, 89, 25  # the type of FMT messages, their bytes, and where in them the names of columns begin
+PAGE = 256  # bytes: block-based loggers fill the last page up, with what is no message
+MAVLINK = {0xFE: 8, 0xFD: 12}  # first byte of a MAVLink 1 and 2 packet -> its bytes beside the payload
+SIGNED, SIGNATURE = 1, 13  # flag of a MAVLink 2 packet that is signed, and the signature's bytes
+STAMP = 8  # bytes before each packet of a .tlog
+MOST_APART_US = 3 * 86_400_000_000  # us: a stamp so far from the one before is none (as pymavlink has it)
+Content = mmap.mmap | bytes
+
+
+@dataclass(slots=True)
+class Packets:
+    """What a file holds: the stretches of whole packets (first byte, byte after the last), how many packets, the last stamp (us; None where none is
+    known), and how many bytes at the ``tail`` belong to no whole packet."""
+
+    stretches: list[tuple[int, int]] = field(default_factory=list)
+    count: int = 0
+    last_us: int | None = None
+    tail: int = 0
+
+    def take(self, at: int, end: int) -> None:
+        """One more packet."""
+        if self.stretches and self.stretches[-1][1] == at:
+            self.stretches[-1] = (self.stretches[-1][0], end)
+        else:
+            self.stretches.append((at, end))
+        self.count += 1
+
+    def lost(self) -> tuple[int, int]:
+        """Bytes between packets that belong to none, and in how many places."""
+        ends = [0, *(end for _, end in self.stretches)]
+        gaps = [start - end for (start, _), end in zip(self.stretches, ends, strict=False) if start > end]
+        return sum(gaps), len(gaps)
+
+    def findings(self, where: str) -> list[Finding]:
+        """What is lost; () of a whole file."""
+        found = []
+        if self.tail:
+            to = "" if self.last_us is None else f", to {_moment(self.last_us)}"
+            found.append(Finding("cut_file", where, f"{self.count:,} packets{to}; the file ends in the middle of one ({self.tail:,} bytes)"))
+        size, places = self.lost()
+        if size:
+            found.append(Finding("damaged_file", where, f"{size:,} bytes in {places:,} places are no whole packet; left out"))
+        return found
+
+
+def _moment(us: int) -> str:
+    return f"{datetime.fromtimestamp(us // 1_000_000, UTC):%H:%M:%S} UTC" if us > 10**15 else f"{us * 1e-6:.1f} s after the start"
+
+
+@contextmanager
+def whole_packets(path: Path) -> Iterator[tuple[Path, list[Finding]]]:
+    """The file where all of it is whole packets, else a copy of those that are, gone afterwards; and what is lost."""
+    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
+        found = packets(content)
+        if not found.tail and not found.lost()[0]:
+            yield path, []
+            return
+        with scratch_folder(path) as folder:
+            copy = folder / path.name
+            with copy.open("wb") as out:
+                for start, end in found.stretches:
+                    out.write(content[start:end])
+            yield copy, found.findings(path.name)
+
+
+def packets(content: Content) -> Packets:
+    """The packets of a log, DataFlash or .tlog by its first bytes."""
+    return _walked(content, *((_dataflash(), DATAFLASH, 0) if content[:2] == DATAFLASH else (_telemetry, None, STAMP)))
+
+
+Packet = tuple[int, int | None]  # bytes of the packet at a place, 0 where none begins, and its stamp (us) where it has one
+
+
+def _walked(content: Content, packet: Callable[[Content, int], Packet], head: bytes | None, before: int) -> Packets:
+    """Packet after packet; where none begins that another one follows, on from the next ``head`` (None: any of MAVLink's), ``before`` bytes ahead
+    of which a packet begins."""
+    found, at, size = Packets(), 0, len(content)
+    while 0 <= at < size:
+        n, us = packet(content, at)
+        then = at + n
+        if n and then <= size and (then == size or _follows(packet(content, then), us) or _padding(content, then, head)):
+            found.take(at, then)
+            found.last_us = found.last_us if us is None else us
+            at = then
+        else:
+            places = [p for h in ([head] if head else map(bytes, zip(MAVLINK, strict=True))) if (p := content.find(h, at + before + 1)) >= 0]
+            at = min(places) - before if places else -1
+    end = found.stretches[-1][1] if found.stretches else 0
+    found.tail = 0 if _padding(content, end, head) else size - end
+    return found
+
+
+def _follows(packet: Packet, us: int | None) -> bool:
+    """Whether a packet is one that can follow one of that stamp."""
+    return packet[0] > 0 and (us is None or packet[1] is None or abs(packet[1] - us) <= MOST_APART_US)
+
+
+def _padding(content: Content, at: int, head: bytes | None) -> bool:
+    """Whether the rest of a file is what a block-based logger fills its last page with."""
+    return head is not None and len(content) - at < PAGE and head not in content[at:]
+
+
+def _dataflash() -> Callable[[Content, int], Packet]:
+    sizes = {FORMAT: FORMAT_SIZE}
+    stamped: set[int] = set()  # types that begin with TimeUS
+
+    def packet(content: Content, at: int) -> Packet:
+        if content[at : at + 2] != DATAFLASH or at + 3 > len(content):
+            return 0, None
+        kind = content[at + 2]
+        if kind == FORMAT and at + FORMAT_SIZE <= len(content) and content[at + 4] > 3:
+            sizes.setdefault(content[at + 3], content[at + 4])
+            if content[at + COLUMNS : at + COLUMNS + 6] == b"TimeUS":
+                stamped.add(content[at + 3])
+        timed = kind in stamped and at + 11 <= len(content)
+        return sizes.get(kind, 0), struct.unpack_from("<Q", content, at + 3)[0] if timed else None
+
+    return packet
+
+
+def _telemetry(content: Content, at: int) -> Packet:
+    if at + STAMP + 3 > len(content) or (beside := MAVLINK.get(content[at + STAMP])) is None:
+        return 0, None
+    signed = SIGNATURE if content[at + STAMP] == 0xFD and content[at + STAMP + 2] & SIGNED else 0
+    return STAMP + beside + content[at + STAMP + 1] + signed, struct.unpack_from(">Q", content, at)[0]
