@@ -81,7 +81,7 @@ def test_what_is_true_of_many_channels_is_one_finding():
     assert finding.where == "u, v"
 
 
-@pytest.mark.parametrize(("factor", "code", "says"), [(1 / 60, "scale", "0.0167 times"), (-1, "sign", "against its set-point"), (0.8, None, "")])
+@pytest.mark.parametrize(("factor", "code", "says"), [(1 / 60, "scale", "0.017 times"), (-1, "sign", "against its set-point"), (0.8, None, "")])
 def test_a_thruster_far_from_its_set_point_has_a_wrong_unit_or_sign(factor, code, says):
     """A governor that droops by a fifth does not."""
     t = np.arange(0, 60, 0.1)

@@ -2,15 +2,17 @@
 
 import json
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
-from merlin_case import write
+from merlin_case import columns, text, write
 from typer.testing import CliRunner
 
 from rovval.cli import logs
 from rovval.cli.app import app
 from rovval.core.errors import BadInput, Finding, UsageProblem
+from rovval.ingest.profile import FOLDER
 from rovval.storage.archive import open_run
 
 RUNNER = CliRunner()
@@ -58,7 +60,7 @@ def test_a_log_given_twice_is_no_second_log(tmp_path):
         copy.parent.mkdir(exist_ok=True)
         copy.write_bytes(path.read_bytes())
         with pytest.raises(UsageProblem, match=rf"{copy.name} is given twice, as .*dive\.csv"):
-            logs.opened_as_one([str(path), str(copy)], None, "merlin", Path("archive"))
+            logs.opened_as_one([str(path), str(copy)], None, logs.Reading("merlin"))
 
 
 def test_logs_of_two_vehicles_are_not_taken_for_one(tmp_path, monkeypatch):
@@ -72,8 +74,8 @@ def test_logs_of_two_vehicles_are_not_taken_for_one(tmp_path, monkeypatch):
     monkeypatch.setattr("rovval.storage.archive.open_run", of_another)
     both = [str(path), str(other)]
     with pytest.raises(UsageProblem, match=r"(?s)dive.csv is of merlin.*other.csv is of minerva"):
-        logs.opened_as_one(both, None, "merlin", Path("archive"))
-    assert len(logs.opened_as_one(both, "merlin", "merlin", Path("archive"))) == 2
+        logs.opened_as_one(both, None, logs.Reading("merlin"))
+    assert len(logs.opened_as_one(both, "merlin", logs.Reading("merlin"))) == 2
 
 
 @pytest.mark.parametrize("command", [("fit", "--parameters", "inflow_loss", "--out"), ("diagnose", "--write-vehicle")])
@@ -96,3 +98,27 @@ def test_a_stretch_of_a_log_is_taken_and_said(tmp_path, monkeypatch, command):
     assert json.loads(done.stdout)["run"].endswith("-from5to25s") and "stretch: log: from 5 to 25 s of" in done.stderr
     beyond = RUNNER.invoke(app, [command, "dive.csv", "--profile", "merlin", "--from", "5", "--to", "2500"])
     assert isinstance(beyond.exception, BadInput) and "beyond the log" in beyond.exception.message
+
+
+def test_the_zone_of_stamps_that_say_none_is_asked_for_by_every_command(tmp_path, monkeypatch):
+    """Only `rovval ingest` had it: a comparison of the same file stood at another hour."""
+    monkeypatch.chdir(tmp_path)
+    cells = columns(300)
+    stamps = [f"2024-06-01 {int(h):02d}:{int(m):02d}:{int(s):02d}.{int(ms):03d}" for h, m, s, ms in zip(*list(cells.values())[:4], strict=True)]
+    Path("dive.csv").write_text(text({"Stamp": stamps, **dict(list(cells.items())[4:])}), encoding="utf-8")
+    profile = (FOLDER / "merlin.toml").read_text(encoding="utf-8")
+    time = 'kind = "time_of_day"\ncolumns = ["Hour", "Minute", "Second", "Millisecond"]'
+    Path("mine.toml").write_text(profile.replace(time, 'kind = "datetime"\ncolumns = ["Stamp"]'), encoding="utf-8")
+    asked = ["dive.csv", "--profile", "mine.toml", "--timezone", "Europe/Berlin"]
+    done = RUNNER.invoke(app, ["export", *asked, "--to", "parquet", "--out", "a.parquet", "--json"])
+    assert done.exit_code == 0, done.output
+    kept = RUNNER.invoke(app, ["ingest", *asked, "--json"])
+    assert json.loads(done.stdout)["run"] == json.loads(kept.stdout)["logs"][0]["run"]
+    assert open_run(json.loads(done.stdout)["run"]).t0_ns == datetime(2024, 6, 1, 8, tzinfo=UTC).timestamp() * 1e9
+
+
+def test_every_command_that_takes_a_log_takes_the_same_of_it():
+    """By their help: how it is read, in which zone, and which stretch."""
+    for command in ("ingest", "simulate", "compare", "diagnose", "fit", "scenario", "export", "view"):
+        said = RUNNER.invoke(app, [command, "--help"], env={"COLUMNS": "200"}).stdout
+        assert all(option in said for option in ("--profile", "--timezone", "--from", "--until" if command == "export" else "--to")), command

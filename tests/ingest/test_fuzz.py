@@ -5,14 +5,10 @@ from __future__ import annotations
 import resource
 import time
 from collections import Counter
-from pathlib import Path
 
 import numpy as np
 import pytest
-from bag_case import write
-from merlin_case import columns, text
-from real_data import real
-from rosbags.rosbag1 import Writer as Bag1
+from log_files import CASES
 
 from rovval.core.errors import RovvalError
 from rovval.ingest import read
@@ -25,33 +21,6 @@ MOST_BYTES = 300_000_000  # by which all of them raise the most that the process
 def memory() -> int:
     """The most that the process ever held, bytes."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
-
-
-def packed(kind):
-    return lambda writer: writer.set_compression(kind)
-
-
-def bag(folder: Path, prepare=None) -> Path:
-    return write("bag", folder / "a.bag", 20_000, prepare)
-
-
-SOURCES = {
-    "csv": lambda folder: _file(folder / "a.csv", text(columns()).encode()),
-    "utf-16": lambda folder: _file(folder / "a.csv", text(columns()).encode("utf-16")),
-    "bag": bag,
-    "bag lz4": lambda folder: bag(folder, packed(Bag1.CompressionFormat.LZ4)),
-    "bag bz2": lambda folder: bag(folder, packed(Bag1.CompressionFormat.BZ2)),
-    "db3": lambda folder: next(write("db3", folder / "b").glob("*.db3")),
-    "mcap": lambda folder: next(write("mcap", folder / "m").glob("*.mcap")),
-    "bin": lambda folder: real("ardusub/small.BIN"),
-    "tlog": lambda folder: _file(folder / "a.tlog", real("ardusub/small.tlog").read_bytes()[:200_000]),
-}
-PROFILES = {"csv": "merlin", "utf-16": "merlin", "bin": "ardusub_vectored", "tlog": "ardusub_tlog"}
-
-
-def _file(path: Path, content: bytes) -> Path:
-    path.write_bytes(content)
-    return path
 
 
 def mutant(whole: bytes, rng: np.random.Generator) -> bytes:
@@ -81,11 +50,12 @@ def mutant(whole: bytes, rng: np.random.Generator) -> bytes:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", SOURCES)
-def test_every_mutant_is_read_or_refused(name, tmp_path, capsys):
-    whole = SOURCES[name](tmp_path)
+@pytest.mark.parametrize("name", CASES)
+def test_every_mutant_is_read_or_refused(name, tmp_path, capfd):
+    write, profile_of = CASES[name]
+    whole, profile = write(tmp_path), profile_of(tmp_path)
     content, rng = whole.read_bytes(), np.random.default_rng(sum(name.encode()))
-    path = tmp_path / f"mutant{whole.suffix}"
+    path = tmp_path / ("mutant" + "".join(whole.suffixes))
     became: Counter[str] = Counter()
     slowest = 0.0
     before = memory()
@@ -93,14 +63,14 @@ def test_every_mutant_is_read_or_refused(name, tmp_path, capsys):
         path.write_bytes(mutant(content, rng))
         start = time.process_time()
         try:
-            raw = read(path, PROFILES.get(name, "ros_odometry"))
+            raw = read(path, profile)
             became["read, said" if raw.findings else "read, nothing found"] += 1
         except RovvalError as refused:
             assert refused.message and refused.hint and len(refused.message) < 5000, number
             became["refused"] += 1
         slowest = max(slowest, time.process_time() - start)
     biggest = memory() - before
-    printed = capsys.readouterr()
+    printed = capfd.readouterr()
     assert printed.out == printed.err == ""
     print(f"\n{name}: {dict(became)}, slowest {slowest:.2f} s, {biggest / 1e6:.0f} MB more than before")
     assert slowest < LONGEST_S and biggest < MOST_BYTES

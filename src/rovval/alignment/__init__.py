@@ -12,6 +12,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import cast, get_args
 
@@ -59,6 +60,7 @@ def align(raw: RawLog, rate_hz: float = RATE_HZ, methods: Mapping[str, str] | No
         id=_run_id(raw, rate_hz, methods or {}), source=raw.source, sha256=raw.sha256, profile=raw.profile, vehicle=raw.vehicle,
         t0_ns=t0_ns, dt=dt, values=values, reasons=reasons, resampled=resampled, clock=_clock(raw, values, start, dt, resampled),
         findings=tuple(findings), properties={**raw.properties, "grid_start_s": repr(start)},
+        markers=tuple(replace(m, t_s=m.t_s - start) for m in raw.markers),
     )  # fmt: skip
 
 

@@ -32,7 +32,7 @@ def check(raw: RawLog) -> tuple[Finding, ...]:
         found += bad_samples(name, series, None)[1]
         found += _rate(name, series)
         found += _commands_absent(raw, name, series)
-    return (*_merged(found), *_kinematics(raw), *_kinematics_when_level(raw), *attitude_in_radians(raw), *against_commands(raw))
+    return (*_merged(found), *_kinematics(raw), *_kinematics_when_level(raw), *attitude_in_radians(raw), *_merged(list(against_commands(raw))))
 
 
 def _merged(found: list[Finding]) -> list[Finding]:

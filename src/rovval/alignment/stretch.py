@@ -6,23 +6,50 @@ from dataclasses import replace
 
 import numpy as np
 
-from rovval.core.data import Reason, Run
+from rovval.core.data import Marker, Reason, Run
 from rovval.core.errors import BadInput, Finding, UsageProblem
 
 LEAST_SAMPLES = 2  # of which a run consists
+MOST_NAMES = 300  # characters of markers' names that a refusal lists
 
 
-def stretch_of(run: Run, start_s: float | None = None, end_s: float | None = None) -> Run:
-    """The samples of ``run`` from ``start_s`` to ``end_s`` (s since its first grid point, both ends within); None is its own start or end.
+Moment = float | str | None
 
-    Its id says the stretch, its time counts from ``start_s``, and a finding says so. What the whole log was found to have stays among its findings.
+
+def stretch_of(run: Run, start: Moment = None, end: Moment = None) -> Run:
+    """The samples of ``run`` from ``start`` to ``end`` (both ends within): s since its first grid point, or the name of a marker of the log; None
+    is its own start or end. Of markers of one name the first holds, for the end the first one after the start.
+
+    Its id says the stretch, its time counts from its start, and a finding says so. What the whole log was found to have stays among its findings.
 
     Raises:
         UsageProblem: a time is no number, or the end is not after the start.
-        BadInput: the stretch begins or ends beyond the log, or no channel holds a value in it.
+        BadInput: the log has no such marker, or the stretch begins or ends beyond the log, or no channel holds a value in it.
     """
-    if start_s is None and end_s is None:
-        return run
+    start_s = _seconds(run, start, -np.inf)
+    end_s = _seconds(run, end, -np.inf if start_s is None else start_s)
+    return run if start_s is None and end_s is None else _cut(run, start_s, end_s)
+
+
+def _seconds(run: Run, said: Moment, after_s: float) -> float | None:
+    """What is said in s since the run's start: a number, or the first marker of that name after ``after_s``. Raises `BadInput`."""
+    if said is None or isinstance(said, float | int):
+        return said
+    try:
+        return float(said)
+    except ValueError:
+        pass
+    named = [m for m in run.markers if m.name.casefold() == said.casefold()]
+    if later := [m.t_s for m in named if m.t_s > after_s]:
+        return later[0]
+    if named:
+        raise BadInput(f"run {run.id}: the marker {said!r} is not there after {after_s:g} s", f"it is at {', '.join(f'{m.t_s:g} s' for m in named[:5])}")
+    known = ", ".join(dict.fromkeys(f"{m.name!r}" for m in run.markers))
+    hint = f"its markers: {known[:MOST_NAMES]}" if known else "give seconds; a log has markers where its profile says where they stand: [markers]"
+    raise BadInput(f"run {run.id}: no marker {said!r}", hint)
+
+
+def _cut(run: Run, start_s: float | None, end_s: float | None) -> Run:
     start, end = 0.0 if start_s is None else start_s, run.duration_s if end_s is None else end_s
     asked = f"from {start:g} to {end:g} s"
     beyond = start < 0.0 or end > run.duration_s + 0.5 * run.dt or (end_s is None and start >= run.duration_s)
@@ -46,4 +73,5 @@ def stretch_of(run: Run, start_s: float | None = None, end_s: float | None = Non
         run, id=f"{run.id}-from{start:g}to{end:g}s", values={name: x[of] for name, x in run.values.items()}, reasons=reasons, resampled=covered,
         t0_ns=None if run.t0_ns is None else run.t0_ns + round(late * 1e9), findings=(Finding("stretch", "log", said), *run.findings),
         properties={**run.properties, "grid_start_s": repr(grid_start + late)},
+        markers=tuple(Marker(m.t_s - late, m.name) for m in run.markers if start <= m.t_s <= end),
     )  # fmt: skip

@@ -47,7 +47,7 @@ def _unsigned(name: str, speed: Series, other: str, command: Array) -> list[Find
     if np.corrcoef(np.abs(speed.values), np.abs(command))[0, 1] < FOLLOWS:
         return []
     detail = (
-        f"the speed never changes its sign, while its command goes both ways ({100 * ahead:.0f} % ahead, {100 * astern:.0f} % astern): "
+        f"the speed never changes its sign, while its command goes both ways: "
         f"it is logged without sign; give the channel sign_from = {other.partition(':')[0]!r} in the profile"
     )
     return [Finding("unsigned", f"{name}, {other}", detail)]
@@ -63,5 +63,5 @@ def _proportional(name: str, speed: Series, other: str, wanted: Series) -> list[
     if 1 / RATIO < ab / bb < RATIO:
         return []
     units = mistaken_units(ab / bb)
-    detail = f"the thruster turns {ab / bb:.3g} times its set-point: one of the units is wrong" + (f" (the ratio of {units})" if units else "")
+    detail = f"the thruster turns {ab / bb:.2g} times its set-point: one of the units is wrong" + (f" (the ratio of {units})" if units else "")
     return [Finding("scale", f"{name}, {other}", detail)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,8 +19,7 @@ PROTOCOL = "the movement protocol (thesis, table 4.6)"
 
 
 def difference(
-    names: tuple[str, str], source: str | None, vehicle: str | None, effects: Sequence[str], profile: str | None,
-    between: tuple[float | None, float | None], archive: Path, out: Path | None, as_json: bool, quiet: bool,
+    names: tuple[str, str], source: str | None, vehicle: str | None, effects: Sequence[str], how: logs.Reading, out: Path | None, as_json: bool, quiet: bool
 ) -> None:  # fmt: skip
     """B minus A on stdout; difference.json, .md and .html into ``out``, where it is given."""
     from rovval.comparison.between import between as subtract
@@ -28,12 +28,12 @@ def difference(
     if not platforms and source is not None:
         raise UsageProblem(f"{source}: two files need no log", f"leave it out, or give platforms: {', '.join(complete.known('platform'))}")
     if source is not None and (source.endswith(".toml") or source in _missions()):
-        a, b = (_flown(source, vehicle, name, effects) if name in platforms else _track(name, None, effects, profile, archive, quiet) for name in names)
+        a, b = (_flown(source, vehicle, name, effects) if name in platforms else _track(name, None, effects, how, quiet) for name in names)
         result, what = subtract(a, b), f"mission {source}"
         _told(result, what, out, as_json, quiet)
         return
-    driven: tuple[Run, Vehicle] | None = _driven(source, vehicle, profile, archive, quiet, between) if platforms else None
-    a, b = (_track(name, driven, effects, profile, archive, quiet) for name in names)
+    driven: tuple[Run, Vehicle] | None = _driven(source, vehicle, how, quiet) if platforms else None
+    a, b = (_track(name, driven, effects, how, quiet) for name in names)
     result = subtract(a, b)
     what = "as recorded in the files" if driven is None else f"{driven[1].name}, {driven[0].source or PROTOCOL}"
     _told(result, what, out, as_json, quiet)
@@ -62,17 +62,13 @@ def _told(result: Difference, what: str, out: Path | None, as_json: bool, quiet:
     output.result_json(report.document(result, what)) if as_json else output.result(report.text(result, what))
 
 
-def _driven(
-    source: str | None, vehicle: str | None, profile: str | None, archive: Path, quiet: bool, between: tuple[float | None, float | None]
-) -> tuple[Run, Vehicle]:
+def _driven(source: str | None, vehicle: str | None, how: logs.Reading, quiet: bool) -> tuple[Run, Vehicle]:
     """The run that drives platforms, and whose vehicle: a log's, or the movement protocol of any vehicle."""
-    from dataclasses import replace
-
     from rovval import vehicle as vehicles
     from rovval.pipeline.steps import vehicle_of
 
     if source is not None:
-        run = logs.opened(source, profile, archive, quiet, *between)
+        run = logs.opened(source, how, quiet)
         return run, vehicle_of(run, vehicle)
     from rovval.fly.scenarios.movements import protocol
     from rovval.fly.scenarios.still_water import commanded
@@ -92,7 +88,7 @@ def _flown(mission: str, vehicle: str | None, model: str, effects: Sequence[str]
     return of_run(fly(plan, vehicles.load(vehicle or plan.vehicle or "merlin"), model, effects).run(truth=True), model)
 
 
-def _track(name: str, driven: tuple[Run, Vehicle] | None, effects: Sequence[str], profile: str | None, archive: Path, quiet: bool) -> Track:
+def _track(name: str, driven: tuple[Run, Vehicle] | None, effects: Sequence[str], how: logs.Reading, quiet: bool) -> Track:
     """The motion that a name stands for: of a platform, of a simulation's file, or of a run."""
     from rovval.comparison.between import of_run, of_simulation
     from rovval.simulation.file import load_simulation
@@ -103,4 +99,4 @@ def _track(name: str, driven: tuple[Run, Vehicle] | None, effects: Sequence[str]
         return of_simulation(simulate(*driven, name, effects), name)
     if name.endswith(".parquet") and Path(name).is_file():
         return of_simulation(load_simulation(Path(name)), Path(name).stem)
-    return of_run(logs.opened(name, profile, archive, quiet), name)
+    return of_run(logs.opened(name, replace(how, start=None, end=None), quiet), name)

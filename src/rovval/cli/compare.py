@@ -56,8 +56,9 @@ def command(
     effect: options.EffectOption = None,
     window: options.WindowOption = 10.0,
     profile: options.ProfileOption = None,
-    start_s: options.FromOption = None,
-    end_s: options.ToOption = None,
+    timezone: options.TimezoneOption = None,
+    start: options.FromOption = None,
+    end: options.ToOption = None,
     archive: options.ArchiveOption = Path("archive"),
     out: Out = None,
     fail_above: options.FailAbove = None,
@@ -79,10 +80,11 @@ def command(
       rovval compare dive.csv --between fossen uuv
       rovval compare --between fossen uuv --vehicle bluerov2_heavy
     """
+    how = logs.Reading(profile, archive, timezone, start, end)
     if between is not None:
         from rovval.cli.between import difference
 
-        difference(between, source, vehicle, tuple(effect or ()), profile, (start_s, end_s), archive, out, json_, quiet)
+        difference(between, source, vehicle, tuple(effect or ()), how, out, json_, quiet)
         return
     if source is None:
         raise UsageProblem("compare needs a log or run", "give one, or --between A B")
@@ -93,7 +95,7 @@ def command(
     show = output.progress(quiet)
     limits = tolerances.parse(fail_above or ())
     show("read", 0.0)
-    run = logs.opened(source, profile, archive, quiet, start_s, end_s)
+    run = logs.opened(source, how, quiet)
     nominal = vehicle_of(run, vehicle)
     run = logs.checked_against(run, nominal, quiet)
     other = None if with_ is None else other_velocities(with_, run, with_profile, archive)

@@ -47,8 +47,9 @@ def command(
     seed: Seed = 0,
     write_vehicle: WriteVehicle = None,
     profile: options.ProfileOption = None,
-    start_s: options.FromOption = None,
-    end_s: options.ToOption = None,
+    timezone: options.TimezoneOption = None,
+    start: options.FromOption = None,
+    end: options.ToOption = None,
     archive: options.ArchiveOption = Path("archive"),
     quiet: options.QuietOption = False,
 ) -> None:
@@ -70,14 +71,15 @@ def command(
     anywhere = _folder(out, json_, "")
     refuse_unwritable(None if str(json_) == "-" else json_, write_vehicle, anywhere and anywhere / "diagnosis.json")
     options.refuse_overwriting(vehicle, write_vehicle)
-    runs = logs.opened_as_one(sources, vehicle, profile, archive, quiet, start_s, end_s)
+    how = logs.Reading(profile, archive, timezone, start, end)
+    runs = logs.opened_as_one(sources, vehicle, how, quiet)
     nominal = vehicle_of(runs[0], vehicle)
     runs = [logs.checked_against(run, nominal, quiet) for run in runs]
     found = diagnose(
         runs, nominal, model=model.value, window_s=window, calibration_slop=calibration_slop, seed=seed,
         progress=output.progress(quiet),
     )  # fmt: skip
-    typed = Typed(dict(zip((run.id for run in runs), sources, strict=True)), vehicle or "", _unusual(window, profile, archive, start_s, end_s))
+    typed = Typed(dict(zip((run.id for run in runs), sources, strict=True)), vehicle or "", _unusual(window, how))
     found = diagnosis_json.worded(found, typed)
     for line in found.runs_left_out:
         output.say(f"left out: {line}", quiet)
@@ -90,14 +92,15 @@ def _folder(out: Path | None, json_: Path | None, run: str) -> Path | None:
     return out if out or json_ else Path("reports") / run / "diagnosis"
 
 
-def _unusual(window: float, profile: str | None, archive: Path, start_s: float | None, end_s: float | None) -> tuple[str, ...]:
+def _unusual(window: float, how: logs.Reading) -> tuple[str, ...]:
     """The options that other commands on these logs need, too: those that were not left as they are."""
     given = {
         "--window": "" if window == 10.0 else f"{window:g}",
-        "--profile": profile,
-        "--archive": "" if str(archive) == "archive" else str(archive),
-        "--from": "" if start_s is None else f"{start_s:g}",
-        "--to": "" if end_s is None else f"{end_s:g}",
+        "--profile": how.profile,
+        "--timezone": how.timezone,
+        "--archive": "" if str(how.archive) == "archive" else str(how.archive),
+        "--from": how.start,
+        "--to": how.end,
     }
     return tuple(word for flag, value in given.items() if value for word in (flag, value))
 

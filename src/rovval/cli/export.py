@@ -32,8 +32,11 @@ def command(
         typer.Option("--with", metavar="SIM", help="A .parquet of `rovval simulate` of the same run, to stand beside what was measured."),
     ] = None,
     profile: options.ProfileOption = None,
-    start_s: options.FromOption = None,
-    end_s: Annotated[float | None, typer.Option("--until", metavar="S", help="Take the log to here, s since the run's start (--to is the format).")] = None,
+    timezone: options.TimezoneOption = None,
+    start: options.FromOption = None,
+    end: Annotated[
+        str | None, typer.Option("--until", metavar="S|MARKER", help="Take the log to here, s since the run's start, or a marker (--to is the format).")
+    ] = None,
     archive: options.ArchiveOption = Path("archive"),
     out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="Default: reports/RUN/RUN with the format's suffix.")] = None,
     json_: options.JsonFlag = False,
@@ -51,7 +54,7 @@ def command(
     from rovval.storage.atomic import refuse_unwritable
 
     refuse_unwritable(out)
-    run = logs.opened(source, profile, archive, quiet, start_s, end_s)
+    run = logs.opened(source, logs.Reading(profile, archive, timezone, start, end), quiet)
     path = out or Path("reports") / run.id / f"{run.id}{export.suffix(to.value)}"
     files = export.write(run, to.value, path, _simulation(with_))
     if run.t0_ns is None and to not in (To.csv, To.parquet):

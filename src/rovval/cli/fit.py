@@ -36,8 +36,9 @@ def command(
     model: options.ModelOption = options.Model.fossen,
     window: options.WindowOption = 10.0,
     profile: options.ProfileOption = None,
-    start_s: options.FromOption = None,
-    end_s: options.ToOption = None,
+    timezone: options.TimezoneOption = None,
+    start: options.FromOption = None,
+    end: options.ToOption = None,
     archive: options.ArchiveOption = Path("archive"),
     json_: options.JsonFlag = False,
     quiet: options.QuietOption = False,
@@ -68,7 +69,7 @@ def command(
 
     refuse_unwritable(out)
     options.refuse_overwriting(vehicle, out)
-    runs = logs.opened_as_one(sources, vehicle, profile, archive, quiet, start_s, end_s)
+    runs = logs.opened_as_one(sources, vehicle, logs.Reading(profile, archive, timezone, start, end), quiet)
     wanted, nominal = [name for some in parameters or () for name in some.split(",") if name], vehicle_of(runs[0], vehicle)
     if parameters is None:
         from rovval.fit import FitResult

@@ -20,8 +20,8 @@ def command(
     ],
     profile: options.ProfileOption = None,
     timezone: options.TimezoneOption = None,
-    start_s: options.FromOption = None,
-    end_s: options.ToOption = None,
+    start: options.FromOption = None,
+    end: options.ToOption = None,
     archive: options.ArchiveOption = Path("archive"),
     json_: options.JsonFlag = False,
     quiet: options.QuietOption = False,
@@ -48,7 +48,7 @@ def command(
     for number, log in enumerate(files):
         show(f"ingest {log.name}", number / len(files))
         try:
-            run = stretch_of(open_run(str(log), profile, archive, timezone), start_s, end_s)
+            run = stretch_of(open_run(str(log), profile, archive, timezone), start, end)
             save_run(run, archive)
         except RovvalError as error:
             worst = max(worst, error.exit_code)

@@ -84,8 +84,8 @@ def show_command(
     name: Annotated[
         str, typer.Argument(help="Its name, or a path to a TOML file of one's own.", autocompletion=_names_of_kind)
     ],
-    start_s: options.FromOption = None,
-    end_s: options.ToOption = None,
+    start: options.FromOption = None,
+    end: options.ToOption = None,
     archive: options.ArchiveOption = Path("archive"),
     json_: options.JsonFlag = False,
 ) -> None:
@@ -99,10 +99,10 @@ def show_command(
       rovval show run RUN --json
       rovval show run RUN --from 60 --to 120
     """
-    if kind is not Kind.run and not (start_s is None and end_s is None):
+    if kind is not Kind.run and not (start is None and end is None):
         raise UsageProblem(f"--from and --to cut a run, not a {kind.value}", "write `rovval show run RUN --from S --to S`")
     shown = {Kind.vehicle: _vehicle, Kind.platform: _platform, Kind.effect: _effect, Kind.profile: _profile, Kind.metric: _metric}
-    text, document = _run(name, archive, start_s, end_s) if kind is Kind.run else shown[kind](name)
+    text, document = _run(name, archive, start, end) if kind is Kind.run else shown[kind](name)
     output.result_json(document()) if json_ else output.result(text.rstrip("\n"))
 
 
@@ -197,11 +197,11 @@ def _metric(name: str) -> Shown:
     return text, lambda: {"name": metric.name, "title": metric.title, "unit": metric.unit, "meaning": metric.meaning}
 
 
-def _run(name: str, archive: Path, start_s: float | None, end_s: float | None) -> Shown:
+def _run(name: str, archive: Path, start: str | None, end: str | None) -> Shown:
     from rovval.alignment.stretch import stretch_of
     from rovval.storage.archive import open_run
 
-    run = stretch_of(open_run(name, None, archive), start_s, end_s)
+    run = stretch_of(open_run(name, None, archive), start, end)
     document: dict[str, Any] = {
         "id": run.id,
         "source": run.source,
@@ -223,6 +223,7 @@ def _run(name: str, archive: Path, start_s: float | None, end_s: float | None) -
             "note": run.clock.note,
         },
         "findings": [str(f) for f in run.findings],
+        "markers": [{"t_s": m.t_s, "name": m.name} for m in run.markers],
         "properties": dict(run.properties),
     }
     lines = [f"{k:<10} {document[k]}" for k in ("id", "source", "sha256", "profile", "vehicle", "seconds", "rate_hz")]
@@ -230,5 +231,6 @@ def _run(name: str, archive: Path, start_s: float | None, end_s: float | None) -
     lines += ["", f"{'channel':<16} {'to the grid':<12} {'coverage':>9} {'largest gap':>12}"]
     lines += [f"{n:<16} {r.method:<12} {100 * r.coverage:8.1f}% {r.largest_gap_s:10.2f} s" for n, r in run.resampled.items()]
     lines += ["", *(f"finding: {f}" for f in document["findings"])] if document["findings"] else []
+    lines += ["", *(f"marker: {m.t_s:g} s {m.name}" for m in run.markers)] if run.markers else []
     lines += [f"{k}: {v}" for k, v in document["properties"].items()]
     return "\n".join(lines), lambda: document

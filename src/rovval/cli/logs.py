@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,14 +17,23 @@ if TYPE_CHECKING:
 MOST_FINDINGS = 6  # findings of a run in a terminal; the others stand in its report
 
 
-def opened(
-    source: str, profile: str | None, archive: Path, quiet: bool = False, start_s: float | None = None, end_s: float | None = None
-) -> Run:
-    """The run of a log file, folder or id, or its stretch from ``start_s`` to ``end_s``; its findings on stderr."""
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """How a command was asked to read its logs, by its options: ``start`` and ``end`` are seconds or markers."""
+
+    profile: str | None = None
+    archive: Path = Path("archive")
+    timezone: str | None = None
+    start: str | None = None
+    end: str | None = None
+
+
+def opened(source: str, how: Reading, quiet: bool = False) -> Run:
+    """The run of a log file, folder or id, or the stretch of it that is asked for; its findings on stderr."""
     from rovval.alignment.stretch import stretch_of
     from rovval.storage.archive import open_run
 
-    run = stretch_of(open_run(source, profile, archive), start_s, end_s)
+    run = stretch_of(open_run(source, how.profile, how.archive, how.timezone), how.start, how.end)
     print_findings(run, quiet)
     return run
 
@@ -49,15 +59,12 @@ def refuse_stopped(sim: SimResult) -> None:
     )
 
 
-def opened_as_one(
-    sources: Sequence[str], vehicle: str | None, profile: str | None, archive: Path, quiet: bool = False,
-    start_s: float | None = None, end_s: float | None = None,
-) -> list[Run]:  # fmt: skip
+def opened_as_one(sources: Sequence[str], vehicle: str | None, how: Reading, quiet: bool = False) -> list[Run]:
     """Runs that are one experiment: each given once, all of one vehicle unless ``vehicle`` says which, of each the same stretch. Raises
     `UsageProblem`."""
     from rovval.alignment.duplicates import duplicates
 
-    runs = [opened(source, profile, archive, quiet, start_s, end_s) for source in sources]
+    runs = [opened(source, how, quiet) for source in sources]
     if twice := [f"{sources[later]} is given twice, as {sources[earlier]} already" for earlier, later in duplicates(runs)]:
         raise UsageProblem("; ".join(twice), "give each log once, by whatever name: a copy adds no evidence")
     named = {run.vehicle: source for run, source in zip(runs, sources, strict=True) if run.vehicle}

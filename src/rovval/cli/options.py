@@ -63,10 +63,12 @@ VehicleOption = Annotated[
     ),
 ]
 FromOption = Annotated[
-    float | None,
-    typer.Option("--from", metavar="S", help="Take the log from here, s since the run's start, as if it began there."),
+    str | None,
+    typer.Option("--from", metavar="S|MARKER", help="Take the log from here, as if it began there: s since the run's start, or a marker's name."),
 ]
-ToOption = Annotated[float | None, typer.Option("--to", metavar="S", help="Take the log to here, s since the run's start.")]
+ToOption = Annotated[
+    str | None, typer.Option("--to", metavar="S|MARKER", help="Take the log to here: s since the run's start, or a marker's name.")
+]
 ModelOption = Annotated[
     Model,
     typer.Option(

@@ -40,8 +40,9 @@ def command(
         typer.Option("--rpm", min=0.0, help="Speed of the fastest thruster. Default: what 70 rpm is on Merlin, by the speed that holds 1 m/s."),
     ] = None,
     profile: options.ProfileOption = None,
-    start_s: options.FromOption = None,
-    end_s: options.ToOption = None,
+    timezone: options.TimezoneOption = None,
+    start: options.FromOption = None,
+    end: options.ToOption = None,
     archive: options.ArchiveOption = Path("archive"),
     out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Write the document with figures, and recordings.")] = None,
     json_: options.JsonFlag = False,
@@ -61,13 +62,13 @@ def command(
       rovval scenario all --out reports/thesis
     """
     numbers = _numbers(number)
-    if source is None and (start_s is not None or end_s is not None):
+    if source is None and (start is not None or end is not None):
         raise UsageProblem("--from and --to cut a log, and none was given", "give the log")
     if source is not None and not set(numbers) & set(NEED_A_LOG):
         raise UsageProblem(f"scenario {number} takes no log: it commands the thrusters itself", "leave the log out")
     judged = model.value if model else THESIS[0]
     models = (judged,) if model or out is None else THESIS
-    run = _log(source, vehicle, rpm, profile, archive, quiet, (start_s, end_s)) if set(numbers) & set(NEED_A_LOG) else None
+    run = _log(source, vehicle, rpm, logs.Reading(profile, archive, timezone, start, end), quiet) if set(numbers) & set(NEED_A_LOG) else None
     outcomes = {(n, m): _outcome(n, vehicle, m, rpm, run) for n in numbers for m in (("",) if n == 4 else (judged,) if n == 5 else models)}
     documents = [_document(outcome) for outcome in outcomes.values()]
     if out is not None:
@@ -94,12 +95,10 @@ def _numbers(number: str) -> tuple[int, ...]:
     raise UsageProblem(f"no scenario {number!r}", "give 1 to 5, or all")
 
 
-def _log(
-    source: str | None, vehicle: str | None, rpm: float | None, profile: str | None, archive: Path, quiet: bool, between: tuple[float | None, float | None]
-) -> Run:
+def _log(source: str | None, vehicle: str | None, rpm: float | None, how: logs.Reading, quiet: bool) -> Run:
     """The log that was given; else the sample dive, which is Merlin's, or the same of another vehicle. Both are synthetic."""
     if source is not None:
-        return logs.opened(source, profile, archive, quiet, *between)
+        return logs.opened(source, how, quiet)
     from rovval import demo
     from rovval.fly.scenarios.stand_in import stand_in
     from rovval.vehicle import load

@@ -20,8 +20,9 @@ def command(
     effect: options.EffectOption = None,
     window: options.WindowOption = 10.0,
     profile: options.ProfileOption = None,
-    start_s: options.FromOption = None,
-    end_s: options.ToOption = None,
+    timezone: options.TimezoneOption = None,
+    start: options.FromOption = None,
+    end: options.ToOption = None,
     archive: options.ArchiveOption = Path("archive"),
     out: Annotated[
         Path | None, typer.Option("--out", metavar="FILE", help="Parquet file. Default: reports/RUN/MODEL.parquet.")
@@ -39,7 +40,7 @@ def command(
     from rovval.pipeline.steps import simulated, vehicle_of
     from rovval.simulation.file import save_simulation
 
-    run = logs.opened(source, profile, archive, quiet, start_s, end_s)
+    run = logs.opened(source, logs.Reading(profile, archive, timezone, start, end), quiet)
     nominal = vehicle_of(run, vehicle)
     run = logs.checked_against(run, nominal, quiet)
     sim = simulated(run, nominal, model.value, tuple(effect or ()), window)

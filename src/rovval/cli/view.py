@@ -16,8 +16,9 @@ def command(
     model: options.ModelOption = options.Model.fossen,
     effect: options.EffectOption = None,
     profile: options.ProfileOption = None,
-    start_s: options.FromOption = None,
-    end_s: options.ToOption = None,
+    timezone: options.TimezoneOption = None,
+    start: options.FromOption = None,
+    end: options.ToOption = None,
     archive: options.ArchiveOption = Path("archive"),
     out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Report folder. Default: reports/RUN.")] = None,
     open_: Annotated[
@@ -41,7 +42,7 @@ def command(
     from rovval.comparison import compare
     from rovval.pipeline.steps import simulated, vehicle_of
 
-    run = logs.opened(source, profile, archive, quiet, start_s, end_s)
+    run = logs.opened(source, logs.Reading(profile, archive, timezone, start, end), quiet)
     nominal = vehicle_of(run, vehicle)
     comparison = compare(run, simulated(run, nominal, model.value, tuple(effect or ()), 10.0))
     files = report.write(comparison, out or Path("reports") / run.id, nominal)

@@ -73,6 +73,7 @@ def read_dive(path: Path, read: Reading, profile: str | None = None, timezone: s
         channels=channels, findings=tuple(replace(f, where=f"{p.name}: {f.where}") for p in logs for f in p.log.findings),
         properties={**facts, "profile_sha256": hashlib.sha256(shas.encode()).hexdigest()},
         rules={n: r for p in logs for n, r in p.log.rules.items() if n in channels},
+        markers=tuple(sorted((replace(m, t_s=m.t_s + p.start_s - zero) for p in logs for m in p.log.markers), key=lambda m: m.t_s)),
     )  # fmt: skip
 
 

@@ -27,6 +27,7 @@ def page(check: Check, run: Run) -> str:
     lines += [_channel(check, name, series) for name, series in raw.channels.items()]
     gone = [f"{n} (optional)" for n in check.match.optional_gone] + list(check.match.gone)
     lines += ["", "not found: " + ", ".join(gone)] if gone else []
+    lines += ["", "markers: " + ", ".join(f"{m.name!r} at {m.t_s:g} s" for m in raw.markers[:MOST_LEFT])] if raw.markers else []
     left = [" ".join(place).strip() for place in check.left_over]
     more = f" and {len(left) - MOST_LEFT} more" if len(left) > MOST_LEFT else ""
     lines += ["", f"left over, mapped to nothing: {', '.join(left[:MOST_LEFT])}{more}"] if left else ["", "left over: nothing"]
@@ -45,6 +46,7 @@ def document(check: Check, run: Run) -> dict[str, Any]:
         },
         "not_found": list(check.match.gone), "not_found_optional": list(check.match.optional_gone),
         "left_over": [list(p) for p in check.left_over], "findings": [str(f) for f in run.findings],
+        "markers": [{"t_s": m.t_s, "name": m.name} for m in check.raw.markers],
     }  # fmt: skip
 
 

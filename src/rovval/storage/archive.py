@@ -21,7 +21,7 @@ import polars as pl
 
 from rovval.alignment import align
 from rovval.alignment.checks import check
-from rovval.core.data import ClockReport, Resampled, Run
+from rovval.core.data import ClockReport, Marker, Resampled, Run
 from rovval.core.errors import BadInput, Finding
 from rovval.core.version import __version__
 from rovval.ingest import read
@@ -151,7 +151,7 @@ def _bytes(run: Run) -> tuple[bytes, dict[str, Any]]:
         "schema": SCHEMA, **facts, "samples": len(run), "duration_s": run.duration_s, "clock": asdict(run.clock),
         "resampled": {n: asdict(r) for n, r in run.resampled.items()}, "findings": [asdict(f) for f in run.findings],
         "properties": dict(run.properties), "channels": list(run.values), "table_sha256": hashlib.sha256(table).hexdigest(),
-        "versions": versions,
+        "versions": versions, **({"markers": [asdict(m) for m in run.markers]} if run.markers else {}),
     }  # fmt: skip
 
 
@@ -165,6 +165,7 @@ def _run(manifest: dict[str, Any], table: pl.DataFrame) -> Run:
             resampled={n: Resampled(**r) for n, r in manifest["resampled"].items()},
             clock=ClockReport(**manifest["clock"]),
             findings=tuple(Finding(**f) for f in manifest["findings"]),
+            markers=tuple(Marker(**m) for m in manifest.get("markers", ())),
         )
     except (KeyError, TypeError, pl.exceptions.PolarsError) as error:
         raise BadInput(f"run {manifest.get('id')}: damaged manifest: {error}", "ingest the log again") from None

@@ -14,10 +14,11 @@ from pathlib import Path
 
 import numpy as np
 
-from rovval.core.data import Array, RawLog
+from rovval.core.data import Array, Marker, RawLog
 from rovval.core.errors import BadInput, Finding, all_at_once
 from rovval.ingest.assembly import Signal, build
 from rovval.ingest.assembly.columns import columns_of, unused, wanted
+from rovval.ingest.assembly.markers import markers_of, not_there
 from rovval.ingest.clocks.clock import DAY_S, Index, increasing_stamps
 from rovval.ingest.contents.block import Block
 from rovval.ingest.files import sha256
@@ -127,7 +128,27 @@ def read_blocks(path: Path, profile: Profile, blocks: Iterable[Block]) -> RawLog
             values = np.stack([part.topic.numbers[f][clock.rows] for f in fields], axis=1)
             signals[name] = Signal(t, values if len(fields) > 1 else values[:, 0], clock.stamp, source)
     facts = _facts(profile, parts, known, min(starts))
-    return build(profile, signals, path, sha256(path), None if epoch is None else epoch + round(min(starts) * 1e9), findings, facts)
+    markers = _markers(path, profile, topics, known, epoch, min(starts), findings)
+    t0_ns = None if epoch is None else epoch + round(min(starts) * 1e9)
+    return build(profile, signals.items(), path, sha256(path), t0_ns, findings, facts, markers)
+
+
+def _markers(
+    path: Path, profile: Profile, topics: Mapping[str, Topic], known: Sequence[tuple[Part, Clocked]], epoch: int | None, start: float, findings: list[Finding]
+) -> tuple[Marker, ...]:
+    """The moments that the log names, on the clock of its channels."""
+    asked = profile.markers
+    if asked is None:
+        return ()
+    tables = [part.topic for part, _ in known if part.table]
+    topic = topics.get(asked.topic) if asked.topic else next(iter(tables), None)
+    name = next((f for f in (topic.fields if topic else ()) if f == asked.field or (asked.column and text_table.fits(asked.column, f))), None)
+    clock = None if topic is None or name is None else _clocked(path, profile, Part(topic, {}, False), [])
+    if topic is None or name is None or clock is None:
+        findings.append(not_there(profile))
+        return ()
+    texts = topic.texts[name] if name in topic.texts else _as_text(topic.numbers[name])
+    return markers_of(profile, clock.t + (_since(epoch, clock) - start), [texts[row] for row in clock.rows.tolist()])
 
 
 def _since(epoch: int | None, clock: Clocked) -> float:

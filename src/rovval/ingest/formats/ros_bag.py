@@ -58,6 +58,7 @@ def _missing(topics: list[str], profile: Profile) -> tuple[str, ...]:
 def read(path: Path, profile: Profile) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming every missing topic and field, or what makes the bag unreadable."""
     from rovval.ingest.assembly import build
+    from rovval.ingest.assembly.markers import markers_of, not_there
 
     if profile.time.kind not in ("header", "record"):
         raise BadInput(f"{path}: profile {profile.name!r} takes stamps from {profile.time.kind}, a bag has header or record", "give --profile")
@@ -69,7 +70,8 @@ def read(path: Path, profile: Profile) -> RawLog:
         if gone := [m for m in _missing([c.topic for c in connections], profile) if not m.startswith("not ")]:
             hint = "see `rovval show profile`, or give another"
             raise BadInput(all_at_once(gone, f"{path}: missing topics of profile {profile.name!r}"), hint)
-        topics = _collect(path, bag, connections, _with_topics_of(profile, [c.topic for c in connections]), findings)
+        notes = _Notes(profile)
+        topics = _collect(path, bag, connections, _with_topics_of(profile, [c.topic for c in connections]), findings, notes)
         findings += bag.findings()
     topics = {name: topic for name, topic in topics.items() if len(topic.record)}
     if not topics:
@@ -81,7 +83,10 @@ def read(path: Path, profile: Profile) -> RawLog:
     facts = {"topics": ", ".join(topics), "messages": str(sum(len(t.record) for t in topics.values()))}
     if lags := [t.header - t.record for t in topics.values() if t.stamp == "header"]:
         facts["record_minus_header_s"] = f"{-np.median(np.concatenate(lags)) * 1e-9:.4f}"
-    return build(profile, signals, path, sha256(path), t0 if t0 > SIM_TIME_NS else None, findings, facts)
+    if profile.markers and not notes.texts:
+        findings.append(not_there(profile))
+    markers = markers_of(profile, np.asarray((np.array(notes.ns, dtype=np.int64) - t0) * 1e-9, dtype=np.float64), notes.texts)
+    return build(profile, signals.items(), path, sha256(path), t0 if t0 > SIM_TIME_NS else None, findings, facts, markers)
 
 
 def contents(path: Path) -> Iterator[Block]:
@@ -141,16 +146,40 @@ class _Topic:
     columns: dict[str, Array]
 
 
-def _collect(path: Path, bag: Recording, connections: list[Connection], profile: Profile, findings: list[Finding]) -> dict[str, _Topic]:
+class _Notes:
+    """What the topic of a profile's markers says, and when (ns)."""
+
+    def __init__(self, profile: Profile) -> None:
+        self.topic, self.field = (profile.markers.topic or "", profile.markers.field or "") if profile.markers else ("", "")
+        self.header = profile.time.kind == "header"
+        self.ns: list[int] = []
+        self.texts: list[str] = []
+
+    def take(self, block: Messages, layouts: Layouts) -> None:
+        """Append the messages of a block."""
+        for found, rows in layouts.of(block):
+            if self.field in found.texts:
+                stamps = header_ns(found, block, rows) if self.header else None
+                self.ns += (block.record_ns[rows] if stamps is None or not stamps.all() else stamps).tolist()
+                self.texts += found.text(block.data, block.start[rows], self.field)
+
+
+def _collect(
+    path: Path, bag: Recording, connections: list[Connection], profile: Profile, findings: list[Finding], notes: _Notes
+) -> dict[str, _Topic]:
     """Topic by topic what the profile reads. Raises `BadInput` with every field that no message has."""
     wanted = {c: channels for c in connections if (channels := _channels(c.topic, profile))}
     with _stage(path, "reading the types of its messages"):
-        types = types_of(wanted, profile.messages)
+        noted = [c for c in connections if c.topic == notes.topic]
+        types = types_of([*wanted, *noted], profile.messages)
+        said = {c: Layouts(c, types) for c in noted}
         found = {c: Columns(c, types, [a for _, addresses in channels.values() for a in addresses]) for c, channels in wanted.items()}
     with _stage(path, "reading messages"):
-        for block in bag.blocks(frozenset(c.topic for c in wanted)):
+        for block in bag.blocks(frozenset(c.topic for c in (*wanted, *noted))):
             if block.connection in found:
                 found[block.connection].take(block)
+            if block.connection in said:
+                notes.take(block, said[block.connection])
     wrong: dict[str, None] = {}
     for c, columns in found.items():
         if columns.damaged:
