@@ -68,17 +68,16 @@ def test_messages_of_a_bag(tmp_path):
     store = get_typestore(Stores.ROS1_NOETIC)
     kind = "std_msgs/msg/String"
 
-    def notes(writer: Writer):
-        opened = type(writer).open
-
-        def with_notes(self):
-            opened(self)
+    class Noting(Writer):
+        def open(self):
+            super().open()
             connection = self.add_connection("/notes", kind, typestore=store)
             for seconds in (4, 9, 9.5):
                 raw = store.serialize_ros1(store.types[kind](data=f"lap {seconds:g}"), kind)
                 self.write(connection, START_NS + int(seconds * 1e9), raw)
 
-        writer.open = with_notes.__get__(writer)
+    def notes(writer: Writer):
+        writer.__class__ = Noting
 
     path = write("bag", tmp_path / "a.bag", prepare=notes)
     channels = 'u = { topic = "/odom", field = "twist.twist.linear.x", unit = "m/s" }\n[markers]\ntopic = "/notes"\nfield = "data"'

@@ -9,6 +9,7 @@ import typer
 
 from rovval.cli import complete, logs, options, output
 from rovval.core.errors import RovvalError
+from rovval.core.progress import Progress
 
 
 def command(
@@ -46,9 +47,10 @@ def command(
     rows: list[dict[str, Any]] = []
     worst = 0
     for number, log in enumerate(files):
-        show(f"ingest {log.name}", number / len(files))
+        begun = number / len(files)
+        show(f"ingest {log.name}", begun)
         try:
-            run = stretch_of(open_run(str(log), profile, archive, timezone), start, end)
+            run = stretch_of(open_run(str(log), profile, archive, timezone, _of(show, log.name, begun, 1 / len(files))), start, end)
             save_run(run, archive)
         except RovvalError as error:
             worst = max(worst, error.exit_code)
@@ -74,3 +76,8 @@ def command(
         output.result_json({"schema": "rovval.ingest/1", "archive": str(archive), "logs": rows})
     if worst:
         raise typer.Exit(worst)
+
+
+def _of(show: Progress, log: str, begun: float, part: float) -> Progress:
+    """The progress of one log as a part of all."""
+    return lambda step, share: show(f"ingest {log}, {step}", begun + part * share)

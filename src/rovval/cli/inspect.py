@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from rovval.cli import complete, options, output
+
+if TYPE_CHECKING:
+    from rovval.ingest.inspection.inspect import Inspection
 
 LogFile = Annotated[Path, typer.Argument(metavar="FILE", help="A log file, or a bag's folder.", autocompletion=complete.sources)]
 
@@ -25,8 +28,18 @@ def command(
       rovval inspect dive.bag --topics
       rovval inspect dive.csv --json
     """
-    from rovval.ingest.inspection.inspect import inspect
     from rovval.report import inspection
 
-    found = inspect(file)
+    found = looked_at(file)
     output.result_json(inspection.document(found)) if json_ else output.result(inspection.page(found, fields))
+
+
+def looked_at(file: Path) -> Inspection:
+    """What is in a log, with a bar while it is read."""
+    from rovval.ingest.inspection.inspect import inspect
+
+    show = output.progress()
+    try:
+        return inspect(file, show)
+    finally:
+        show("", 1.0)

@@ -33,7 +33,11 @@ def opened(source: str, how: Reading, quiet: bool = False) -> Run:
     from rovval.alignment.stretch import stretch_of
     from rovval.storage.archive import open_run
 
-    run = stretch_of(open_run(source, how.profile, how.archive, how.timezone), how.start, how.end)
+    show = output.progress(quiet)
+    try:
+        run = stretch_of(open_run(source, how.profile, how.archive, how.timezone, show), how.start, how.end)
+    finally:
+        show("", 1.0)
     print_findings(run, quiet)
     return run
 

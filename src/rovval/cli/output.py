@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 import typer
 
-Progress = Callable[[str, float], None]
+from rovval.core.progress import Progress, silent
+
+BAR = 24  # characters of a bar of progress
 
 
 def result(text: str) -> None:
@@ -28,17 +30,18 @@ def say(text: str, quiet: bool = False) -> None:
         typer.echo(text, err=True)
 
 
-def progress(quiet: bool) -> Progress:
-    """Shows a step and its share done (0 to 1) on one line of stderr, if that is a terminal."""
+def progress(quiet: bool = False) -> Progress:
+    """Shows a step and its share done (0 to 1) as a bar on one line of stderr, if that is a terminal; gone when it is done."""
     if quiet or not sys.stderr.isatty():
-        return lambda step, share: None
+        return silent
     widest = 0
 
     def show(step: str, share: float) -> None:
         nonlocal widest
-        line = f"{step}: {100 * share:.0f} %"
+        done = round(BAR * min(max(share, 0.0), 1.0))
+        line = f"{step}: [{'#' * done}{'.' * (BAR - done)}] {100 * share:.0f} %"
         widest = max(widest, len(line))
-        sys.stderr.write("\r" + line.ljust(widest) + ("\r" + " " * widest + "\r" if share >= 1 else ""))
+        sys.stderr.write("\r" + (line.ljust(widest) if share < 1 else " " * widest + "\r"))
         sys.stderr.flush()
 
     return show

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from rovval.cli import complete, options, output
-from rovval.cli.inspect import LogFile
+from rovval.cli.inspect import LogFile, looked_at
 
 app = typer.Typer(rich_markup_mode=None, no_args_is_help=True, help="A profile for a new log: proposed from what the log holds, and checked.")
 
@@ -24,10 +24,9 @@ def propose_command(
       rovval profile propose dive.csv > my_log.toml
       rovval profile check my_log.toml dive.csv
     """
-    from rovval.ingest.inspection.inspect import inspect
     from rovval.ingest.inspection.proposal import proposed
 
-    text = proposed(inspect(file), name)
+    text = proposed(looked_at(file), name)
     output.result(text.rstrip("\n"))
     if (guesses := text.count("REVIEW")) > 1:
         output.say(f"{guesses - 1} guesses are marked REVIEW; next: confirm or mend them, then `rovval profile check {name}.toml {file}`")

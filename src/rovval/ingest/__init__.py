@@ -1,7 +1,7 @@
 """File -> `RawLog`. A reader is one file of ``formats``; it is imported when a log needs it.
 
 A reader has ``SUFFIXES`` (lower case, with dot), ``sniff(path) -> bool``, ``missing(path, profile) -> tuple[str, ...]`` (what the
-profile requires and the log has not), ``read(path, profile) -> RawLog`` and ``contents(path) -> Iterator[Block]`` (all that the log holds,
+profile requires and the log has not), ``read(path, profile, progress) -> RawLog`` and ``contents(path, progress) -> Iterator[Block]`` (all that the log holds,
 without a profile: for `rovval inspect` and `rovval profile propose`), and ``ALSO``, the formats whose profiles it reads beside its own: what
 is a column of a CSV is one of a workbook, too. `rovval.ingest.assembly.topics` reads by profile whatever yields blocks. A source is one TOML file of
 ``profiles``.
@@ -14,11 +14,13 @@ import pkgutil
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Protocol, cast
 
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, Finding, RovvalError, UsageProblem
+from rovval.core.progress import Progress, silent
 from rovval.ingest import formats
 from rovval.ingest.contents.block import Block
 from rovval.ingest.dive import read_dive
@@ -45,11 +47,11 @@ class Reader(Protocol):
         """What ``profile`` requires and the file has not; () when the file is of this source."""
         ...
 
-    def read(self, path: Path, profile: Profile) -> RawLog:
-        """The log; raises `BadInput`."""
+    def read(self, path: Path, profile: Profile, progress: Progress = silent) -> RawLog:
+        """The log; raises `BadInput`. ``progress`` hears how much of the file is read, where that takes long."""
         ...
 
-    def contents(self, path: Path) -> Iterator[Block]:
+    def contents(self, path: Path, progress: Progress = silent) -> Iterator[Block]:
         """All that the file holds, without a profile, as logged: blocks in the order of the file, a topic's as often as it needs (so that
         memory stays bounded). `Block` says what stands in one, `rovval.ingest.contents.flatten.flat` and `Collector` make them of decoded
         messages. Damage is a finding of a block where something can be read, else `BadInput`."""
@@ -76,7 +78,7 @@ def formats_of(path: Path) -> tuple[str, ...]:
     return able
 
 
-def read(path: Path, profile: str | None = None, timezone: str | None = None) -> RawLog:
+def read(path: Path, profile: str | None = None, timezone: str | None = None, progress: Progress = silent) -> RawLog:
     """The log of ``path`` in SI, forward-starboard-down and north-east-down, each channel at its own stamps.
 
     A dive file (``dive.toml``) is one log of all that it names. ``profile`` is a built-in name or a path to a TOML file; without it the one
@@ -87,9 +89,9 @@ def read(path: Path, profile: str | None = None, timezone: str | None = None) ->
     path = Path(path)
     refuse_unusable(path)
     if is_dive(path):
-        return read_dive(path, read, profile, timezone)
+        return read_dive(path, partial(read, progress=progress), profile, timezone)
     with plain(path) as (whole, lost):
-        raw = _read(whole, profile, timezone)
+        raw = _read(whole, profile, timezone, progress)
     return raw if whole == path else replace(raw, source=str(path), sha256=sha256(path), findings=(*lost, *raw.findings))
 
 
@@ -105,13 +107,13 @@ def plain(path: Path) -> Iterator[tuple[Path, tuple[Finding, ...]]]:
         yield whole, lost
 
 
-def _read(path: Path, profile: str | None, timezone: str | None) -> RawLog:
+def _read(path: Path, profile: str | None, timezone: str | None, progress: Progress) -> RawLog:
     chosen = (load_profile(profile) if profile is not None else _the_one_that_fits(path)).in_zone(timezone)
     able = [name for name in readers() if _able(name, path)]
     chosen_reader = reader(next(iter(_of_profile(chosen, able)), chosen.format))
     if path.is_dir() and "" not in chosen_reader.SUFFIXES:
         raise BadInput(f"{path}: a folder; profile {chosen.name!r} reads single files ({chosen.format})", "give one of the files in it")
-    return chosen_reader.read(path, chosen)
+    return chosen_reader.read(path, chosen, progress)
 
 
 def _the_one_that_fits(path: Path) -> Profile:

@@ -23,6 +23,7 @@ from rovval.alignment import align
 from rovval.alignment.checks import check
 from rovval.core.data import ClockReport, Marker, Resampled, Run
 from rovval.core.errors import BadInput, Finding
+from rovval.core.progress import Progress, silent
 from rovval.core.version import __version__
 from rovval.ingest import read
 from rovval.storage.atomic import read_json, refusal, refuse_url
@@ -32,8 +33,11 @@ REASON = "reason:"
 ARCHIVE = Path("archive")
 
 
-def open_run(source: str | Path, profile: str | None = None, archive: Path = ARCHIVE, timezone: str | None = None) -> Run:
-    """A log file (ingested on the fly), a run's folder, or the id of a run in ``archive`` -> the run. ``timezone`` as of `rovval.ingest.read`.
+def open_run(
+    source: str | Path, profile: str | None = None, archive: Path = ARCHIVE, timezone: str | None = None, progress: Progress = silent
+) -> Run:
+    """A log file (ingested on the fly), a run's folder, or the id of a run in ``archive`` -> the run. ``timezone`` and
+    ``progress`` as of `rovval.ingest.read`.
 
     Raises `BadInput` or `UsageProblem` as `read`, `align` and `load` do.
     """
@@ -44,7 +48,7 @@ def open_run(source: str | Path, profile: str | None = None, archive: Path = ARC
         near = ", ".join(run_ids(archive)[:5])
         hint = f"runs in {archive}: {near}" if near else f"check the path; {archive} holds no runs"
         raise BadInput(f"{source}: no such log file, and no such run in {archive}", hint)
-    raw = read(path, profile, timezone)
+    raw = read(path, profile, timezone, progress)
     return align(replace(raw, findings=tuple(dict.fromkeys((*raw.findings, *check(raw))))))
 
 

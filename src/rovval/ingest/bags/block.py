@@ -42,10 +42,11 @@ class Block:
 
 class Container(Protocol):
     """A file that holds messages. ``blocks`` gives those of the topics asked for; what is damaged is in ``findings`` once they are through.
-    ``foreign``: topics whose messages are not serialised as ROS does, and how they are."""
+    ``foreign``: topics whose messages are not serialised as ROS does, and how they are. ``share`` of ``blocks`` that is through."""
 
     findings: list[Finding]
     foreign: dict[str, str]
+    share: float
 
     def connections(self) -> list[Connection]:
         """Every connection of the file, without reading its messages where the file is whole."""

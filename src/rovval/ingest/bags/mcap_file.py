@@ -42,6 +42,7 @@ class Mcap:
         self.path = path
         self.findings: list[Finding] = []
         self.foreign: dict[str, str] = {}
+        self.share = 0.0
         with path.open("rb") as file:
             self._file = Mapped(file.fileno(), 0, access=mmap.ACCESS_READ)
         self._summary = self._read_summary()
@@ -79,6 +80,7 @@ class Mcap:
         at, end, loose = len(MAGIC), len(self._file), len(MAGIC)
         while at + HEAD.size <= end:
             op, length = HEAD.unpack_from(self._file, at)
+            self.share = min(at + HEAD.size + length, end) / end
             after = at + HEAD.size + length
             if op != MESSAGE or at - loose > TOGETHER or after > end:
                 yield from _messages(self._file[loose:at], topics, known, damage)

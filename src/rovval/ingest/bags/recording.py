@@ -37,6 +37,11 @@ class Recording:
             for block in container.blocks(topics):
                 yield _unpacked(block) if self.packed or _packed(block) else block
 
+    @property
+    def share(self) -> float:
+        """The share of ``blocks`` that is through, 0 to 1."""
+        return sum(container.share for container in self.containers) / len(self.containers)
+
     def foreign(self) -> dict[str, str]:
         """Topics whose messages are not serialised as ROS does, and how they are."""
         return {topic: how for container in self.containers for topic, how in container.foreign.items()}

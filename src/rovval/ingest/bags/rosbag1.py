@@ -36,6 +36,7 @@ class Rosbag1:
         self.path = path
         self.findings: list[Finding] = []
         self.foreign: dict[str, str] = {}
+        self.share = 0.0
         with path.open("rb") as file:
             self._file = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
 
@@ -90,6 +91,7 @@ class Rosbag1:
             record = _record(self._file, at)
             if record is not None:
                 op, header, data, at = record
+                self.share = at / end
                 closed |= op == CHUNK_INFO
                 yield op, header, data
                 continue

@@ -29,6 +29,7 @@ class Sqlite:
         self.path = path
         self.findings: list[Finding] = []
         self.foreign: dict[str, str] = {}
+        self.share = 0.0
         self.cut = _pages_missing(path)
         self._topics = self._read_topics()
 
@@ -65,9 +66,11 @@ class Sqlite:
             damage.cut = f"the file ends {self.cut:,} pages of {pages(self.path)[1]:,} too early"
         wanted = [number for number, connection in self._topics.items() if connection.topic in topics]
         with closing(self._open()) as base:
+            top = max(_last_number(base), 1)
             for rows in _rows(base, None if self.cut else wanted, damage, pages(self.path)[1]):
                 ids, ns = (np.fromiter((row[k] for row in rows), dtype=np.int64, count=len(rows)) for k in (1, 2))
                 damage.found(ns)
+                self.share = min(rows[-1][0] / top, 1.0)
                 for number in wanted:
                     yield from self._block(number, [rows[i] for i in np.flatnonzero(ids == number)])
         self.findings += damage.findings(self.path.name)

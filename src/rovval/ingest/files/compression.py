@@ -111,6 +111,12 @@ def scratch_folder(path: Path) -> Iterator[Path]:
             raise BadInput(f"{path}: {error.strerror}", hint) from None
 
 
+def share_read(file: BinaryIO, path: Path) -> float:
+    """The share of an opened file that is read, 0 to 1; of a compressed one by what is unpacked."""
+    raw = getattr(file, "raw", file)
+    return min((raw.packed if isinstance(raw, Unpacked) else file).tell() / max(path.stat().st_size, 1), 1.0)
+
+
 class Unpacked(io.RawIOBase):
     """The unpacked bytes of a compressed file. It ends where the stream is cut or damaged, and ``lost`` says so then; ``size`` bytes
     were unpacked so far. Streams that follow one another (`cat a.gz b.gz`) are one."""

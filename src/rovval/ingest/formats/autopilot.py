@@ -19,6 +19,7 @@ import numpy as np
 
 from rovval.core.data import Array, RawLog
 from rovval.core.errors import BadInput, Finding, RovvalError, UsageProblem, all_at_once
+from rovval.core.progress import Progress, silent
 from rovval.ingest.autopilot.ardusub import other_frame, turned
 from rovval.ingest.autopilot.packets import DATAFLASH, MAVLINK, STAMP, whole_packets
 from rovval.ingest.clocks.clock import increasing_stamps
@@ -30,6 +31,7 @@ from rovval.ingest.profile import ATTITUDE, Profile, Source
 SUFFIXES = (".bin", ".tlog")
 ALSO: tuple[str, ...] = ()  # formats whose profiles this reads beside its own
 PARAMETER = {"PARM": ("Name", "Value"), "PARAM_VALUE": ("param_id", "param_value")}  # message type -> fields of name and value
+TOLD_EVERY = 1_000  # packets between two words on how far it is
 LOOKED_AT = 20_000  # messages looked at to say which types a log has
 
 
@@ -56,7 +58,7 @@ def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     return (*(w for w in wanted if w not in seen), *(f"not {a}" for a in profile.absent if a in seen), *([frame] if frame else []))
 
 
-def read(path: Path, profile: Profile) -> RawLog:
+def read(path: Path, profile: Profile, progress: Progress = silent) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming every missing message and field, `UsageProblem` without pymavlink."""
     from rovval.ingest.assembly import Signal, build
     from rovval.ingest.assembly.markers import markers_of, not_there
@@ -66,7 +68,7 @@ def read(path: Path, profile: Profile) -> RawLog:
         wanted.setdefault(_type(source), _Messages()).channels[name] = source
     parameters: dict[str, float] = {}
     notes = _Notes(profile)
-    findings = _collect(path, wanted, profile, parameters, notes)
+    findings = _collect(path, wanted, profile, parameters, notes, progress)
     if frame := other_frame(profile, parameters):
         hint = "give the profile of that frame (`rovval list profile`): its motors are other thrusters"
         raise BadInput(f"{path}: profile {profile.name!r} reads {frame}", hint)
@@ -100,14 +102,16 @@ def read(path: Path, profile: Profile) -> RawLog:
     return build(profile, signals.items(), path, sha256(path), t0_ns, [*findings, *told], facts, markers)
 
 
-def contents(path: Path) -> Iterator[Block]:
+def contents(path: Path, progress: Progress = silent) -> Iterator[Block]:
     """Every message type (and instance) of the log with its fields; ``header`` is the autopilot's clock since its start.
 
     Raises `BadInput` for a damaged log, `UsageProblem` without pymavlink."""
-    collector, bad = Collector(), 0
+    collector, bad, count = Collector(), 0, 0
     with _opened(path) as (log, lost):
         while (message := log.recv_match()) is not None:
-            kind = message.get_type()
+            kind, count = message.get_type(), count + 1
+            if count % TOLD_EVERY == 0:
+                progress("reading packets", log.percent / 100.0)
             if kind == "BAD_DATA":
                 bad += 1
                 continue
@@ -151,16 +155,20 @@ class _Notes:
 
 
 def _collect(
-    path: Path, wanted: dict[tuple[str, str], _Messages], profile: Profile, parameters: dict[str, float], notes: _Notes
+    path: Path, wanted: dict[tuple[str, str], _Messages], profile: Profile, parameters: dict[str, float], notes: _Notes,
+    progress: Progress,
 ) -> list[Finding]:
     """Fill ``wanted``, ``parameters`` and ``notes`` from the log; returns what is damaged. Raises `BadInput` with every unknown field."""
-    count: Counter[str] = Counter()
+    count, number = Counter[str](), 0
     wrong: dict[str, None] = {}
     types = [*{kind for kind, _ in wanted}, *PARAMETER, "BAD_DATA", *filter(None, [notes.kind])]
     with _opened(path) as (log, lost):
         while (message := log.recv_match(type=types)) is not None:
             kind = message.get_type()
             count[kind] += 1
+            number += 1
+            if number % TOLD_EVERY == 0:
+                progress("reading packets", log.percent / 100.0)
             _note_parameter(message, parameters)
             if kind == notes.kind:
                 notes.take(message)

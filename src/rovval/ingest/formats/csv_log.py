@@ -11,6 +11,7 @@ import numpy as np
 
 from rovval.core.data import Array, RawLog
 from rovval.core.errors import BadInput, Finding
+from rovval.core.progress import Progress, silent
 from rovval.ingest.assembly.columns import Columns, clock_columns, columns_of, unused, wanted
 from rovval.ingest.clocks.clock import DAY_S, increasing_stamps
 from rovval.ingest.contents.block import Block
@@ -45,7 +46,7 @@ def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     return (*gone, *(f"not {c}" for c in profile.absent if any(text_table.fits(c, h) for h in header)))
 
 
-def read(path: Path, profile: Profile) -> RawLog:
+def read(path: Path, profile: Profile, progress: Progress = silent) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming every missing column, or what else makes the file useless."""
     from rovval.ingest.assembly import build
     from rovval.ingest.assembly.markers import markers_of, not_there
@@ -63,6 +64,7 @@ def read(path: Path, profile: Profile) -> RawLog:
     numbers = NumberColumns(found, {**as_text, **noted}, place.separator, len(header))
     for whole in table.blocks():
         numbers.take(whole)
+        progress("reading rows", table.share)
     spoiled = numbers.findings(str(path))
     values, text, lines, again = numbers.arrays()
     del numbers  # it holds the columns, too
@@ -106,7 +108,7 @@ def _signals(where: Columns, values: dict[str, Array], rows: Index | None, since
         yield name, Signal(since, np.stack(block, axis=1) if len(block) > 1 else block[0], "row", source)
 
 
-def contents(path: Path) -> Iterator[Block]:
+def contents(path: Path, progress: Progress = silent) -> Iterator[Block]:
     """The table's columns, numbers or text as their cells are. Raises `BadInput` where the file holds no table with a header."""
     from rovval.ingest.table.cells import cells_of, numbers_and_texts
 
@@ -120,6 +122,7 @@ def contents(path: Path) -> Iterator[Block]:
     if place is not None:
         table = TextRows(path, place)
         for rows in table.blocks():
+            progress("reading rows", table.share)
             facts = {"separator": repr(place.separator)}
             numbers, texts = numbers_and_texts(cells_of(rows.text, len(rows.lines), place.separator, len(place.names), named))
             yield Block("", numbers=numbers, texts=texts, facts=facts)

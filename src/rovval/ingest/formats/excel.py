@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, Finding, UsageProblem
+from rovval.core.progress import Progress, silent
 from rovval.ingest.contents.block import Block
 from rovval.ingest.profile import Profile
 
@@ -35,14 +36,14 @@ def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     return missing_in({b.topic: (*b.numbers, *b.texts) for b in contents(path)}, profile)
 
 
-def read(path: Path, profile: Profile) -> RawLog:
+def read(path: Path, profile: Profile, progress: Progress = silent) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming every missing column, `UsageProblem` without fastexcel."""
     from rovval.ingest.assembly.topics import read_blocks
 
-    return read_blocks(path, profile, contents(path))
+    return read_blocks(path, profile, contents(path, progress))
 
 
-def contents(path: Path) -> Iterator[Block]:
+def contents(path: Path, progress: Progress = silent) -> Iterator[Block]:
     """The table of each sheet that has one; a sheet without is said. Raises `BadInput` for a damaged file, `UsageProblem` without fastexcel."""
     try:
         import fastexcel

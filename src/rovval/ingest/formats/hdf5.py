@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from rovval.core.data import RawLog
+from rovval.core.progress import Progress, silent
 from rovval.ingest.contents.block import Block
 from rovval.ingest.profile import Profile
 
@@ -27,14 +28,14 @@ def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     return missing_in({b.topic: (*b.numbers, *b.texts) for b in contents(path)}, profile)
 
 
-def read(path: Path, profile: Profile) -> RawLog:
+def read(path: Path, profile: Profile, progress: Progress = silent) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming everything that is missing, `UsageProblem` without h5py."""
     from rovval.ingest.assembly.topics import read_blocks
 
-    return read_blocks(path, profile, contents(path))
+    return read_blocks(path, profile, contents(path, progress))
 
 
-def contents(path: Path) -> Iterator[Block]:
+def contents(path: Path, progress: Progress = silent) -> Iterator[Block]:
     """A block for each group, and for each length of arrays in it. Raises `BadInput` for a damaged file, `UsageProblem` without h5py."""
     from rovval.ingest.contents.hdf5_arrays import nested, opened
     from rovval.ingest.contents.nested_arrays import blocks_of

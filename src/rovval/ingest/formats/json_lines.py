@@ -13,6 +13,7 @@ from typing import Any
 
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, Finding
+from rovval.core.progress import Progress, silent
 from rovval.ingest.contents.block import Block, Collector
 from rovval.ingest.contents.flatten import flat
 from rovval.ingest.profile import Profile
@@ -38,18 +39,18 @@ def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     return missing_in_blocks(contents(path), profile)
 
 
-def read(path: Path, profile: Profile) -> RawLog:
+def read(path: Path, profile: Profile, progress: Progress = silent) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming everything that is missing."""
     from rovval.ingest.assembly.topics import read_blocks
 
-    return read_blocks(path, profile, contents(path))
+    return read_blocks(path, profile, contents(path, progress))
 
 
-def contents(path: Path) -> Iterator[Block]:
+def contents(path: Path, progress: Progress = silent) -> Iterator[Block]:
     """The objects by topic. Lines that are no object, and pings without bottom lock, are findings. Raises `BadInput` where there is none."""
     collector, findings = Collector(), list[Finding]()
     bad, count, unlocked = 0, 0, 0
-    for stamp, line in lines_of(path, "{", findings):
+    for stamp, line in lines_of(path, "{", findings, progress):
         if (found := _object(line)) is None:
             bad += 1
             continue

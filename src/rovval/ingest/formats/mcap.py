@@ -15,6 +15,7 @@ from typing import Any
 
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, Finding, UsageProblem
+from rovval.core.progress import Progress, silent
 from rovval.ingest.contents.block import Block, Collector
 from rovval.ingest.contents.flatten import flat
 from rovval.ingest.profile import Profile
@@ -23,6 +24,7 @@ SUFFIXES = (".mcap",)
 ALSO: tuple[str, ...] = ("ros_bag",)
 MAGIC = b"\x89MCAP0\r\n"  # MCAP specification
 OF_ROS = ("cdr", "ros1")  # message encodings that `ros_bag` reads
+TOLD_EVERY = 5_000  # messages between two words on how far it is
 LONGEST_RECORD = 1 << 32  # bytes that a record may claim: a damaged length is no reason to ask for all memory
 STAMPS = ("header.stamp", "timestamp", "stamp")
 SECONDS, NANOSECONDS = ("sec", "secs", "seconds"), ("nanosec", "nsec", "nsecs", "nanos")
@@ -56,18 +58,18 @@ def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     return missing_in(dict.fromkeys(_topics(path), ()), profile)
 
 
-def read(path: Path, profile: Profile) -> RawLog:
+def read(path: Path, profile: Profile, progress: Progress = silent) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming everything that is missing, `UsageProblem` without what decodes its messages."""
     from rovval.ingest.assembly.topics import member_of, read_blocks
 
     patterns = {p for s in profile.channels.values() for p in s.topics}
-    return read_blocks(path, profile, _blocks(path, lambda topic: any(member_of(p, topic) is not None for p in patterns)))
+    return read_blocks(path, profile, _blocks(path, lambda topic: any(member_of(p, topic) is not None for p in patterns), progress))
 
 
-def contents(path: Path) -> Iterator[Block]:
+def contents(path: Path, progress: Progress = silent) -> Iterator[Block]:
     """Every topic with its fields, log times and the stamps of headers. What cannot be decoded is a finding; damage is one where something
     was read before it."""
-    return _blocks(path, lambda topic: True)
+    return _blocks(path, lambda topic: True, progress)
 
 
 def _topics(path: Path) -> set[str]:
@@ -90,7 +92,7 @@ def _summary(path: Path) -> list[Any] | None:
     return list(summary.channels.values()) if summary is not None and summary.channels else None
 
 
-def _blocks(path: Path, wanted: Callable[[str], bool]) -> Iterator[Block]:
+def _blocks(path: Path, wanted: Callable[[str], bool], progress: Progress) -> Iterator[Block]:
     from mcap.records import Channel, Message, Schema
 
     schemas: dict[int, Any] = {}
@@ -98,7 +100,7 @@ def _blocks(path: Path, wanted: Callable[[str], bool]) -> Iterator[Block]:
     findings: list[Finding] = []
     undecoded: dict[str, str] = {}
     collector, seen = Collector(), set[int]()
-    for record in _records(path, findings):
+    for record in _records(path, findings, progress):
         if isinstance(record, Schema):
             schemas[record.id] = record
         elif isinstance(record, Channel) and record.id not in topics and wanted(record.topic):
@@ -122,7 +124,7 @@ def _blocks(path: Path, wanted: Callable[[str], bool]) -> Iterator[Block]:
     yield Block("", findings=tuple(findings))
 
 
-def _records(path: Path, findings: list[Finding]) -> Iterator[Any]:
+def _records(path: Path, findings: list[Finding], progress: Progress = silent) -> Iterator[Any]:
     """Every record outside of the file's end, checked by its CRC; damage ends it, and is a finding. Raises `BadInput` where nothing came before."""
     import zstandard
     from mcap.exceptions import McapError
@@ -137,6 +139,8 @@ def _records(path: Path, findings: list[Finding]) -> Iterator[Any]:
                     return
                 if isinstance(record, Message):
                     count, last = count + 1, record.log_time
+                    if count % TOLD_EVERY == 0:
+                        progress("reading messages", file.tell() / path.stat().st_size)
                 yield record
             why = "ends without its summary"
         except (McapError, zstandard.ZstdError, ValueError, RuntimeError, OSError, EOFError, OverflowError, MemoryError, struct.error) as error:

@@ -13,6 +13,7 @@ from typing import Any
 
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, Finding, UsageProblem
+from rovval.core.progress import Progress, silent
 from rovval.ingest.contents.block import Block, Collector
 from rovval.ingest.contents.flatten import flat
 from rovval.ingest.profile import Profile
@@ -40,17 +41,17 @@ def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     return missing_in_blocks(contents(path), profile)
 
 
-def read(path: Path, profile: Profile) -> RawLog:
+def read(path: Path, profile: Profile, progress: Progress = silent) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming everything that is missing, `UsageProblem` without pynmeagps."""
     from rovval.ingest.assembly.topics import read_blocks
 
-    return read_blocks(path, profile, contents(path))
+    return read_blocks(path, profile, contents(path, progress))
 
 
-def contents(path: Path) -> Iterator[Block]:
+def contents(path: Path, progress: Progress = silent) -> Iterator[Block]:
     """The sentences by kind. Those that fail their checksum are a finding. Raises `BadInput` where none holds, `UsageProblem` without pynmeagps."""
     findings: list[Finding] = []
-    blocks = _by_talker(path, findings)
+    blocks = _by_talker(path, findings, progress)
     if not blocks:
         raise BadInput(f"{path}: no sentence of NMEA 0183 with a checksum that holds", "is this the right file?")
     talkers: dict[str, set[str]] = {}
@@ -69,7 +70,7 @@ def checks(sentence: str) -> bool:
     return bool(star) and said[:2].upper() == f"{total:02X}"
 
 
-def _by_talker(path: Path, findings: list[Finding]) -> list[Block]:
+def _by_talker(path: Path, findings: list[Finding], progress: Progress) -> list[Block]:
     try:
         from pynmeagps import NMEAReader
         from pynmeagps.exceptions import NMEAMessageError, NMEAParseError, NMEATypeError
@@ -77,7 +78,7 @@ def _by_talker(path: Path, findings: list[Finding]) -> list[Block]:
         raise UsageProblem(f"{path}: sentences of NMEA 0183 need pynmeagps", "pip install 'rovval[nmea]'") from None
     collector, blocks = Collector(), list[Block]()
     said, bad, unread = float("nan"), 0, 0
-    for stamp, line in lines_of(path, "$", findings):
+    for stamp, line in lines_of(path, "$", findings, progress):
         if not checks(line):
             bad += 1
             continue

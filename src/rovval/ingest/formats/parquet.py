@@ -7,6 +7,7 @@ from pathlib import Path
 
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput
+from rovval.core.progress import Progress, silent
 from rovval.ingest.contents.block import Block
 from rovval.ingest.profile import Profile
 
@@ -29,14 +30,14 @@ def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     return missing_in({"": (*block.numbers, *block.texts)}, profile)
 
 
-def read(path: Path, profile: Profile) -> RawLog:
+def read(path: Path, profile: Profile, progress: Progress = silent) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming every missing column, or what makes the file useless."""
     from rovval.ingest.assembly.topics import read_blocks
 
-    return read_blocks(path, profile, contents(path))
+    return read_blocks(path, profile, contents(path, progress))
 
 
-def contents(path: Path) -> Iterator[Block]:
+def contents(path: Path, progress: Progress = silent) -> Iterator[Block]:
     """The table's columns; nested ones by address. Raises `BadInput` for a damaged file."""
     return _blocks(path)
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from rovval.core.data import Array, RawLog
 from rovval.core.errors import BadInput, Finding, RovvalError, all_at_once
+from rovval.core.progress import Progress, silent
 from rovval.ingest.bags import recording
 from rovval.ingest.bags.block import Block as Messages
 from rovval.ingest.bags.block import Connection, Index
@@ -55,7 +56,7 @@ def _missing(topics: list[str], profile: Profile) -> tuple[str, ...]:
     return (*gone, *(f"not {a}" for a in profile.absent if a in topics))
 
 
-def read(path: Path, profile: Profile) -> RawLog:
+def read(path: Path, profile: Profile, progress: Progress = silent) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming every missing topic and field, or what makes the bag unreadable."""
     from rovval.ingest.assembly import build
     from rovval.ingest.assembly.markers import markers_of, not_there
@@ -71,7 +72,7 @@ def read(path: Path, profile: Profile) -> RawLog:
             hint = "see `rovval show profile`, or give another"
             raise BadInput(all_at_once(gone, f"{path}: missing topics of profile {profile.name!r}"), hint)
         notes = _Notes(profile)
-        topics = _collect(path, bag, connections, _with_topics_of(profile, [c.topic for c in connections]), findings, notes)
+        topics = _collect(path, bag, connections, _with_topics_of(profile, [c.topic for c in connections]), findings, notes, progress)
         findings += bag.findings()
     topics = {name: topic for name, topic in topics.items() if len(topic.record)}
     if not topics:
@@ -89,7 +90,7 @@ def read(path: Path, profile: Profile) -> RawLog:
     return build(profile, signals.items(), path, sha256(path), t0 if t0 > SIM_TIME_NS else None, findings, facts, markers)
 
 
-def contents(path: Path) -> Iterator[Block]:
+def contents(path: Path, progress: Progress = silent) -> Iterator[Block]:
     """Every topic of the bag with its fields, header and record stamps. Raises `BadInput` where the bag cannot be read."""
     with _opened(path) as (bag, findings):
         connections = bag.connections()
@@ -98,6 +99,7 @@ def contents(path: Path) -> Iterator[Block]:
             types = types_of(connections, {})
             layouts = {c: Layouts(c, types) for c in connections}
             for block in bag.blocks(frozenset(c.topic for c in connections)):
+                progress("reading messages", bag.share)
                 for found, rows in layouts[block.connection].of(block) if block.connection in layouts else ():
                     silent.discard((block.connection.topic, block.connection.kind))
                     yield _as_logged(block, found, rows)
@@ -165,7 +167,8 @@ class _Notes:
 
 
 def _collect(
-    path: Path, bag: Recording, connections: list[Connection], profile: Profile, findings: list[Finding], notes: _Notes
+    path: Path, bag: Recording, connections: list[Connection], profile: Profile, findings: list[Finding], notes: _Notes,
+    progress: Progress,
 ) -> dict[str, _Topic]:
     """Topic by topic what the profile reads. Raises `BadInput` with every field that no message has."""
     wanted = {c: channels for c in connections if (channels := _channels(c.topic, profile))}
@@ -178,6 +181,7 @@ def _collect(
         for block in bag.blocks(frozenset(c.topic for c in (*wanted, *noted))):
             if block.connection in found:
                 found[block.connection].take(block)
+            progress("reading messages", bag.share)
             if block.connection in said:
                 notes.take(block, said[block.connection])
     wrong: dict[str, None] = {}

@@ -13,6 +13,7 @@ import numpy as np
 
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, Finding, UsageProblem
+from rovval.core.progress import Progress, silent
 from rovval.ingest.contents.block import Block
 from rovval.ingest.profile import Profile
 
@@ -35,14 +36,14 @@ def missing(path: Path, profile: Profile) -> tuple[str, ...]:
     return missing_in({_topic(data): tuple(data.data) for data in _opened(path, _names(profile)).data_list}, profile)
 
 
-def read(path: Path, profile: Profile) -> RawLog:
+def read(path: Path, profile: Profile, progress: Progress = silent) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming everything that is missing, `UsageProblem` without pyulog."""
     from rovval.ingest.assembly.topics import read_blocks
 
     return read_blocks(path, profile, _blocks(path, _names(profile)))
 
 
-def contents(path: Path) -> Iterator[Block]:
+def contents(path: Path, progress: Progress = silent) -> Iterator[Block]:
     """A block for each message (and instance). Raises `BadInput` for a damaged log, `UsageProblem` without pyulog."""
     return _blocks(path, None)
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from rovval import ingest
 from rovval.core.errors import BadInput, Finding
+from rovval.core.progress import Progress, silent
 from rovval.ingest.files import refuse_unusable
 from rovval.ingest.inspection.matches import Match, match
 from rovval.ingest.inspection.stamps_of_table import Stamps, readings
@@ -40,20 +41,20 @@ class Inspection:
         return self.contents.findings
 
 
-def inspect(path: Path) -> Inspection:
+def inspect(path: Path, progress: Progress = silent) -> Inspection:
     """Everything that the log holds, by the reader whose format it is. Raises `BadInput` for a file that no reader reads."""
     path = Path(path)
     refuse_unusable(path)
     with ingest.plain(path) as (whole, lost):
-        found = _inspected(whole)
+        found = _inspected(whole, progress)
     return found if whole == path else replace(found, path=path, contents=replace(found.contents, findings=(*lost, *found.findings)))
 
 
-def _inspected(path: Path) -> Inspection:
+def _inspected(path: Path, progress: Progress) -> Inspection:
     refused: list[BadInput] = []
     for name in ingest.formats_of(path):
         try:
-            contents = summarised(ingest.reader(name).contents(path))
+            contents = summarised(ingest.reader(name).contents(path, progress))
         except BadInput as error:
             refused.append(error)
             continue

@@ -8,16 +8,20 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from rovval.core.errors import Finding
-from rovval.ingest.files.compression import lost_of, opened
+from rovval.core.progress import Progress, silent
+from rovval.ingest.files.compression import lost_of, opened, share_read
 
+TOLD_EVERY = 5_000  # lines between two words on how far it is
 LEAST_EPOCH_S, MOST_EPOCH_S = 1e9, 1e11  # numbers between are seconds since 1970 (2001 to the year 5138); milliseconds are beyond
 
 
-def lines_of(path: Path, begin: str, findings: list[Finding]) -> Iterator[tuple[float, str]]:
+def lines_of(path: Path, begin: str, findings: list[Finding], progress: Progress = silent) -> Iterator[tuple[float, str]]:
     """Lines that hold what begins with one of the characters ``begin``: the logger's stamp before it (s since 1970, UTC where it says no
     zone; NaN without one), and the rest. A compressed file is unpacked; what is lost of it is a finding."""
     with opened(path) as file:
-        for raw in file:
+        for number, raw in enumerate(file):
+            if number % TOLD_EVERY == 0:
+                progress("reading lines", share_read(file, path))
             line = raw.decode("utf-8", errors="replace").strip()
             at = next((i for i, sign in enumerate(line) if sign in begin), None)
             if at is not None:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval.core.errors import BadInput, Finding
-from rovval.ingest.files.compression import lost_of, opened
+from rovval.ingest.files.compression import lost_of, opened, share_read
 from rovval.ingest.table.header import Header
 from rovval.ingest.table.text_table import HEAD, byte_order, cells, first_few
 
@@ -37,6 +37,7 @@ class TextRows:
     def __init__(self, path: Path, header: Header, size: int = BLOCK) -> None:
         self.path, self.header, self.size = path, header, size
         self.separator, self.width = header.separator, len(header.names)
+        self.share = 0.0  # of the file that is read
         self._short, self._long, self._last = Tally(), Tally(), 0
         self._lost: tuple[Finding, ...] = ()
         self._count = 0
@@ -49,7 +50,7 @@ class TextRows:
         with opened(self.path) as file:
             try:
                 for block in _texts(file, self.size):
-                    count = block.count(b"\n")
+                    count, self.share = block.count(b"\n"), share_read(file, self.path)
                     if number <= at < number + count:
                         *before, block = block.split(b"\n", at - number + 1)
                         again = frozenset(before[-1 - self.header.below :]) - {b""}

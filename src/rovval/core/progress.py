@@ -1,0 +1,11 @@
+"""How far a piece of work is, for whoever shows it: what is being done, and the share of it that is done, 0 to 1."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+Progress = Callable[[str, float], None]
+
+
+def silent(step: str, share: float) -> None:
+    """Nobody looks."""
