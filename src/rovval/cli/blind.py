@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from rovval.cli import complete, options, output
+from rovval.core.progress import Progress
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -123,7 +124,7 @@ def score(
         output.say(output.places({"html": folder / "score.html", "json": folder / "score.json"}), quiet)
 
 
-def _steps(quiet: bool) -> output.Progress:
+def _steps(quiet: bool) -> Progress:
     """One line a step on a terminal, else a line for each log: a long run in a batch system is to be followed too."""
     import sys
 

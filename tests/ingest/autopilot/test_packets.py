@@ -94,3 +94,14 @@ def test_dataflash_is_read_past_damage_and_to_where_it_is_cut(tmp_path):
     assert said["cut_file"].startswith("7,5") and "s after the start" in said["cut_file"] and "bytes in 1 places" in said["damaged_file"]
     assert expected - 3 <= len(log.channels["phi"].t) <= expected
     assert packets(whole).findings("x") == [] and packets(whole + bytes(200)).findings("x") == [], "a last page is filled up"
+
+
+def test_a_damaged_format_costs_the_messages_of_its_type_alone(tmp_path):
+    """pymavlink gave the whole log up: list index out of range."""
+    whole = bytearray(real("ardusub/small.BIN").read_bytes())
+    at = next(k for k in range(len(whole)) if whole[k : k + 3] == b"\xa3\x95\x80" and whole[k + 5 : k + 8] == b"MAG")
+    whole[at + 9] = ord("?")  # a letter of its format
+    (tmp_path / "a.BIN").write_bytes(whole)
+    log, expected = read(tmp_path / "a.BIN", "ardusub_vectored"), read(real("ardusub/small.BIN"), "ardusub_vectored")
+    assert "no whole packet" in next(f.detail for f in log.findings if f.code == "damaged_file")
+    assert len(log.channels["phi"].t) > 0.5 * len(expected.channels["phi"].t) and set(log.channels) == set(expected.channels)

@@ -69,7 +69,7 @@ def build(
     series, said = signed_by_command(profile, series)
     series, spikes = without_spikes(series)
     found += [*said, *spikes]
-    series = _geodetic(profile, series, facts)
+    series = _geodetic(profile, series, facts, found)
     series = _turned(profile, series)
     series = _into_body(profile, series, found)
     if profile.relative_heading and "psi" in series:
@@ -115,14 +115,16 @@ def _attitude(profile: Profile, signal: Signal, present: Flags, found: list[Find
     return {n: Series(signal.t[present][unit], euler[:, i], signal.stamp) for i, n in enumerate(EULER)}
 
 
-def _geodetic(profile: Profile, series: dict[str, Series], facts: dict[str, str]) -> dict[str, Series]:
+def _geodetic(profile: Profile, series: dict[str, Series], facts: dict[str, str], found: list[Finding]) -> dict[str, Series]:
     """Latitude and longitude into metres north and east of the first sample, by the radii of curvature of WGS-84 there.
 
     Radii: Groves, Principles of GNSS, Inertial and Multisensor Navigation, 2nd ed., equations 2.105 and 2.106.
     """
     if "x" not in series or "y" not in series or profile.channels["x"].unit != GEODETIC:
         return {n: s for n, s in series.items() if n not in ("x", "y") or profile.channels["x"].unit != GEODETIC}
-    lat, lon = series["x"], series["y"]
+    lat, lon = (_on_earth(series[n], most, found) for n, most in (("x", 90.0), ("y", 360.0)))
+    if not len(lat.t) or not len(lon.t):
+        return {n: s for n, s in series.items() if n not in ("x", "y")}
     lat0, lon0 = float(lat.values[0]), float(lon.values[0])
     s2 = 1.0 - WGS84_E2 * np.sin(np.radians(lat0)) ** 2
     north, east = WGS84_A * (1.0 - WGS84_E2) / s2**1.5, WGS84_A / np.sqrt(s2) * np.cos(np.radians(lat0))
@@ -130,6 +132,15 @@ def _geodetic(profile: Profile, series: dict[str, Series], facts: dict[str, str]
     dlon = (lon.values - lon0 + 180.0) % 360.0 - 180.0
     x = Series(lat.t, np.radians(lat.values - lat0) * north, lat.stamp)
     return series | {"x": x, "y": Series(lon.t, np.radians(dlon) * east, lon.stamp)}
+
+
+def _on_earth(series: Series, most_deg: float, found: list[Finding]) -> Series:
+    """The samples of a latitude or longitude that are one; how many are none is a finding."""
+    on = np.abs(series.values) <= most_deg
+    if on.all():
+        return series
+    found.append(Finding("out_of_range", "x, y", f"{(~on).sum()} samples are beyond {most_deg:g} degrees, where there is no place on Earth; dropped"))
+    return Series(series.t[on], series.values[on], series.stamp)
 
 
 def _turned(profile: Profile, series: dict[str, Series]) -> dict[str, Series]:

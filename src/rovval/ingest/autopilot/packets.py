@@ -20,6 +20,11 @@ from rovval.ingest.files.compression import scratch_folder
 
 DATAFLASH = b"\xa3\x95"  # every DataFlash packet begins so
 FORMAT, FORMAT_SIZE, COLUMNS = 0x80, 89, 25  # the type of FMT messages, their bytes, and where in them the names of columns begin
+FIELD = {
+    "a": 64, "b": 1, "B": 1, "h": 2, "H": 2, "i": 4, "I": 4, "f": 4, "d": 8, "n": 4, "N": 16, "Z": 64, "c": 2, "C": 2, "e": 4, "E": 4, "L": 4, "M": 1,
+    "q": 8, "Q": 8, "g": 2,
+}  # fmt: skip
+"""Bytes of a field by the letter of its kind in an FMT message (AP_Logger/README.md)."""
 PAGE = 256  # bytes: block-based loggers fill the last page up, with what is no message
 MAVLINK = {0xFE: 8, 0xFD: 12}  # first byte of a MAVLink 1 and 2 packet -> its bytes beside the payload
 SIGNED, SIGNATURE = 1, 13  # flag of a MAVLink 2 packet that is signed, and the signature's bytes
@@ -99,7 +104,8 @@ def _walked(content: Content, packet: Callable[[Content, int], Packet], head: by
     while 0 <= at < size:
         n, us = packet(content, at)
         then = at + n
-        if n and then <= size and (then == size or _follows(packet(content, then), us) or _padding(content, then, head)):
+        followed = content[then : then + 2] == head if head else _follows(packet(content, then), us)  # by one of a type that is not known, too
+        if n and then <= size and (then == size or followed or _padding(content, then, head)):
             found.take(at, then)
             found.last_us = found.last_us if us is None else us
             at = then
@@ -129,7 +135,9 @@ def _dataflash() -> Callable[[Content, int], Packet]:
         if content[at : at + 2] != DATAFLASH or at + 3 > len(content):
             return 0, None
         kind = content[at + 2]
-        if kind == FORMAT and at + FORMAT_SIZE <= len(content) and content[at + 4] > 3:
+        if kind == FORMAT and at + FORMAT_SIZE <= len(content):
+            if not _is_format(content[at : at + FORMAT_SIZE]):
+                return 0, None  # damaged: its type alone is not known
             sizes.setdefault(content[at + 3], content[at + 4])
             if content[at + COLUMNS : at + COLUMNS + 6] == b"TimeUS":
                 stamped.add(content[at + 3])
@@ -137,6 +145,14 @@ def _dataflash() -> Callable[[Content, int], Packet]:
         return sizes.get(kind, 0), struct.unpack_from("<Q", content, at + 3)[0] if timed else None
 
     return packet
+
+
+def _is_format(message: bytes) -> bool:
+    """Whether an FMT message (type, length, name of 4, format of 16, names of columns of 64) agrees with itself."""
+    kinds, names = message[9:25].rstrip(b"\0").decode("latin-1"), message[COLUMNS:].rstrip(b"\0")
+    if not set(kinds) <= set(FIELD) or not message[5:9].rstrip(b"\0").isalnum() or not names.isascii():
+        return False
+    return message[4] == 3 + sum(FIELD[kind] for kind in kinds) and names.count(b",") + 1 == len(kinds)
 
 
 def _telemetry(content: Content, at: int) -> Packet:

@@ -6,6 +6,7 @@ is a table of its signals under their labels. Objects (timeseries, timetable) ar
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -67,7 +68,7 @@ def _of_scipy(path: Path) -> dict[str, Any]:
 
     try:
         found = loadmat(path, simplify_cells=True)
-    except (MatReadError, ValueError, TypeError, KeyError, IndexError, OSError, OverflowError, MemoryError, EOFError) as error:
+    except (MatReadError, ValueError, TypeError, KeyError, IndexError, OSError, OverflowError, MemoryError, EOFError, zlib.error) as error:
         said = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise BadInput(f"{path}: damaged or no Matlab file: {said}", "is the file whole?") from None
     return {name: value for name, value in found.items() if not name.startswith("__")}
