@@ -9,6 +9,9 @@ import numpy as np
 import pytest
 from bag_case import write
 from german_dive import german
+from log_files import ulog
+from merlin_case import columns as merlin_columns
+from merlin_case import text as csv_text
 from real_data import real
 from typer.testing import CliRunner
 
@@ -151,3 +154,25 @@ def test_a_mutated_table_is_inspected_or_refused(tmp_path):
         assert page(found) and tomllib.loads(proposed(found, "mine"))
         read += 1
     assert read > 30
+
+
+def test_a_log_of_px4_is_proposed_by_what_its_messages_are_defined_to_be(tmp_path):
+    """Attitude as a quaternion, velocities along the world: nothing of it is a guess but the thrusters."""
+    path = ulog(tmp_path / "dive.ulg")
+    text, profile = table(path)
+    raw = ingest.reader("ulog").read(path, profile)
+    assert raw.channels["psi"].values == pytest.approx(np.pi / 2, abs=1e-6), "heads east"
+    assert raw.channels["v"].values == pytest.approx(-0.5, abs=1e-6), "and moves north: to port"
+    assert [line.partition(" ")[0] for line in text.splitlines() if "REVIEW" in line][2:] == ['"n:T1"', '"n:T2"']
+
+
+def test_a_log_that_a_built_in_profile_reads_is_proposed_under_the_name_asked_for():
+    text, profile = table(real("ardusub/small.BIN"))
+    assert profile.name == "mine" and profile.ardusub_frame == "vectored" and "ardusub_vectored reads this log" in text
+
+
+def test_a_column_of_notes_is_proposed_as_markers(tmp_path):
+    cells = merlin_columns(60) | {"Note": ["", "lap"] * 30}
+    (tmp_path / "dive.csv").write_text(csv_text({n.replace("Depth", "Tiefe"): c for n, c in cells.items()}))
+    profile = table(tmp_path / "dive.csv")[1]
+    assert profile.markers is not None and profile.markers.column == "Note"

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from rovval.ingest.inspection import uorb_types
 from rovval.ingest.inspection.inspect import Inspection
 from rovval.ingest.inspection.matches import match
 from rovval.ingest.inspection.names import DECORATION, PULSE, SHAFT, SPEED, THRUSTER, Guess, channel_guess, unit_said, words
@@ -22,6 +23,7 @@ PULSES_US = (800.0, 2200.0)  # widths that RC servos and ESCs take
 SHAFT_RPS = 80.0  # rev/s: no thruster of an ROV turns faster, so that larger values are rpm
 COMMANDS = ("n", "pwm", "stick")  # of a thruster or stick that was at rest all the time a line is proposed all the same
 QUATERNIONS = tuple(tuple(f"{stem}{n}" for n in ends) for stem, ends in (("q", "wxyz"), ("quat", "wxyz"), ("q", "0123"), ("orientation", "wxyz")))
+NOTES = {"event", "events", "marker", "markers", "mark", "note", "notes", "comment", "mode", "annotation", "ereignis", "bemerkung", "statustext", "msg"}
 ADDRESS = ("column", "columns", "topic", "field")  # stand first in a line
 BY_DEFAULT = {"u": "m/s", "v": "m/s", "w": "m/s", "x": "m", "y": "m", "z": "m", "altitude": "m", "voltage": "V", "tether_length": "m", "pwm": "pwm_us"}
 
@@ -51,9 +53,9 @@ def proposed(found: Inspection, name: str) -> str:
     under which every run says that nobody has reviewed it."""
     if len(found.fits) == 1:
         text = (FOLDER / f"{found.fits[0]}.toml").read_text(encoding="utf-8")
-        return f"# The built-in profile {found.fits[0]} reads this log as it is; this is a copy, to be changed under another name.\n{text}"
+        text = re.sub(r'^name = ".*"$', f"name = {json.dumps(name)}", text, count=1, flags=re.MULTILINE)
+        return f"# The built-in profile {found.fits[0]} reads this log as it is; this is a copy, to be changed.\n{text}"
     lines = _as_built_in(found) or _from_names(found)
-    bag = found.format in ("ros_bag",)
     header = [
         f"# Proposed by rovval from the names, units and values of {Path(found.path).name}. Lines with REVIEW are guesses:",
         f"# confirm or mend each, then `rovval profile check {name}.toml {Path(found.path).name}`, and delete the line `draft`.",
@@ -61,8 +63,7 @@ def proposed(found: Inspection, name: str) -> str:
         f"description = {_quoted(f'Logs such as {Path(found.path).name}')}",
         f"format = {json.dumps(found.format)}",
         'vehicle = ""  # REVIEW: a name of `rovval list vehicle`, or a file',
-        f'frame = "{"flu" if bag else "fsd"}"  # REVIEW: {"REP-103 of ROS" if bag else "as most vehicles log"}; the log does not say it',
-        f'world = "{"enu" if bag else "ned"}"  # REVIEW: {"REP-103 of ROS" if bag else "depth positive down, heading clockwise from north"}',
+        *_axes(found.format),
         "draft = true  # every run says so until this line is deleted",
         "",
         "[time]",
@@ -70,9 +71,32 @@ def proposed(found: Inspection, name: str) -> str:
         "",
         "[channels]",
         *([_text(line) for line in lines] or ["# no name here says a channel: map what is left over by hand"]),
+        *_markers(found),
     ]
     left = _left_over(found, lines)
     return "\n".join([*header, "", "# Left over, mapped to nothing:", *(f"#   {_printable(one)}" for one in left)] if left else header) + "\n"
+
+
+def _axes(form: str) -> list[str]:
+    """The axes that a source of this format has: an autopilot's own, else what is usual."""
+    if form in ("ulog", "autopilot"):
+        return ['frame = "fsd"  # forward-right-down, as PX4 and ArduPilot define it', 'world = "ned"  # north-east-down, as they define it']
+    if form == "ros_bag":
+        return [f'{key} = "{axes}"  # REVIEW: REP-103 of ROS; the log does not say it' for key, axes in (("frame", "flu"), ("world", "enu"))]
+    return [
+        'frame = "fsd"  # REVIEW: as most vehicles log; the log does not say it',
+        'world = "ned"  # REVIEW: depth positive down, heading clockwise from north',
+    ]
+
+
+def _markers(found: Inspection) -> list[str]:
+    """The first text that by its name says what happens: what `--from` and `--to` may name."""
+    for topic in found.contents.topics.values():
+        for f in topic.fields.values():
+            if f.low is None and {*words(f.address), *words(topic.name)} & NOTES:
+                place = [f"topic = {_quoted(topic.name)}", f"field = {_quoted(f.address)}"] if topic.clocks else [f"column = {_quoted(f.address)}"]
+                return ["", "[markers]  # REVIEW: texts that --from and --to take in place of seconds", *place]
+    return []
 
 
 def _clock(found: Inspection) -> list[str]:
@@ -141,17 +165,19 @@ def _complete(lines: dict[str, Line]) -> Iterator[Line]:
 
 def _candidates(topic: TopicSummary, found: Inspection) -> Iterator[_Candidate]:
     stamps = {c for s in found.stamps.get(topic.name, ())[:1] for c in s.columns}
-    typed = meaning(topic.kind)
+    typed = uorb_types.FIELDS.get(topic.kind, {}) if found.format == "ulog" else meaning(topic.kind)
+    along_world = found.format == "ulog" and topic.kind in uorb_types.ALONG_WORLD
     angles = set(words(topic.name)) & {"angle", "angles", "euler", "rpy"}
     for address, (channel, unit) in typed.items():
-        first = f"{address}.w" if channel == "attitude" else address
+        first = next((a for a in (f"{address}.w", f"{address}[0]") if a in topic.fields), "") if channel == "attitude" else address
         if first in topic.fields and angles and channel in "pqr" and not topic.fields[first].constant:
             channel, (unit, how) = dict(zip("pqr", ("phi", "theta", "psi"), strict=True))[channel], _by_values("phi", topic.fields[first])
             yield _Candidate(topic, topic.fields[first], Guess(channel, topic.name), unit, f"angles by the topic's name; {how}", "channel and unit")
         elif first in topic.fields and _filled(topic, first):
-            review = "" if "Odometry" in topic.kind else "axes"
-            yield _Candidate(topic, topic.fields[first], Guess(channel, topic.kind), unit, f"{topic.kind} defines it", review)
-    array = ARRAYS.get(topic.kind.replace("/msg/", "/"))
+            review = "" if "Odometry" in topic.kind or found.format == "ulog" else "axes"
+            guess = Guess(channel, topic.kind, world=along_world and channel in "uvw")
+            yield _Candidate(topic, topic.fields[first], guess, unit, f"{topic.kind} defines it", review)
+    array = (uorb_types.ARRAYS if found.format == "ulog" else ARRAYS).get(topic.kind.replace("/msg/", "/"))
     quaternion = _quaternion(topic)
     if quaternion and not typed:
         yield _Candidate(topic, topic.fields[quaternion[0]], Guess("attitude", "quaternion"), "quaternion", "four columns of norm one", "order and axes")
@@ -247,7 +273,7 @@ def _line(channel: str, c: _Candidate) -> Line:
 def _address(c: _Candidate) -> dict[str, object]:
     if not c.topic.name:
         return {"column": re.sub(r"\s*(\(.*?\)|\[.*?\])\s*$", "", c.field.address) or c.field.address}
-    field = c.field.address.removesuffix(".w") if c.guess.channel == "attitude" else c.field.address
+    field = re.sub(r"(\.w|\[0\])$", "", c.field.address) if c.guess.channel == "attitude" else c.field.address
     return {"topic": c.topic.name, "field": field}
 
 
