@@ -105,3 +105,12 @@ def test_lines_of_separators_alone_lose_nothing(tmp_path):
     path.write_text("\n".join([*lines[:100], blank, *lines[100:], blank, blank, ""]))
     log = read(path)
     assert log.findings == () and len(log.channels["u"].values) == 300
+
+
+def test_zeros_that_a_crash_left_in_the_middle_cost_their_rows_alone(tmp_path):
+    """A whole log was refused as binary."""
+    path = merlin_case.write(tmp_path)
+    content = path.read_bytes()
+    path.write_bytes(content[:40_000] + bytes(1000) + content[41_000:])
+    log = read(path)
+    assert 290 < len(log.channels["u"].values) < 300 and "ragged_row" in codes(log)

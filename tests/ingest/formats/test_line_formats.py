@@ -118,6 +118,13 @@ def test_two_talkers_of_one_kind_are_two_topics(tmp_path):
     assert {b.topic for b in nmea.contents(tmp_path / "a.nmea") if b.topic} == {"HEHDT", "GPHDT", "DPT"}
 
 
+def test_a_last_line_that_is_cut_before_its_sentence_is_said(tmp_path):
+    (tmp_path / "own.toml").write_text(NMEA_PROFILE.format(kind="record"))
+    (tmp_path / "a.nmea").write_text(sentences(True).rpartition("\n")[0] + "\n179534")
+    log = read(tmp_path / "a.nmea", str(tmp_path / "own.toml"))
+    assert {f.code for f in log.findings} == {"bad_checksum", "cut_line"}
+
+
 def test_stamps_that_are_too_coarse_and_none_at_all(tmp_path):
     (tmp_path / "own.toml").write_text(NMEA_PROFILE.format(kind="header"))
     (tmp_path / "a.nmea").write_text("\n".join(line.partition(" ")[2] for line in sentences(True).splitlines()))

@@ -84,6 +84,15 @@ def test_what_is_missing_is_named(tmp_path):
         read(write(tmp_path / "dive.ulg"), str(tmp_path / "px4.toml"))
 
 
+def test_a_cut_log_is_read_to_where_it_ends(tmp_path, profile):
+    """It was read without a word."""
+    path = write(tmp_path / "dive.ulg")
+    path.write_bytes(path.read_bytes()[:-1000])
+    log = read(path, profile)
+    assert [f.code for f in log.findings] == ["cut_file"] and "ends in the middle of a message" in log.findings[0].detail
+    assert 0.7 * N < len(log.channels["v"].t) < N
+
+
 def test_damage_gives_a_log_or_a_refusal(tmp_path, profile):
     path = write(tmp_path / "dive.ulg")
     whole, rng, read_some = path.read_bytes(), random.Random(0), 0

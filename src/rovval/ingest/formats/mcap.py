@@ -43,7 +43,7 @@ def holds_other_messages(path: Path) -> bool:
     with path.open("rb") as file:
         if file.read(len(MAGIC)) != MAGIC:
             return False
-    if (channels := _summary(path)) is None:
+    if (channels := _channels(path)) is None:
         try:
             channels = [r for r in takewhile(lambda r: not isinstance(r, Message), _records(path, [])) if hasattr(r, "message_encoding")]
         except BadInput:
@@ -74,21 +74,26 @@ def contents(path: Path, progress: Progress = silent) -> Iterator[Block]:
 
 def _topics(path: Path) -> set[str]:
     """Names of the topics, by the file's summary where it has one."""
-    channels = _summary(path)
+    channels = _channels(path)
     return {r.topic for r in (channels if channels is not None else _records(path, [])) if hasattr(r, "message_encoding")}
 
 
-def _summary(path: Path) -> list[Any] | None:
-    """The channels that the end of the file lists; None of a file without its end."""
+def _summary(path: Path) -> Any:
+    """The end of the file: which channels it has and where its chunks begin; None of a file without its end."""
     import zstandard
     from mcap.exceptions import McapError
     from mcap.reader import make_reader
 
     try:
         with path.open("rb") as file:
-            summary = make_reader(file).get_summary()
+            return make_reader(file).get_summary()
     except (McapError, zstandard.ZstdError, ValueError, RuntimeError, OSError, OverflowError, MemoryError, struct.error):
         return None
+
+
+def _channels(path: Path) -> list[Any] | None:
+    """The channels that the end of the file lists; None of a file without its end."""
+    summary = _summary(path)
     return list(summary.channels.values()) if summary is not None and summary.channels else None
 
 
@@ -125,30 +130,44 @@ def _blocks(path: Path, wanted: Callable[[str], bool], progress: Progress) -> It
 
 
 def _records(path: Path, findings: list[Finding], progress: Progress = silent) -> Iterator[Any]:
-    """Every record outside of the file's end, checked by its CRC; damage ends it, and is a finding. Raises `BadInput` where nothing came before."""
+    """Every record outside of the file's end, checked by its CRC; a chunk that is damaged is passed over where the file's end says where the next one
+    begins, and what is lost is a finding. Raises `BadInput` where no message can be read."""
     import zstandard
     from mcap.exceptions import McapError
     from mcap.records import DataEnd, Message
     from mcap.stream_reader import StreamReader
 
-    count, last = 0, 0
+    count, last, lost, why, good = 0, 0, 0, "", len(MAGIC)
+    summary = _summary(path)
+    chunks = [] if summary is None else sorted(c.chunk_start_offset for c in summary.chunk_indexes)
     with path.open("rb") as file:
-        try:
-            for record in StreamReader(file, validate_crcs=True, record_size_limit=LONGEST_RECORD).records:
-                if isinstance(record, DataEnd):
-                    return
-                if isinstance(record, Message):
-                    count, last = count + 1, record.log_time
-                    if count % TOLD_EVERY == 0:
-                        progress("reading messages", file.tell() / path.stat().st_size)
-                yield record
-            why = "ends without its summary"
-        except (McapError, zstandard.ZstdError, ValueError, RuntimeError, OSError, EOFError, OverflowError, MemoryError, struct.error) as error:
-            why = f"is damaged or ends in the middle of a chunk: {type(error).__name__}{str(error) and ': '}{error}"
+        at: int | None = 0
+        while at is not None:
+            file.seek(at)
+            try:
+                for record in StreamReader(file, skip_magic=at > 0, validate_crcs=True, record_size_limit=LONGEST_RECORD).records:
+                    if isinstance(record, DataEnd):
+                        break
+                    if isinstance(record, Message):
+                        count, last = count + 1, record.log_time
+                        if count % TOLD_EVERY == 0:
+                            progress("reading messages", file.tell() / path.stat().st_size)
+                    good = max(good, file.tell())
+                    yield record
+                else:
+                    why = "ends without its summary"
+                at = None
+            except (McapError, zstandard.ZstdError, ValueError, RuntimeError, OSError, EOFError, OverflowError, MemoryError, struct.error) as error:
+                why = f"{type(error).__name__}{str(error) and ': '}{error}"
+                at = next((place for place in chunks if place > max(at, good - 1)), None)
+                lost += 1
     if not count:
-        raise BadInput(f"{path}: no message can be read: the file {why}", "`mcap recover` may mend it")
-    to = datetime.fromtimestamp(last * 1e-9, UTC).strftime("%H:%M:%S")
-    findings.append(Finding("cut_file", path.name, f"{count} messages are read, to {to} UTC; the file {why}"))
+        raise BadInput(f"{path}: no message can be read: the file is damaged: {why}", "`mcap recover` may mend it")
+    told = f"{count:,} messages are read, to {datetime.fromtimestamp(last * 1e-9, UTC):%H:%M:%S} UTC; "
+    if why and summary is None:
+        findings.append(Finding("cut_file", path.name, f"{told}the file is cut there, or damaged ({why})"))
+    elif lost:
+        findings.append(Finding("damaged_file", path.name, f"{told}{lost:,} times something cannot be read and is left out ({why})"))
 
 
 def _decoder(path: Path, channel: Any, schema: Any, undecoded: dict[str, str]) -> Decoder | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import mmap
 import struct
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -20,6 +21,8 @@ from rovval.ingest.profile import Profile
 SUFFIXES = (".ulg", ".ulog")
 ALSO: tuple[str, ...] = ()
 MAGIC = b"ULog\x01\x12\x35"  # PX4 developer guide, ULog file format, header
+HEADER = 16  # bytes before the first message
+MESSAGE = struct.Struct("<HB")  # before each: its length, and its kind
 STAMP = "timestamp"  # us since the autopilot started, in every message
 
 
@@ -55,6 +58,9 @@ def _blocks(path: Path, names: Sequence[str] | None) -> Iterator[Block]:
     if log.dropouts:
         lost = sum(d.duration for d in log.dropouts) * 1e-3  # ms
         findings.append(Finding("dropout", path.name, f"the autopilot could not write for {lost:.2f} s in all, {len(log.dropouts)} times"))
+    if cut := _cut(path):
+        to = f"to {log.last_timestamp * 1e-6:.1f} s of the autopilot's clock"
+        findings.append(Finding("cut_file", path.name, f"{to}; the file ends in the middle of a message ({cut} bytes)"))
     if log.file_corruption:
         findings.append(Finding("damaged", path.name, "parts of the file are damaged; what could be read before and after them is"))
     yield Block("", facts=facts, findings=tuple(findings))
@@ -62,6 +68,18 @@ def _blocks(path: Path, names: Sequence[str] | None) -> Iterator[Block]:
         stamps = np.asarray(data.data[STAMP], dtype=np.float64) * 1e-6
         numbers = {name: np.asarray(v, dtype=np.float64) for name, v in data.data.items() if name != STAMP and np.asarray(v).dtype.kind in "biuf"}
         yield Block(_topic(data), data.name, clocks={"header": stamps, "record": stamps}, numbers=numbers)
+
+
+def _cut(path: Path) -> int:
+    """How many bytes at the end of the file are no whole message; 0 of a file that ends with one."""
+    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
+        at, size = HEADER, len(content)
+        while at + MESSAGE.size <= size:
+            then = at + MESSAGE.size + MESSAGE.unpack_from(content, at)[0]
+            if then > size:
+                break
+            at = then
+        return size - at
 
 
 def _topic(data: Any) -> str:

@@ -22,10 +22,12 @@ def lines_of(path: Path, begin: str, findings: list[Finding], progress: Progress
         for number, raw in enumerate(file):
             if number % TOLD_EVERY == 0:
                 progress("reading lines", share_read(file, path))
-            line = raw.decode("utf-8", errors="replace").strip()
+            line, cut = raw.decode("utf-8", errors="replace").strip(), not raw.endswith(b"\n")
             at = next((i for i, sign in enumerate(line) if sign in begin), None)
             if at is not None:
                 yield stamp_of(line[:at]), line[at:]
+            elif cut and line:
+                findings.append(Finding("cut_line", path.name, "the last line is cut; left out"))
         findings += lost_of(file, path)
 
 

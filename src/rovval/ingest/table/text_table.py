@@ -13,7 +13,8 @@ from rovval.ingest.files.compression import lost_of, opened
 SEPARATORS = (",", ";", "\t", "|")
 HEADER_WITHIN = 200  # lines of banner above the header that are looked through
 ELEMENT = re.compile(r"\S\[\d+\]$")  # of an array; "throttle [1]" is a unit
-HEAD = 65536  # bytes by which text is told from binary content
+HEAD = 65536  # bytes by which the encoding of text is told
+BEGINNING = 4096  # bytes in which text has no NUL
 
 
 def decode(path: Path, most: int = -1) -> tuple[str, tuple[Finding, ...]]:
@@ -31,7 +32,7 @@ def decode(path: Path, most: int = -1) -> tuple[str, tuple[Finding, ...]]:
         content = content[: content.rfind(b"\n") + 1] or content
     if (order := byte_order(content[:HEAD])) is not None:
         return content.decode(order, errors="replace").removeprefix("\ufeff"), lost
-    if b"\0" in content[:HEAD]:
+    if b"\0" in content[:BEGINNING]:  # further on it is what a crash left of a text: rows with it are no rows
         raise BadInput(f"{path}: is binary, not a table of text", "give --profile for its format")
     try:
         return content.decode("utf-8-sig"), lost
