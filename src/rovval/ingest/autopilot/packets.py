@@ -91,15 +91,20 @@ def whole_packets(path: Path) -> Iterator[tuple[Path, list[Finding]]]:
 
 def packets(content: Content) -> Packets:
     """The packets of a log, DataFlash or .tlog by its first bytes."""
-    return _walked(content, *((_dataflash(), DATAFLASH, 0) if content[:2] == DATAFLASH else (_telemetry, None, STAMP)))
+    if content[:2] == DATAFLASH:
+        formats = _Formats()
+        return _walked(content, formats.packet, formats.learn, DATAFLASH, 0)
+    return _walked(content, _telemetry, lambda content, at: None, None, STAMP)
 
 
 Packet = tuple[int, int | None]  # bytes of the packet at a place, 0 where none begins, and its stamp (us) where it has one
 
 
-def _walked(content: Content, packet: Callable[[Content, int], Packet], head: bytes | None, before: int) -> Packets:
-    """Packet after packet; where none begins that another one follows, on from the next ``head`` (None: any of MAVLink's), ``before`` bytes ahead
-    of which a packet begins."""
+def _walked(
+    content: Content, packet: Callable[[Content, int], Packet], learn: Callable[[Content, int], None], head: bytes | None, before: int
+) -> Packets:
+    """Packet after packet, from each of which something is learned of those that come; where none begins that another one follows, on from the next
+    ``head`` (None: any of MAVLink's), ``before`` bytes ahead of which a packet begins."""
     found, at, size = Packets(), 0, len(content)
     while 0 <= at < size:
         n, us = packet(content, at)
@@ -107,6 +112,7 @@ def _walked(content: Content, packet: Callable[[Content, int], Packet], head: by
         followed = content[then : then + 2] == head if head else _follows(packet(content, then), us)  # by one of a type that is not known, too
         if n and then <= size and (then == size or followed or _padding(content, then, head)):
             found.take(at, then)
+            learn(content, at)
             found.last_us = found.last_us if us is None else us
             at = then
         else:
@@ -127,30 +133,35 @@ def _padding(content: Content, at: int, head: bytes | None) -> bool:
     return head is not None and len(content) - at < PAGE and head not in content[at:]
 
 
-def _dataflash() -> Callable[[Content, int], Packet]:
-    sizes = {FORMAT: FORMAT_SIZE}
-    stamped: set[int] = set()  # types that begin with TimeUS
+class _Formats:
+    """What the FMT messages that were taken say of messages: bytes by type, and which types begin with TimeUS."""
 
-    def packet(content: Content, at: int) -> Packet:
+    def __init__(self) -> None:
+        self.sizes = {FORMAT: FORMAT_SIZE}
+        self.stamped: set[int] = set()
+
+    def packet(self, content: Content, at: int) -> Packet:
+        """Bytes and stamp of the message at a place."""
         if content[at : at + 2] != DATAFLASH or at + 3 > len(content):
             return 0, None
         kind = content[at + 2]
-        if kind == FORMAT and at + FORMAT_SIZE <= len(content):
-            if not _is_format(content[at : at + FORMAT_SIZE]):
-                return 0, None  # damaged: its type alone is not known
-            sizes.setdefault(content[at + 3], content[at + 4])
-            if content[at + COLUMNS : at + COLUMNS + 6] == b"TimeUS":
-                stamped.add(content[at + 3])
-        timed = kind in stamped and at + 11 <= len(content)
-        return sizes.get(kind, 0), struct.unpack_from("<Q", content, at + 3)[0] if timed else None
+        if kind == FORMAT and not _is_format(content[at : at + FORMAT_SIZE]):
+            return 0, None  # damaged: its type alone is not known
+        timed = kind in self.stamped and at + 11 <= len(content)
+        return self.sizes.get(kind, 0), struct.unpack_from("<Q", content, at + 3)[0] if timed else None
 
-    return packet
+    def learn(self, content: Content, at: int) -> None:
+        """From a message that is taken: those of a format that is left out are left out with it."""
+        if content[at + 2] == FORMAT:
+            self.sizes[content[at + 3]] = content[at + 4]
+            if content[at + COLUMNS : at + COLUMNS + 6] == b"TimeUS":
+                self.stamped.add(content[at + 3])
 
 
 def _is_format(message: bytes) -> bool:
     """Whether an FMT message (type, length, name of 4, format of 16, names of columns of 64) agrees with itself."""
     kinds, names = message[9:25].rstrip(b"\0").decode("latin-1"), message[COLUMNS:].rstrip(b"\0")
-    if not set(kinds) <= set(FIELD) or not message[5:9].rstrip(b"\0").isalnum() or not names.isascii():
+    if len(message) < FORMAT_SIZE or not set(kinds) <= set(FIELD) or not message[5:9].rstrip(b"\0").isalnum() or not names.isascii():
         return False
     return message[4] == 3 + sum(FIELD[kind] for kind in kinds) and names.count(b",") + 1 == len(kinds)
 

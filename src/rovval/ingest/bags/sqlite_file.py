@@ -68,20 +68,16 @@ class Sqlite:
         with closing(self._open()) as base:
             top = max(_last_number(base), 1)
             for rows in _rows(base, None if self.cut else wanted, damage, pages(self.path)[1]):
-                ids, ns = (np.fromiter((row[k] for row in rows), dtype=np.int64, count=len(rows)) for k in (1, 2))
+                _, of_topic, stamps, messages = zip(*rows, strict=True)
+                ids, ns = np.array(of_topic, dtype=np.int64), np.array(stamps, dtype=np.int64)
+                size = np.fromiter(map(len, messages), dtype=np.int64, count=len(rows))
+                start, data = np.concatenate(([0], np.cumsum(size)[:-1])), np.frombuffer(b"".join(messages), dtype=np.uint8)
                 damage.found(ns)
                 self.share = min(rows[-1][0] / top, 1.0)
                 for number in wanted:
-                    yield from self._block(number, [rows[i] for i in np.flatnonzero(ids == number)])
+                    if (of := ids == number).any():
+                        yield Block(self._topics[number], ns[of], data, start[of], size[of])
         self.findings += damage.findings(self.path.name)
-
-    def _block(self, number: int, rows: list[Row]) -> Iterator[Block]:
-        if not rows:
-            return
-        size = np.fromiter((len(row[3]) for row in rows), dtype=np.int64, count=len(rows))
-        record = np.fromiter((row[2] for row in rows), dtype=np.int64, count=len(rows))
-        data = np.frombuffer(b"".join(row[3] for row in rows), dtype=np.uint8)
-        yield Block(self._topics[number], record, data, np.concatenate(([0], np.cumsum(size)[:-1])), size)
 
     def _open(self) -> sqlite3.Connection:
         base = sqlite3.connect(f"{self.path.absolute().as_uri()}?immutable=1", uri=True)
@@ -100,7 +96,7 @@ def _rows(base: sqlite3.Connection, wanted: list[int] | None, damage: Damage, mo
             cursor = base.execute(query, (last,))
             while rows := cursor.fetchmany(ROWS):
                 last = max(last, int(rows[-1][0]))
-                if good := [row for row in rows if _is_message(row)]:
+                if good := rows if _are_messages(rows) else [row for row in rows if _is_message(row)]:
                     yield good
                 if len(good) < len(rows):
                     damage.lost["a row that holds no message"] += len(rows) - len(good)
@@ -108,8 +104,8 @@ def _rows(base: sqlite3.Connection, wanted: list[int] | None, damage: Damage, mo
         except sqlite3.DatabaseError:
             rows = _singly(base, query, last)
             last = max(last, rows[-1][0]) if rows else last
-            if rows:
-                yield [row for row in rows if _is_message(row)]
+            if good := [row for row in rows if _is_message(row)]:
+                yield good
             top = _last_number(base) if top is None else top
             most -= 1
             following = _readable_after(base, last, top) if most > 0 else None
@@ -130,6 +126,11 @@ def _singly(base: sqlite3.Connection, query: str, last: int) -> list[Row]:
     except sqlite3.DatabaseError:
         pass
     return rows
+
+
+def _are_messages(rows: list[Row]) -> bool:
+    """Whether all of them are: asked of many at once, since nearly always they are."""
+    return [set(map(type, column)) for column in zip(*rows, strict=True)] == [{int}, {int}, {int}, {bytes}]
 
 
 def _is_message(row: Row) -> bool:

@@ -159,7 +159,7 @@ def _records(path: Path, findings: list[Finding], progress: Progress = silent) -
                 at = None
             except (McapError, zstandard.ZstdError, ValueError, RuntimeError, OSError, EOFError, OverflowError, MemoryError, struct.error) as error:
                 why = f"{type(error).__name__}{str(error) and ': '}{error}"
-                at = next((place for place in chunks if place > max(at, good - 1)), None)
+                at = next((place for place in chunks if place > max(at or 0, good - 1)), None)
                 lost += 1
     if not count:
         raise BadInput(f"{path}: no message can be read: the file is damaged: {why}", "`mcap recover` may mend it")
