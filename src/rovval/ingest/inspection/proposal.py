@@ -175,8 +175,8 @@ def _candidates(topic: TopicSummary, found: Inspection) -> Iterator[_Candidate]:
             yield _Candidate(topic, topic.fields[first], Guess(channel, topic.name), unit, f"angles by the topic's name; {how}", "channel and unit")
         elif first in topic.fields and _filled(topic, first):
             review = "" if "Odometry" in topic.kind or found.format == "ulog" else "axes"
-            guess = Guess(channel, topic.kind, world=along_world and channel in "uvw")
-            yield _Candidate(topic, topic.fields[first], guess, unit, f"{topic.kind} defines it", review)
+            defined = Guess(channel, topic.kind, world=along_world and channel in "uvw")
+            yield _Candidate(topic, topic.fields[first], defined, unit, f"{topic.kind} defines it", review)
     array = (uorb_types.ARRAYS if found.format == "ulog" else ARRAYS).get(topic.kind.replace("/msg/", "/"))
     quaternion = _quaternion(topic)
     if quaternion and not typed:
