@@ -121,18 +121,29 @@ def _print(found: Diagnosis, json_: Path | None, quiet: bool) -> None:
 
 def _write(found: Diagnosis, run: Run, nominal: Vehicle, folder: Path | None, mended: Path | None, quiet: bool) -> None:
     """The report with the recording of the first run, and the mended vehicle, each where it was asked for."""
-    from rovval import report
-    from rovval.comparison import compare
-    from rovval.simulation import simulate
     from rovval.storage.atomic import write_text
 
     if folder is not None:
-        comparison = compare(run, simulate(run, nominal, found.model))
-        corrected = simulate(run, nominal, found.model, found.settings) if found.settings else None
-        report.write_diagnosis(found, folder, comparison, nominal, corrected)
+        _report(found, run, nominal, folder)
         output.say(f"written: {folder}", quiet)
     if mended is not None and not found.vehicle_fixed:
         output.say(f"{mended} not written: no cause was found that could be added to the vehicle")
     elif mended is not None:
         write_text(mended, found.vehicle_fixed)
         output.say(f"written: {mended}", quiet)
+
+
+def _report(found: Diagnosis, run: Run, nominal: Vehicle, folder: Path) -> None:
+    """The report; where the whole run cannot be simulated as a recording needs it, without one, and that is said: the diagnosis is not lost for it."""
+    from rovval import report
+    from rovval.comparison import compare
+    from rovval.core.errors import BadInput, SimulationStopped
+    from rovval.simulation import simulate
+
+    try:
+        comparison = compare(run, simulate(run, nominal, found.model))
+        corrected = simulate(run, nominal, found.model, found.settings) if found.settings else None
+        report.write_diagnosis(found, folder, comparison, nominal, corrected)
+    except (BadInput, SimulationStopped) as error:
+        output.say(f"no recording: {error.message}")
+        report.write_diagnosis(found, folder)
