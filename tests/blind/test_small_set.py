@@ -1,8 +1,8 @@
 """A small sealed set, made, answered and scored from nothing: floors that the engine must reach, and tests that chance scores chance.
 
-24 logs of 240 s of the Merlin, by the plant that shares no code with the simulator; about two minutes on two cores. The floors stand a
-good way below what was measured (the numbers are beside them), so that they fall when something breaks and not when a number moves.
-The full set is `rovval blind make sets/a --size full && rovval blind answer sets/a && rovval blind score sets/a` (hours, two cores).
+By default eight logs of 120 s of the Merlin, one or more of each sort; marked slow, the 24 logs of 240 s of `--size small`, and sixteen of plant b.
+The floors stand a good way below what was measured (the numbers are beside them), so that they fall when something breaks and not when a
+number moves. The full set is `rovval blind make sets/a --size full && rovval blind answer sets/a && rovval blind score sets/a` (hours, two cores).
 """
 
 from __future__ import annotations
@@ -16,6 +16,9 @@ import numpy as np
 import pytest
 
 from rovval import vehicle
+from rovval.blind.cases.grid import Case
+from rovval.blind.cases.questions import Question
+from rovval.blind.plant.spec import Planted
 from rovval.blind.scoring import history
 from rovval.blind.scoring.score import score_logs, score_set
 from rovval.blind.sealed import sealing
@@ -25,12 +28,34 @@ from rovval.blind.sealed.make import make_set
 
 SEED = 20261
 MERLIN = vehicle.LIBRARY / "merlin.toml"
+FEW = (  # mission, what is planted, taken out of the library: one or more of each sort
+    ("rich", (), ()),
+    ("survey", (), ()),
+    ("rich", (Planted("buoyancy_error", None, 1.5),), ()),
+    ("rich", (Planted("thruster_reversed", "HAS", 1.0),), ("waves",)),
+    ("rich", (Planted("dvl_misalignment", "yaw", 2.0),), ()),
+    ("rich", (Planted("buoyancy_error", None, -1.5), Planted("thruster_degraded", "HFP", 1.2)), ()),
+    ("rich", (Planted("hidden_trim", None, 2.0),), ()),
+    ("rich", (Planted("reverse_asymmetry", None, 2.0),), ("reverse_asymmetry",)),
+)
+LOGS = {"few": (8, 3), "small": (24, 14)}  # of a set: logs, single effects
+
+
+def few() -> list[Question]:
+    """The questions of `FEW`."""
+    cases = [(Case(mission, effects, 100 + i, 120.0), without) for i, (mission, effects, without) in enumerate(FEW)]
+    return [Question(case, without, bool(case.effects) and case.effects[0].name in without) for case, without in cases]
+
+
+@pytest.fixture(scope="module", params=["few", pytest.param("small", marks=pytest.mark.slow)])
+def size(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
 
 
 @pytest.fixture(scope="module")
-def small(tmp_path_factory) -> Folder:
-    root = tmp_path_factory.mktemp("blind") / "small"
-    place = make_set(root, MERLIN, SEED, "small")
+def small(size: str, tmp_path_factory) -> Folder:
+    root = tmp_path_factory.mktemp("blind") / size
+    place = make_set(root, MERLIN, SEED, "small", asked=few() if size == "few" else None)
     answer_set(root, baselines=False)
     return place
 
@@ -60,37 +85,43 @@ def value(result: dict[str, Any], stratum: str, mark: str) -> float:
     return float(result["strata"][stratum][mark]["value"])
 
 
-def test_every_log_was_answered(result: dict[str, Any]):
-    assert len(result["logs"]) == 24
+def test_every_log_was_answered(size: str, result: dict[str, Any]):
+    assert len(result["logs"]) == LOGS[size][0]
     assert result["flights_failed"] == 0
     assert not [row for row in result["logs"] if row["verdict"] == "failed"]
 
 
-# Measured with this seed on 2026-11-21: 0.93, 0.89, 0.92, 1.00, 1.00, 1.00 and below 0, 0.21, 1.2, 0.05.
-FLOORS = [
-    ("single, distinguishable", "top_1", 0.7),
-    ("single, distinguishable, same form", "top_1", 0.7),
-    ("single", "group_hit", 0.7),
-    ("single", "of_oracle", 0.8),
-    ("two", "share_found", 0.5),
-    ("single", "coverage_90", 0.6),
-]
-CEILINGS = [
-    ("null", "blamed", 0.25),
-    ("single", "errors", 0.8),
-    ("single", "group_size", 3.0),
-    ("single", "parameter_error", 0.2),
-]
+# Measured of the small set with this seed on 2026-11-21: 0.93, 0.89, 0.92, 1.00, 1.00, 1.00 and below 0, 0.21, 1.2, 0.05.
+FLOORS = {
+    "small": [
+        ("single, distinguishable", "top_1", 0.7),
+        ("single, distinguishable, same form", "top_1", 0.7),
+        ("single", "group_hit", 0.7),
+        ("single", "of_oracle", 0.8),
+        ("two", "share_found", 0.5),
+        ("single", "coverage_90", 0.6),
+    ],
+    "few": [("single", "top_1", 0.6), ("single", "group_hit", 0.6), ("two", "share_found", 0.5)],  # of three single effects one may be missed
+}
+CEILINGS = {
+    "small": [
+        ("null", "blamed", 0.25),
+        ("single", "errors", 0.8),
+        ("single", "group_size", 3.0),
+        ("single", "parameter_error", 0.2),
+    ],
+    "few": [("null", "blamed", 0.5), ("single", "errors", 1.4)],
+}
 
 
-@pytest.mark.parametrize(("stratum", "mark", "least"), FLOORS)
-def test_floor(result: dict[str, Any], stratum: str, mark: str, least: float):
-    assert value(result, stratum, mark) >= least, why(result)
+def test_floors(size: str, result: dict[str, Any]):
+    low = [(stratum, mark) for stratum, mark, least in FLOORS[size] if value(result, stratum, mark) < least]
+    assert not low, why(result)
 
 
-@pytest.mark.parametrize(("stratum", "mark", "most"), CEILINGS)
-def test_ceiling(result: dict[str, Any], stratum: str, mark: str, most: float):
-    assert value(result, stratum, mark) <= most, why(result)
+def test_ceilings(size: str, result: dict[str, Any]):
+    high = [(stratum, mark) for stratum, mark, most in CEILINGS[size] if value(result, stratum, mark) > most]
+    assert not high, why(result)
 
 
 def test_a_log_takes_seconds(result: dict[str, Any]):
@@ -98,11 +129,11 @@ def test_a_log_takes_seconds(result: dict[str, Any]):
     assert np.median([row["cpu_s"] for row in result["logs"]]) < 60.0
 
 
-def test_the_unsealing_is_in_the_history(small: Folder, result: dict[str, Any]):
+def test_the_unsealing_is_in_the_history(size: str, small: Folder, result: dict[str, Any]):
     [line] = history.read(small.root.parent / "history.jsonl")
     assert line["seed"] == SEED
     assert line["engine"] == result["engine"]
-    assert line["summary"]["single"]["n"] == 14
+    assert line["summary"]["single"]["n"] == LOGS[size][1]
 
 
 def test_shuffled_labels_score_chance(opened):
@@ -158,3 +189,28 @@ def kind(label: dict[str, Any]) -> str:
 def why(result: dict[str, Any]) -> str:
     lines = [f"{w['kind']}: {w['truth']} -> {w['named'] or w['verdict']} (oracle {w['oracle']})" for w in result["wrong"]]
     return "wrong answers:\n" + "\n".join(lines)
+
+
+@pytest.fixture(scope="module")
+def second(tmp_path_factory) -> dict[str, Any]:
+    """Sixteen fresh logs of plant b, five of them healthy."""
+    root = tmp_path_factory.mktemp("blind") / "b"
+    make_set(root, MERLIN, SEED, "16", plant="b", healthy=0.3, seconds=180.0)
+    answer_set(root, baselines=False)
+    return score_set(root, kept=root.parent / "history.jsonl")
+
+
+@pytest.mark.slow
+def test_what_is_stated_of_the_second_plant_is_better_than_a_coin(second: dict[str, Any]):
+    """The floor of the probabilities on forms that nobody tunes the engine on; the denominator holds healthy logs and what the library lacks."""
+    found = second["summed"]["reliability"]
+    assert second["plant"] == "b" and found["n"] + found["not_visible"] == 16 and found["without_probabilities"] == 0
+    assert found["brier"] < 0.25, why(second)
+    assert found["log_score"] > np.log(0.5), why(second)
+    assert found["calibration_error"] < 0.35, why(second)
+
+
+@pytest.mark.slow
+def test_healthy_logs_of_the_second_plant_are_left_alone(second: dict[str, Any]):
+    blamed = second["summed"]["counts"]["healthy_blamed"]
+    assert blamed["n"] == 5 and blamed["value"] <= 0.2, why(second)

@@ -124,6 +124,27 @@ def score(
         output.say(output.places({"html": folder / "score.html", "json": folder / "score.json"}), quiet)
 
 
+@app.command()
+def pool(
+    folders: Annotated[list[Path], typer.Argument(metavar="DIR...", help="Folders of scored sets, of any vehicles and of both plants.")],
+    json_: options.JsonFlag = False,
+) -> None:
+    """Several scored sets together, each plant apart: counts with intervals, reliability of the stated probabilities, every wrong log.
+
+    \b
+    Example:
+      rovval blind pool sets/a sets/b sets/b_minerva
+    """
+    from rovval.blind.scoring.pool import pool as pooled
+    from rovval.report.blind import terminal as blind_terminal
+
+    result = pooled(folders)
+    if json_:
+        output.result_json(result)
+    else:
+        output.result(blind_terminal.pooled(result))
+
+
 def _steps(quiet: bool) -> Progress:
     """One line a step on a terminal, else a line for each log: a long run in a batch system is to be followed too."""
     import sys

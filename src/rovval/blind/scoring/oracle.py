@@ -36,8 +36,9 @@ def oracle(
     log: Path, vehicle: str, true: Sequence[str], onsets: Mapping[str, float], asked: Mapping[str, Any]
 ) -> dict[str, float]:
     """Shares that the hypotheses ``true`` close: ``dynamic`` of the log's gap, ``seen`` the larger of that and of the gap with the
-    kinematic checks, where faults of sensors show; of several, ``each`` is the least that one of them closes of what the others leave,
-    fitted without it. Empty where the library has none of them or no window is usable."""
+    kinematic checks, where faults of sensors show; ``sure`` is the root of the fall of twice the log likelihood, its standard errors; of
+    several, ``each`` is the least that one of them closes of what the others leave, fitted without it. Empty where
+    the library has none of them or no window is usable."""
     from rovval.blind.sealed.answer import PROFILE
     from rovval.core.errors import RovvalError
     from rovval.storage.archive import open_run
@@ -49,12 +50,14 @@ def oracle(
             return {}
         problem, healthy, wanted, beta = found
         left = _left(problem, wanted, beta)
-        shares = 1.0 - left / np.array([problem.gap.dynamics.c.sum(), problem.gap.total.c.sum()])
+        gaps = np.array([problem.gap.dynamics.c.sum(), problem.gap.total.c.sum()])
+        shares = 1.0 - left / gaps
+        sure = float(np.sqrt(max(0.0, float((gaps - left).max())) / problem.design_effect))
         alone = [_left(problem, others, _fitted(problem, healthy, others, onsets)) for others in _others(wanted)]
     except (RovvalError, ArithmeticError, ValueError):
         return {}
     each = {"each": min(float((1.0 - left / without).max()) for without in alone)} if alone else {}
-    return {"dynamic": float(shares[0]), "seen": float(shares.max()), **each}
+    return {"dynamic": float(shares[0]), "seen": float(shares.max()), "sure": sure, **each}
 
 
 def fitted(run: Run, vehicle: Vehicle, true: Sequence[str], onsets: Mapping[str, float]) -> dict[str, float]:

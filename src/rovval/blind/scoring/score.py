@@ -9,7 +9,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from rovval.blind.scoring import ground_truth, history, tables
+from rovval.blind.scoring import ground_truth, history, outcomes, tables
 from rovval.blind.scoring.oracle import oracle
 from rovval.blind.scoring.rules import score_log
 from rovval.blind.scoring.strata import strata
@@ -69,11 +69,12 @@ def score_set(
     result = score_logs(labels, answers, best, manifest["vehicle"])
     result = {
         "schema": SCHEMA, "opened": opened, "seed": sealed["seed"], "size": sealed["size"], "vehicle": sealed["vehicle"],
+        "plant": sealed.get("plant", "a"),
         "rovval": __version__, "engine": commit["engine"], "committed": commit["committed"],
         "labels_sha256": manifest["labels_sha256"], "answers_sha256": commit["sha256"], "flights_failed": len(sealed["failed"]), **result,
     }  # fmt: skip
     write(root / "score.json", result)
-    fields = ("opened", "seed", "size", "vehicle", "rovval", "engine", "labels_sha256", "answers_sha256")
+    fields = ("opened", "seed", "size", "vehicle", "plant", "rovval", "engine", "labels_sha256", "answers_sha256")
     line = {name: result[name] for name in fields} | {"logs": len(labels), "summary": summary(result["strata"])}
     history.append(past, line)
     result["unsealings"] = history.read(past)
@@ -101,9 +102,20 @@ def score_logs(
         row |= {
             "severity": [e["severity"] for e in label["effects"]],
             "library": len(diagnosis.ranking) if diagnosis else 0,
+            "vehicle": nominal.name,
+            "noise": diagnosis.detection.noise if diagnosis and diagnosis.detection else None,
         }
+        row["visible"] = outcomes.visible(row, best)
+        row |= _stated(diagnosis)
         rows.append(row)
-    return {"logs": rows, "strata": tables.table(rows), "wrong": tables.confusions(rows)}
+    return {"logs": rows, "strata": tables.table(rows), "wrong": tables.confusions(rows), "summed": outcomes.summed(rows)}
+
+
+def _stated(diagnosis: Diagnosis | None) -> dict[str, Any]:
+    """What is said first, its probability, and those of the kinds of model."""
+    first, p = outcomes.said(diagnosis) if diagnosis else ("failed", None)
+    belief = diagnosis.probabilities if diagnosis else None
+    return {"said": first, "p_said": p if belief else None, "p_kinds": belief.model_dump() if belief else None}
 
 
 def _at_least(best: Mapping[str, float], label: Mapping[str, Any], diagnosis: Diagnosis | None) -> dict[str, float]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from rovval.report.blind.honesty import sums
 from rovval.report.blind.marks import COLUMNS, LABELS, Mark, long, mark, title
 from rovval.report.common.numbers import MISSING, per_cent
 from rovval.report.common.page import render
@@ -40,6 +41,7 @@ def text(result: Mapping[str, Any]) -> str:
         headline=_split(strata, _headline),
         known=_split(*_beside(strata, known=True)),
         unknown=_split(*_beside(strata, known=False)),
+        sums=sums(result["summed"]),
         wrong=[_wrong(w) for w in result["wrong"]],
         definitions=DEFINITIONS,
         all=[{"name": name, "logs": row["n"], "marks": [(label, mark(m, row[m])) for m, label in LABELS.items() if m in row]} for name, row in strata.items()],
@@ -67,7 +69,7 @@ def _facts(result: Mapping[str, Any]) -> dict[str, Any]:
     """What was scored; of the digests as much as tells two apart."""
     digests = {f"{name} sha256": str(result.get(f"{name}_sha256") or "")[:12] for name in ("labels", "answers")}
     times = {name: _minute(result.get(name)) for name in ("committed", "opened")}
-    return {"logs": len(result["logs"]), **{name: result.get(name) for name in ("size", "seed", "engine")}, **times, **digests}
+    return {"logs": len(result["logs"]), **{name: result.get(name) for name in ("plant", "size", "seed", "engine")}, **times, **digests}
 
 
 def _split(strata: Strata, table: Any) -> dict[str, Any]:
@@ -108,7 +110,10 @@ def _wrong(w: Mapping[str, Any]) -> list[str]:
     """An answer that is wrong, as a row of words."""
     true = ", ".join(w["truth"]) + (" (left out)" if w["left_out"] else "")
     verdict, named = VERDICTS.get(w["verdict"], w["verdict"]), " or ".join(w["group"]) or MISSING
-    return [w["kind"], true or "nothing", w["mission"], verdict, named, per_cent(w["oracle"]), str(w["log"]).removesuffix(".csv")]
+    if w.get("visible") is False:
+        true += " (not visible)"
+    stated = MISSING if w["probability"] is None else f"{w['probability']:.2f}"
+    return [w["kind"], true or "nothing", w["mission"], verdict, named, stated, per_cent(w["oracle"]), str(w["log"]).removesuffix(".csv")]
 
 
 def _unsealing(r: Mapping[str, Any]) -> list[str]:

@@ -5,7 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from rovval.report.blind import honesty
 from rovval.report.blind.marks import COLUMNS, short, title
+
+
+def pooled(result: Mapping[str, Any]) -> str:
+    """Several sets, each plant apart."""
+    parts = []
+    for plant, row in result["plants"].items():
+        head = f"plant {plant}: {row['logs']} logs of {', '.join(row['sets'])}; engine {', '.join(row['engines'])}"
+        parts.append("\n".join([head, "", *honesty.lines(row), "", *honesty.table(row), "", *honesty.wrong(row)]))
+    return "\n\n".join(parts)
 
 
 def text(result: Mapping[str, Any]) -> str:
@@ -15,4 +25,5 @@ def text(result: Mapping[str, Any]) -> str:
     for name, row in result["strata"].items():
         cells = "".join(f"{short(mark, row.get(mark)):>11}" for mark in COLUMNS)
         lines.append(f"{name:<{width}}{row['n']:>5}{cells}")
-    return "\n".join([title(result), "", *lines, "", f"{len(result['wrong'])} answers wrong; all marks with intervals: score.html"])
+    end = f"{len(result['wrong'])} answers wrong; all marks with intervals: score.html"
+    return "\n".join([title(result), "", *lines, "", *honesty.lines(result["summed"]), "", end])
