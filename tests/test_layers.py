@@ -68,7 +68,7 @@ ALLOWED = {
     "llvmlite": {"plant"},
     "scipy": {"ingest", "plant", "diagnose", "blind", "alignment", "report", "simulation", "trend"},
     "distributed": {"pipeline"},
-    "fsspec": {"storage", "pipeline", "ingest"},
+    "upath": {"storage"},
     "cryptography": {"blind"},
 }
 NO_NUMPY = {"cli", "pipeline", "__init__"}

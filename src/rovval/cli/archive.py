@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from rovval.cli import options, output
+from rovval.storage.places import place
 
 
 class Action(StrEnum):
@@ -21,7 +22,7 @@ class Action(StrEnum):
 def command(
     action: Annotated[Action, typer.Argument(help="check: read every byte against its digest. repair: and mend what is damaged.")],
     archive: options.ArchiveOption = Path("archive"),
-    reports: Annotated[Path | None, typer.Option("--reports", metavar="DIR", help="Reports of a batch, to be looked at as well.")] = None,
+    reports: Annotated[Path | None, typer.Option("--reports", metavar="DIR", parser=place, help="Reports of a batch, to be looked at as well.")] = None,
     json_: options.JsonFlag = False,
 ) -> None:
     """Look at every run, the catalogue and, with --reports, every result of a batch: is it there, and as it was written.
@@ -37,7 +38,7 @@ def command(
     from rovval.core.errors import UsageProblem
     from rovval.pipeline.keeping import integrity
 
-    if missing := [str(place) for place in (archive, reports) if place and not place.is_dir()]:
+    if missing := [str(folder) for folder in (archive, reports) if folder and not folder.is_dir()]:
         raise UsageProblem(f"{' and '.join(missing)}: no such folder", "name the archive with --archive, the reports with --reports")
     faults = integrity.check(archive, reports)
     repairs = integrity.repair(faults) if action is Action.repair else []

@@ -10,6 +10,7 @@ import typer
 
 from rovval.cli import complete
 from rovval.core.errors import UsageProblem
+from rovval.storage.places import place
 
 
 class Model(StrEnum):
@@ -77,7 +78,7 @@ ModelOption = Annotated[
         "freefloating (no added mass, no linear drag); `rovval show platform NAME` has sources and what each leaves out.",
     ),
 ]
-ArchiveOption = Annotated[Path, typer.Option("--archive", metavar="DIR", help="Where runs are kept.")]
+ArchiveOption = Annotated[Path, typer.Option("--archive", metavar="DIR", parser=place, help="Where runs are kept: a folder, or s3://bucket/prefix.")]
 EffectOption = Annotated[
     list[str] | None,
     typer.Option(

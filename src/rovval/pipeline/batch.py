@@ -20,8 +20,10 @@ from rovval.pipeline.keeping.trends import trends
 from rovval.pipeline.planning import config
 from rovval.pipeline.planning.config import Pipeline
 from rovval.pipeline.planning.plan import Plan, Task, plan
+from rovval.pipeline.planning.records import brief
 from rovval.report.batch.terminal import reasons
 from rovval.storage.atomic import json_text, read_json, sweep, write_over
+from rovval.storage.places import reached
 
 SUMMARY, INDEX = "summary.json", "index.html"
 
@@ -43,7 +45,7 @@ def run(
         raise UsageProblem("--workers and --scheduler are two ways to run", "give one of them")
     pipeline = config.load(path)
     began = time.monotonic()
-    with lock.held(pipeline.reports):
+    with reached(), lock.held(pipeline.reports) as still_ours:
         sweep(pipeline.reports)
         progress("plan", 0.0)
         todo = plan(pipeline, path.resolve().parent, retry, verify)
@@ -54,9 +56,10 @@ def run(
         stop: UsageProblem | None = None
         try:
             for number, (task, outcome) in enumerate(_spread(pipeline, todo.todo, workers, scheduler), 1):
+                still_ours()
                 if outcome["status"] == "stopped":
                     raise UsageProblem(outcome["record"]["reason"], f"{outcome['record']['next']}; the next run goes on from here")
-                (finished if outcome["status"] == "done" else aside).append(outcome["record"])
+                finished.append(brief(outcome["record"])) if outcome["status"] == "done" else aside.append(outcome["record"])
                 progress(f"{number} of {len(todo.todo)} logs, {task.log.name}", number / len(todo.todo))
         except UsageProblem as problem:
             stop = problem
@@ -115,7 +118,8 @@ def _publish(pipeline: Pipeline, summary: dict[str, Any], records: list[Mapping[
 def dry_run(path: Path, retry: bool = False, verify: bool = False) -> Plan:
     """What a run would do, without doing it."""
     pipeline = config.load(path)
-    return plan(pipeline, path.resolve().parent, retry, verify)
+    with reached():
+        return plan(pipeline, path.resolve().parent, retry, verify)
 
 
 def run_only(path: Path, identity: str, retry: bool = False) -> Outcome | None:
@@ -125,7 +129,7 @@ def run_only(path: Path, identity: str, retry: bool = False) -> Outcome | None:
     Returns its outcome; None where nothing is to be done. Raises `UsageProblem` where a `run` of the pipeline is at work, or this task.
     """
     pipeline = config.load(path)
-    with lock.held(pipeline.reports, shared=True):
+    with reached(), lock.held(pipeline.reports, shared=True):
         todo = plan(pipeline, path.resolve().parent, retry)
         task = next((task for task in todo.todo if task.id == identity), None)
         if task is None:

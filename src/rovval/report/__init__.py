@@ -29,7 +29,7 @@ def write(comparison: Comparison, folder: Path, vehicle: Vehicle, corrected: Sim
     }
     if recorded:
         files["run.rrd"] = lambda path: recording.write(comparison, path, vehicle, corrected)
-    return write_all(Path(folder), files)
+    return write_all(folder, files)
 
 
 def write_diagnosis(
@@ -60,7 +60,7 @@ def write_diagnosis(
     }
     if comparison is not None and vehicle is not None:
         files["run.rrd"] = lambda path: recording.write(comparison, path, vehicle, corrected, diagnosis)
-    return write_all(Path(folder), files)
+    return write_all(folder, files)
 
 
 def write_flight(flight: Flight, folder: Path) -> Mapping[str, Path]:
@@ -69,4 +69,4 @@ def write_flight(flight: Flight, folder: Path) -> Mapping[str, Path]:
     from rovval.report.flight import html, json
     from rovval.storage.atomic import json_text
 
-    return write_all(Path(folder), {"flight.json": json_text(json.document(flight)), "flight.html": html.text(flight)})
+    return write_all(folder, {"flight.json": json_text(json.document(flight)), "flight.html": html.text(flight)})

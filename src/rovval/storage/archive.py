@@ -1,6 +1,7 @@
 """The archive: one immutable folder a run, ``run.parquet`` (values and reasons) and ``manifest.json`` (everything else).
 
-A folder is written beside its place and renamed into it, so that a kill leaves either nothing or a whole run.
+A folder is written beside its place and renamed into it, so that a kill leaves either nothing or a whole run. In an object store, where nothing
+can be renamed, the manifest is put last.
 """
 
 from __future__ import annotations
@@ -22,11 +23,12 @@ import polars as pl
 from rovval.alignment import align
 from rovval.alignment.checks import check
 from rovval.core.data import ClockReport, Marker, Resampled, Run
-from rovval.core.errors import BadInput, Finding
+from rovval.core.errors import BadInput, Finding, RovvalError
 from rovval.core.progress import Progress, silent
 from rovval.core.version import __version__
 from rovval.ingest import read
-from rovval.storage.atomic import read_json, refusal, refuse_url
+from rovval.storage import places
+from rovval.storage.atomic import drafts, read_json, refusal
 
 SCHEMA = "rovval.run/1"
 REASON = "reason:"
@@ -41,13 +43,23 @@ def open_run(
 
     Raises `BadInput` or `UsageProblem` as `read`, `align` and `load` do.
     """
-    path = Path(source)
-    if (path / "manifest.json").is_file() or (not path.exists() and (Path(archive) / str(source)).is_dir()):
+    path, archive = places.place(source), places.place(archive)
+    if (path / "manifest.json").is_file() or (not path.exists() and (archive / str(source)).is_dir()):
         return load_run(source, archive)
     if not path.exists():
         near = ", ".join(run_ids(archive)[:5])
         hint = f"runs in {archive}: {near}" if near else f"check the path; {archive} holds no runs"
         raise BadInput(f"{source}: no such log file, and no such run in {archive}", hint)
+    if not places.is_remote(path):
+        return _read(path, profile, timezone, progress)
+    with places.fetched(path) as local:
+        try:
+            return replace(_read(local, profile, timezone, progress), source=str(path))
+        except RovvalError as error:
+            raise type(error)(error.message.replace(str(local), str(path)), error.hint) from None
+
+
+def _read(path: Path, profile: str | None, timezone: str | None, progress: Progress) -> Run:
     raw = read(path, profile, timezone, progress)
     return align(replace(raw, findings=tuple(dict.fromkeys((*raw.findings, *check(raw))))))
 
@@ -55,8 +67,7 @@ def open_run(
 def save_run(run: Run, archive: Path = ARCHIVE, overwrite: bool = False) -> Path:
     """Write a run; the same run already there is left alone. Another one of its id (other code read the log, or found more in it)
     gives way if ``overwrite``; else `BadInput` is raised."""
-    refuse_url(Path(archive))
-    place = Path(archive) / run.id
+    place = places.place(archive) / run.id
     table, manifest = _bytes(run)
     if place.exists():
         try:
@@ -69,22 +80,37 @@ def save_run(run: Run, archive: Path = ARCHIVE, overwrite: bool = False) -> Path
             if not overwrite or _facts(_bytes(old)[1]) == _facts(manifest):
                 return place
             _move_away(place)
+    _put(place, table, manifest) if places.is_remote(place) else _rename_into(place, table, manifest, run, overwrite)
+    return place
+
+
+def _put(place: Path, table: bytes, manifest: dict[str, Any]) -> None:
+    """Into an object store: the manifest last, since a run is what has one."""
+    for name, content in (("run.parquet", table), ("manifest.json", _text(manifest).encode())):
+        with drafts(place / name) as [draft]:
+            draft.write_bytes(content)
+
+
+def _rename_into(place: Path, table: bytes, manifest: dict[str, Any], run: Run, overwrite: bool) -> None:
     draft = place.with_name(f".{run.id}.{uuid.uuid4().hex[:8]}.part")
     try:
         draft.mkdir(parents=True)
         (draft / "run.parquet").write_bytes(table)
-        (draft / "manifest.json").write_text(json.dumps(manifest, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+        (draft / "manifest.json").write_text(_text(manifest), encoding="utf-8")
         try:
             draft.rename(place)
         except OSError:
             if not place.exists():
                 raise
-            return save_run(run, archive, overwrite)  # another process was faster
+            save_run(run, place.parent, overwrite)  # another process was faster
     except OSError as error:
         raise refusal(place, error) from None
     finally:
         shutil.rmtree(draft, ignore_errors=True)
-    return place
+
+
+def _text(manifest: dict[str, Any]) -> str:
+    return json.dumps(manifest, indent=1, ensure_ascii=False) + "\n"
 
 
 def _same(place: Path, run: Run) -> Run:
@@ -104,7 +130,11 @@ def _facts(manifest: dict[str, Any]) -> dict[str, Any]:
 
 
 def _move_away(place: Path) -> None:
-    """Out of its place in one step, then gone; another process may have been faster."""
+    """Out of its place in one step, then gone; another process may have been faster. In an object store the manifest goes first."""
+    if places.is_remote(place):
+        (place / "manifest.json").unlink(missing_ok=True)
+        places.remove(place)
+        return
     old = place.with_name(f".{place.name}.{uuid.uuid4().hex[:8]}.part")
     with suppress(FileNotFoundError):
         place.rename(old)
@@ -113,9 +143,9 @@ def _move_away(place: Path) -> None:
 
 def load_run(id_or_folder: str | Path, archive: Path = ARCHIVE) -> Run:
     """A run by its id or folder, exactly as saved. Raises `BadInput` where it is not there or damaged."""
-    folder = Path(id_or_folder)
+    folder = places.place(id_or_folder)
     if not (folder / "manifest.json").is_file():
-        folder = Path(archive) / str(id_or_folder)
+        folder = places.place(archive) / str(id_or_folder)
     try:
         manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
         table = (folder / "run.parquet").read_bytes()
@@ -141,7 +171,7 @@ def manifest(folder: Path) -> dict[str, Any] | None:
 
 def run_ids(archive: Path = ARCHIVE) -> tuple[str, ...]:
     """Ids of the runs in an archive, sorted; () where there is none."""
-    return tuple(sorted(p.parent.name for p in Path(archive).glob("*/manifest.json") if not p.parent.name.startswith(".")))
+    return tuple(sorted(p.parent.name for p in places.place(archive).glob("*/manifest.json") if not p.parent.name.startswith(".")))
 
 
 def _bytes(run: Run) -> tuple[bytes, dict[str, Any]]:

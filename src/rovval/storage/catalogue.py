@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
@@ -15,6 +16,7 @@ import polars as pl
 
 from rovval.core.channels import AXES
 from rovval.core.errors import BadInput, UsageProblem
+from rovval.storage import places
 from rovval.storage.atomic import drafts
 
 FOLDER = "catalogue"
@@ -45,7 +47,7 @@ OURS = ("current", "evaluated", "year")  # columns that the catalogue fills itse
 
 def load(archive: Path) -> pl.DataFrame:
     """The whole table, by date; without rows where there is none. Raises `BadInput` for a file that is damaged."""
-    files = sorted((Path(archive) / FOLDER).glob("*/*/*.parquet"))
+    files = sorted((places.place(archive) / FOLDER).glob("*/*/*.parquet"))
     return pl.concat([_empty(), *map(_read, files)]).sort("date", "log")
 
 
@@ -90,7 +92,7 @@ def update(archive: Path, rows: Sequence[Mapping[str, Any]], now: datetime) -> l
 def faults(archive: Path) -> dict[Path, str]:
     """The files of the catalogue that cannot be read, each with the reason."""
     found = {}
-    for file in sorted((Path(archive) / FOLDER).glob("*/*/*.parquet")):
+    for file in sorted((places.place(archive) / FOLDER).glob("*/*/*.parquet")):
         try:
             _read(file)
         except BadInput as error:
@@ -110,11 +112,11 @@ def _merged(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
 def _readable(archive: Path) -> tuple[pl.DataFrame, list[Path]]:
     """The rows of all files that can be read, and the places of those that cannot: what is in them is set aside, not overwritten."""
     tables, damaged = [_empty()], []
-    for file in sorted((Path(archive) / FOLDER).glob("*/*/*.parquet")):
+    for file in sorted((places.place(archive) / FOLDER).glob("*/*/*.parquet")):
         try:
             tables.append(_read(file))
         except BadInput:
-            file.replace(_aside(file))
+            places.move(file, _aside(file))
             damaged.append(file)
     return pl.concat(tables), damaged
 
@@ -123,7 +125,7 @@ def _read(file: Path) -> pl.DataFrame:
     vehicle, year = (part.name.partition("=")[2] for part in (file.parent.parent, file.parent))
     try:
         named = {"vehicle": unquote(vehicle), "year": int(year)}
-        table = pl.read_parquet(file, hive_partitioning=False)
+        table = pl.read_parquet(io.BytesIO(file.read_bytes()), hive_partitioning=False)
         return table.with_columns(*(pl.lit(value).alias(name) for name, value in named.items())).select(list(COLUMNS)).cast(pl.Schema(COLUMNS))
     except (OSError, ValueError, pl.exceptions.PolarsError) as error:
         raise BadInput(f"{file}: damaged: {str(error).splitlines()[0]}", "`rovval archive repair` sets it aside, and the next batch writes it anew") from None
@@ -135,7 +137,7 @@ def _aside(file: Path) -> Path:
 
 
 def _place(archive: Path, vehicle: str, year: int) -> Path:
-    return Path(archive, FOLDER, f"vehicle={quote(vehicle, safe='')}", f"year={year}", "runs.parquet")
+    return places.place(archive).joinpath(FOLDER, f"vehicle={quote(vehicle, safe='')}", f"year={year}", "runs.parquet")
 
 
 def _write(place: Path, rows: pl.DataFrame) -> None:

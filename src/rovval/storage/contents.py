@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import hashlib
-import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
+
+from rovval.storage.places import name_from, named
 
 BLOCK = 1 << 20
 
@@ -14,14 +15,14 @@ BLOCK = 1 << 20
 def contents(outputs: Iterable[Path], base: Path) -> dict[str, dict[str, Any]]:
     """Bytes and sha256 of every file of ``outputs`` (files, and folders with all that is in them), by its path relative to ``base``."""
     files = [f for output in outputs for f in (sorted(output.rglob("*")) if output.is_dir() else [output]) if f.is_file()]
-    return {os.path.relpath(file, base): {"bytes": file.stat().st_size, "sha256": digest(file)} for file in files}
+    return {name_from(base, file): {"bytes": file.stat().st_size, "sha256": digest(file)} for file in files}
 
 
 def damage(files: Mapping[str, Mapping[str, Any]], base: Path, digests: bool = False) -> dict[str, str]:
     """Which of ``files`` (as `contents` returned them) is gone or another, and how; by size, and by content if ``digests``."""
     found = {}
     for name, wanted in files.items():
-        file = base / name
+        file = named(base, name)
         if not file.is_file():
             found[name] = "gone"
         elif (size := file.stat().st_size) != wanted["bytes"]:

@@ -186,10 +186,10 @@ def test_damaged_outputs_are_made_anew(site):
 
 
 @pytest.mark.parametrize("key", ["archive", "reports"])
-def test_an_address_of_an_object_store_is_refused(site, key):
+def test_an_address_that_is_neither_a_folder_nor_s3_is_refused(site, key):
     """It was taken for a local folder of that name, and what was written there went with the machine."""
     path = batch_case.write_pipeline(site)
-    path.write_text(path.read_text().replace(f'{key} = "{key}"', f'{key} = "s3://bucket/dives"'))
-    with pytest.raises(UsageProblem, match="s3://bucket/dives: s3:// is no place"):
+    path.write_text(path.read_text().replace(f'{key} = "{key}"', f'{key} = "gs://bucket/dives"'))
+    with pytest.raises(UsageProblem, match="gs://bucket/dives: gs:// is no place"):
         batch.run(path)
     assert not (site / "s3:").exists()

@@ -3,21 +3,46 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+import uuid
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from rovval.core.errors import UsageProblem
+from rovval.storage import lease, places
+
+LOCK, SHARED = ".lock", ".shared"
+Check = Callable[[], None]
 
 
 @contextmanager
-def held(folder: Path, wait: bool = False, shared: bool = False) -> Iterator[None]:
+def held(folder: Path, wait: bool = False, shared: bool = False) -> Iterator[Check]:
     """Hold ``folder``'s lock, which one that is held for moments is to ``wait`` for; those that hold it ``shared`` do so together.
-    The kernel lets go of it when the process ends, however it ends.
+    The kernel lets go of it when the process ends, however it ends; in an object store it is a lease (`rovval.storage.lease`). Gives a function that
+    raises `UsageProblem` where the lock was lost meanwhile.
 
     Raises:
-        UsageProblem: another process holds it, or the system has no flock.
+        UsageProblem: another process holds it, the system has no flock, or the object store cannot be used.
     """
+    with _in_store(folder, wait, shared) if places.is_remote(folder) else _on_disk(folder, wait, shared) as check:
+        yield check
+
+
+@contextmanager
+def _in_store(folder: Path, wait: bool, shared: bool) -> Iterator[Check]:
+    """Each side first puts its own mark and then looks for the other's, so that of two at once one at least is refused."""
+    if shared:
+        with lease.held(folder / SHARED / uuid.uuid4().hex) as mine:
+            lease.refuse_held([folder / LOCK])
+            yield mine.check
+    else:
+        with lease.held(folder / LOCK, wait) as mine:
+            lease.refuse_held((folder / SHARED).glob("*"))
+            yield mine.check
+
+
+@contextmanager
+def _on_disk(folder: Path, wait: bool, shared: bool) -> Iterator[Check]:
     try:
         import fcntl
     except ImportError:
@@ -25,7 +50,7 @@ def held(folder: Path, wait: bool = False, shared: bool = False) -> Iterator[Non
             "this system has no flock, which keeps two batches apart", "run the batch on Linux or macOS"
         ) from None
     folder.mkdir(parents=True, exist_ok=True)
-    with (folder / ".lock").open("a+", encoding="utf-8") as file:
+    with (folder / LOCK).open("a+", encoding="utf-8") as file:
         try:
             fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | (0 if wait else fcntl.LOCK_NB))
         except BlockingIOError:
@@ -37,4 +62,4 @@ def held(folder: Path, wait: bool = False, shared: bool = False) -> Iterator[Non
             file.truncate(0)
             file.write(str(os.getpid()))
             file.flush()
-        yield
+        yield lambda: None

@@ -20,6 +20,7 @@ from rovval.pipeline.planning.plan import Task
 from rovval.pipeline.planning.records import outputs_whole, read_record, write_record
 from rovval.storage.atomic import FULL, refusal, write_json, write_text
 from rovval.storage.contents import contents
+from rovval.storage.places import name_from, place, reached
 
 if TYPE_CHECKING:
     from rovval.core.data import Run, SimResult
@@ -43,7 +44,8 @@ def work(task: Task) -> Outcome:
 def _done_or_set_aside(task: Task) -> Outcome:
     began = time.monotonic()
     try:
-        record = _steps(task)
+        with reached():
+            record = _steps(task)
     except Unwritable:
         raise
     except _Changed as error:
@@ -97,7 +99,7 @@ def _steps(task: Task) -> dict[str, Any]:
             record |= {"run": run.id, "vehicle": run.vehicle, "duration_s": run.duration_s, "findings": len(run.findings), **_date(run)}
             record |= {"model": task.model, "method": task.method, "rovval": __version__}
             written = contents(outputs, task.reports)
-            names = [os.path.relpath(p, task.reports) for p in outputs]
+            names = [name_from(task.reports, p) for p in outputs]
             record["steps"][step] = {"key": key, "code": task.code, "outputs": names, "files": written, **facts}
             write_record(task.folder, record)
     return record
@@ -109,7 +111,7 @@ def _date(run: Run) -> dict[str, Any]:
     if run.t0_ns is not None:
         with suppress(ValueError, OverflowError, OSError):
             return {"began": datetime.fromtimestamp(run.t0_ns * 1e-9, UTC).isoformat(), "dated_by": "stamps"}
-    changed = max(part.stat().st_mtime for part in files_of(Path(run.source)))
+    changed = max(part.stat().st_mtime for part in files_of(place(run.source)))
     return {"began": datetime.fromtimestamp(changed, UTC).isoformat(), "dated_by": "file"}
 
 
@@ -127,7 +129,7 @@ class _Bench:
     def run(self) -> Run:
         from rovval.storage.archive import open_run
 
-        run = open_run(str(self.task.log), self.task.profile, self.task.archive)
+        run = open_run(self.task.log, self.task.profile, self.task.archive)
         if {run.sha256, sha256(self.task.log)} != {self.task.sha256}:  # while it was read, and after
             raise _Changed(f"{self.task.log}: changed between the plan and its reading", "it is tried again by the next run; see settle_s")
         return run
@@ -157,8 +159,8 @@ class _Bench:
     def ingest(self) -> tuple[dict[str, Any], list[Path]]:
         from rovval.storage.archive import save_run
 
-        place = save_run(self.run, self.task.archive, overwrite=True)
-        return {"findings": [str(f) for f in self.run.findings]}, [place]
+        folder = save_run(self.run, self.task.archive, overwrite=True)
+        return {"findings": [str(f) for f in self.run.findings]}, [folder]
 
     def simulate(self) -> tuple[dict[str, Any], list[Path]]:
         from rovval.simulation.file import save_simulation
@@ -183,13 +185,13 @@ class _Bench:
         from rovval.report.diagnosis import json as diagnosis_json
         from rovval.report.diagnosis.sentence import verdict
 
-        task, place = self.task, self.task.folder / "diagnosis"
+        task, folder = self.task, self.task.folder / "diagnosis"
         found = diagnose(
             [self.run], self.vehicle, model=task.model, window_s=task.window_s, calibration_slop=task.calibration_slop
         )
         document = diagnosis_json.document(found)
-        files = report.write_diagnosis(found, place)
+        files = report.write_diagnosis(found, folder)
         if found.vehicle_fixed:
-            write_text(place / "vehicle_fixed.toml", found.vehicle_fixed)
+            write_text(folder / "vehicle_fixed.toml", found.vehicle_fixed)
         facts = {key: document[key] for key in ("vehicle", "verdict", "causes")}
         return {**facts, "said": verdict(found), "gap": document["gap"]["axes"]}, list(files.values())

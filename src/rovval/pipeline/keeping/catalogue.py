@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from datetime import datetime
-from pathlib import Path
 from typing import Any
 
 from rovval.core.channels import AXES
 from rovval.pipeline import tolerances
 from rovval.pipeline.execution import lock
 from rovval.pipeline.planning.config import Pipeline
+from rovval.storage import places
 
 Record = Mapping[str, Any]
 NO_VEHICLE = "unknown"  # of a run that was only ingested, by a profile that names none
@@ -94,4 +93,4 @@ def _cause(cause: Mapping[str, Any]) -> dict[str, Any]:
 
 def _page(pipeline: Pipeline, step: Mapping[str, Any]) -> str | None:
     page = next((place for place in step.get("outputs", ()) if place.endswith(".html")), None)
-    return page and Path(os.path.relpath(pipeline.reports / page, pipeline.archive)).as_posix()
+    return page and places.name_from(pipeline.archive, places.named(pipeline.reports, page))

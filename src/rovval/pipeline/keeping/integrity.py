@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +11,7 @@ from rovval.core.errors import BadInput, RovvalError
 from rovval.ingest.files import sha256
 from rovval.pipeline.planning.plan import QUARANTINE
 from rovval.pipeline.planning.records import RECORD, is_damaged, read_quarantine, read_record
+from rovval.storage import places
 from rovval.storage.atomic import refusal
 from rovval.storage.contents import damage
 
@@ -80,7 +80,7 @@ def _reports(reports: Path) -> Iterator[Fault]:
         for step, facts in ((read_record(folder) or {}).get("steps") or {}).items():
             for name, what in damage(facts.get("files", {}), reports, digests=True).items():
                 if what == "gone" or not name.startswith(".."):  # a run that is there is held against its own manifest
-                    yield Fault(Path(os.path.normpath(reports / name)), f"{what} ({step})", reports)
+                    yield Fault(places.named(reports, name), f"{what} ({step})", reports)
     for file in sorted((reports / QUARANTINE).glob("*.json")):
         if read_quarantine(file) is None:
             yield Fault(file, "damaged record of a log that was set aside", reports)
@@ -103,7 +103,7 @@ def _made_anew(fault: Fault) -> Run | None:
     from rovval.storage.archive import manifest, open_run
 
     facts = manifest(fault.place) if fault.place.is_dir() else None
-    if facts is None or not Path(facts["source"]).exists() or sha256(Path(facts["source"])) != facts["sha256"]:
+    if facts is None or not (log := places.place(facts["source"])).exists() or sha256(log) != facts["sha256"]:
         return None
     try:
         run = open_run(facts["source"], facts["profile"], fault.root)
@@ -117,8 +117,7 @@ def _aside(fault: Fault) -> Path:
     name = fault.place.relative_to(fault.root).as_posix().replace("/", "__") if fault.place.is_relative_to(fault.root) else fault.place.name
     target = next(t for n in range(1000) if not (t := home / (f"{name}.{n}" if n else name)).exists())
     try:
-        home.mkdir(exist_ok=True)
-        return fault.place.rename(target)
+        return places.move(fault.place, target)
     except OSError as error:
         raise refusal(fault.place, error) from None
 

@@ -5,7 +5,6 @@ The runs of the archive and the rows of the catalogue stay in any case, and so d
 
 from __future__ import annotations
 
-import shutil
 import time
 from collections.abc import Mapping
 from contextlib import suppress
@@ -14,6 +13,7 @@ from pathlib import Path
 from rovval.ingest.files import files_of
 from rovval.pipeline.planning.config import Pipeline
 from rovval.pipeline.planning.records import RECORD, read_record
+from rovval.storage import places
 
 DAY_S = 86400.0
 
@@ -25,7 +25,7 @@ def sweep(pipeline: Pipeline, folders: Mapping[str, frozenset[Path]]) -> list[st
         return []
     over = [folder for folder in (path.parent for path in pipeline.reports.glob(f"*/{RECORD}")) if _is_over(folder, folders, pipeline.keep_replaced_days)]
     for folder in over:
-        shutil.rmtree(folder, ignore_errors=True)
+        places.remove(folder)
     return sorted(folder.name for folder in over if not folder.exists())
 
 
@@ -34,5 +34,5 @@ def _is_over(folder: Path, folders: Mapping[str, frozenset[Path]], days: float) 
     if record is None or folder in folders.get(record["log"], {folder}):
         return False
     with suppress(OSError):  # a log that cannot be looked at tells nothing
-        return time.time() - max(part.stat().st_mtime for part in files_of(Path(record["log"]))) > days * DAY_S
+        return time.time() - max(part.stat().st_mtime for part in files_of(places.place(record["log"]))) > days * DAY_S
     return False

@@ -6,14 +6,15 @@ import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+from pydantic import BaseModel, ConfigDict, Field, PlainValidator, ValidationError, field_validator
 
 from rovval.core.errors import RovvalError, UsageProblem, all_at_once
 from rovval.pipeline import tolerances
 from rovval.plant.platforms import USUAL
 from rovval.plant.platforms import names as platforms
-from rovval.storage.atomic import refuse_url
+from rovval.storage import places
 
+Place = Annotated[Path, PlainValidator(places.place)]
 Step = Literal["ingest", "simulate", "compare", "diagnose"]
 STEPS: tuple[Step, ...] = ("ingest", "simulate", "compare", "diagnose")
 
@@ -31,6 +32,13 @@ class Source(Strict):
     profile: str | None = None
     vehicle: str = ""
 
+    @field_validator("logs")
+    @classmethod
+    def _readable(cls, patterns: tuple[str, ...]) -> tuple[str, ...]:
+        for pattern in patterns:
+            places.place(pattern)
+        return patterns
+
 
 class Pipeline(Strict):
     """The file. Folders are relative to it, so that it works from any working directory (cron has its own).
@@ -43,8 +51,8 @@ class Pipeline(Strict):
     name: str
     source: Annotated[tuple[Source, ...], Field(min_length=1)]
     steps: Annotated[tuple[Step, ...], Field(min_length=1)] = ("ingest", "simulate", "compare")
-    archive: Path = Path("../archive")
-    reports: Path = Path("../reports")
+    archive: Place = Path("../archive")
+    reports: Place = Path("../reports")
     model: str = USUAL
     effects: tuple[str, ...] = ()
     window_s: Annotated[float, Field(ge=0.5)] = 10.0
@@ -91,15 +99,13 @@ def load(path: Path) -> Pipeline:
     except ValidationError as error:
         lines = [_problem(e) for e in error.errors()]
         raise UsageProblem(all_at_once(lines, str(path)), "compare with pipelines/nightly.toml") from None
-    for place in (pipeline.archive, pipeline.reports, *(Path(pattern) for source in pipeline.source for pattern in source.logs)):
-        refuse_url(place)
     base = path.resolve().parent
     sources = tuple(
         s.model_copy(update={"vehicle": _path(s.vehicle, base), "profile": s.profile and _path(s.profile, base)})
         for s in pipeline.source
     )
     pipeline = pipeline.model_copy(
-        update={"archive": base / pipeline.archive, "reports": base / pipeline.reports, "source": sources}
+        update={"archive": places.below(base, pipeline.archive), "reports": places.below(base, pipeline.reports), "source": sources}
     )
     if problems := _unknown(pipeline):
         raise UsageProblem(all_at_once(problems, str(path)), "see `rovval list vehicle|profile`")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -12,6 +12,7 @@ from pathlib import Path
 from rovval.core.errors import BadInput, all_at_once
 from rovval.ingest.files.compression import suffix
 from rovval.ingest.files.dive_file import files_of_dive, is_dive
+from rovval.storage import places
 
 SUFFIXES = (
     ".csv", ".tsv", ".txt", ".xlsx", ".xls", ".xlsm", ".xlsb", ".ods", ".parquet", ".pq", ".mat", ".h5", ".hdf5", ".hdf", ".he5",
@@ -27,9 +28,9 @@ def logs_in(sources: Sequence[str]) -> list[Path]:
     Raises:
         BadInput: a source does not exist, or there is no log in all of them.
     """
-    if missing := [s for s in sources if not Path(s).exists()]:
+    if missing := [s for s in sources if not places.place(s).exists()]:
         raise BadInput(all_at_once([f"{s} does not exist" for s in missing], "source"), "mend the path")
-    logs = [log for source in sources for log in (_inside(Path(source)) if Path(source).is_dir() else [Path(source)])]
+    logs = [log for path in map(places.place, sources) for log in (_inside(path) if path.is_dir() else [path])]
     if not logs:
         raise BadInput(f"no log in {', '.join(sources)}", f"a folder is searched for {' '.join(SUFFIXES)} and bag folders")
     return logs
@@ -42,7 +43,7 @@ def matching(patterns: Sequence[str], base: Path) -> tuple[list[Path], dict[Path
     ``**`` goes through every folder once, also where links lead back to it; as in a shell it passes hidden folders over.
     """
     unusable: dict[Path, str] = {}
-    found = {path for pattern in patterns for path in _expanded(Path(Path(pattern).anchor or base), _parts(pattern), unusable)}
+    found = {path for pattern in patterns for path in _matched(pattern, base, unusable)}
     bags, files = set(), set()
     for path in found:
         try:
@@ -56,7 +57,17 @@ def matching(patterns: Sequence[str], base: Path) -> tuple[list[Path], dict[Path
             unusable[path] = f"cannot be read: {error.strerror}"
     logs = bags | {p for p in files if not bags & set(p.parents)}
     unusable |= {p: "its name is not UTF-8" for p in logs if not _is_utf8(p)}
-    return sorted(logs - set(unusable)), unusable
+    return sorted(logs - set(unusable), key=lambda log: log.parts), unusable
+
+
+def _matched(pattern: str, base: Path, unusable: dict[Path, str]) -> Iterable[Path]:
+    root, parts = _rooted(pattern, base)
+    if not places.is_remote(root):
+        return _expanded(root, parts, unusable)
+    below = fixed(pattern, base)
+    rest = parts[len(below.parts) - len(root.parts) :]
+    found = below.glob("/".join(rest)) if rest else [below]
+    return [path for path in found if not any(part.startswith(".") for part in path.relative_to(below).parts)]
 
 
 def absent(patterns: Sequence[str], base: Path) -> list[Path]:
@@ -67,8 +78,8 @@ def absent(patterns: Sequence[str], base: Path) -> list[Path]:
 
 def fixed(pattern: str, base: Path) -> Path:
     """The part of a pattern before its first wildcard; all of it where it has none."""
-    path = Path(Path(pattern).anchor or base)
-    for part in _parts(pattern):
+    path, parts = _rooted(pattern, base)
+    for part in parts:
         if any(sign in part for sign in WILD):
             break
         path /= part
@@ -101,8 +112,13 @@ def _looks_like_log(path: Path) -> bool:
     return suffix(path) in SUFFIXES
 
 
-def _parts(pattern: str) -> tuple[str, ...]:
-    return tuple(part for part in Path(pattern).parts if part != Path(pattern).anchor)
+def _rooted(pattern: str, base: Path) -> tuple[Path, tuple[str, ...]]:
+    """Where a pattern begins (the folder of the pipeline's file, the root of the disk, a bucket), and its parts from there."""
+    if url := places.URL.match(pattern):
+        bucket, *parts = pattern[url.end() :].split("/")
+        return places.place(url[0] + bucket), tuple(filter(None, parts))
+    anchor = Path(pattern).anchor
+    return Path(anchor or base), tuple(part for part in Path(pattern).parts if part != anchor)
 
 
 def _expanded(folder: Path, parts: Sequence[str], unusable: dict[Path, str]) -> Iterator[Path]:

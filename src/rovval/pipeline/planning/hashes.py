@@ -10,6 +10,7 @@ from typing import Any
 
 from rovval.core.code_version import source_hash
 from rovval.ingest.files import files_of, sha256
+from rovval.storage import places
 from rovval.storage.atomic import read_json, write_json
 
 NO_RESULT = ("blind", "cli", "demo", "fly")  # rooms that no step of a batch goes through
@@ -19,7 +20,7 @@ class Hashes:
     """Digests of logs' content, so that an archive of thousands is not read every night.
 
     A log is read again when the number, size, times (of change and of status) or inode of its files differ from those of the last time: the
-    time of status is the kernel's own, which no program sets back. ``afresh`` reads every log.
+    time of status is the kernel's own, which no program sets back. (Of an object of a store its tag and size.) ``afresh`` reads every log.
     """
 
     def __init__(self, path: Path, afresh: bool = False) -> None:
@@ -38,9 +39,9 @@ class Hashes:
 
     def below(self, folders: Sequence[Path]) -> list[tuple[Path, str]]:
         """The logs that were in ``folders`` the last time, and their digests; they stay known."""
-        were = {log: entry for log, entry in self.known.items() if any(Path(log).is_relative_to(folder) for folder in folders)}
+        were = {log: entry for log, entry in self.known.items() if any(places.is_inside(places.place(log), folder) for folder in folders)}
         self.used = were | self.used
-        return [(Path(log), entry["sha256"]) for log, entry in were.items()]
+        return [(places.place(log), entry["sha256"]) for log, entry in were.items()]
 
     def save(self) -> None:
         """Keep those that were asked for."""
@@ -48,9 +49,8 @@ class Hashes:
             write_json(self.path, self.used)
 
 
-def _stamp(log: Path) -> list[list[int]]:
-    status = [part.stat() for part in files_of(log)]
-    return [[s.st_size, s.st_mtime_ns, s.st_ctime_ns, s.st_ino] for s in status]
+def _stamp(log: Path) -> list[list[Any]]:
+    return [places.stamp(part) for part in files_of(log)]
 
 
 def _whole(entry: Any) -> bool:

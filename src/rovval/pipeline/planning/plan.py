@@ -18,7 +18,7 @@ from rovval.ingest.files import files_of
 from rovval.pipeline.planning import discover
 from rovval.pipeline.planning.config import Pipeline, Source
 from rovval.pipeline.planning.hashes import Hashes, code_on_disk
-from rovval.pipeline.planning.records import is_damaged, outputs_whole, read_quarantine, read_record
+from rovval.pipeline.planning.records import brief, is_damaged, outputs_whole, read_quarantine, read_record
 
 QUARANTINE = "quarantine"
 HASHES = ".hashes.json"
@@ -112,7 +112,7 @@ class _Sorting:
         if (twin := self.seen.setdefault(task.key, log)) != log:
             self.waiting.append((log, f"same content as {twin}"))
         elif record := _finished(task, self.hashes.afresh):
-            self.done.append(record)
+            self.done.append(brief(record))
         elif (record := read_quarantine(task.quarantine)) and record["key"] == task.key and record["kind"] not in RETRIED and not self.retry:
             self.aside.append(record)
         else:
@@ -123,7 +123,7 @@ class _Sorting:
         for log, sha in self.hashes.below([discover.fixed(pattern, base) for pattern in source.logs]):
             record = None if log.exists() else _finished(_task(self.pipeline, source, log, sha, content), False)
             if record:
-                self.kept.append(record)
+                self.kept.append(brief(record))
         gone = discover.absent(source.logs, base)
         why = f"{gone[0]} does not exist" if gone else "no log is there"
         had = f"; {len(self.kept)} logs were there before: is the volume mounted?" if self.kept else ""
@@ -165,8 +165,8 @@ def _in_a_night(todo: Sequence[Task], most: int | None) -> tuple[list[Task], lis
     of the rest, which stand as they are until then."""
     if most is None:
         return list(todo), []
-    records = {task: read_record(task.folder) for task in todo}
-    judged = {task: record for task, record in records.items() if record and "began" in record and _codes(record) - {task.code}}
+    records = ((task, read_record(task.folder)) for task in todo)
+    judged = {task: brief(record) for task, record in records if record and "began" in record and _codes(record) - {task.code}}
     newest = sorted(judged, key=lambda task: str(judged[task]["began"]), reverse=True)
     return [task for task in todo if task not in judged] + newest[:most], [judged[task] for task in newest[most:]]
 

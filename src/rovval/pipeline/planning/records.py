@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from rovval.pipeline import tolerances
 from rovval.storage.atomic import read_json, write_json
 from rovval.storage.contents import damage
+from rovval.storage.places import named
 
 RECORD = "record.json"
 DIGEST = "digest"
@@ -41,10 +43,27 @@ def read_quarantine(path: Path) -> dict[str, Any] | None:
     return record if record and {"log", "key", "kind", "reason", "next"} <= record.keys() else None
 
 
+def brief(record: Mapping[str, Any]) -> Mapping[str, Any]:
+    """What of a record the summary, the catalogue and the page of a batch are made of, a fifth of it: a batch holds one of every log at once."""
+    compared = record["steps"].get("compare")
+    if not compared:
+        return record
+    whole = compared["comparison"]
+    kept = {name: whole[name] for name in ("vehicle", "stops", "findings") if name in whole}
+    kept["axes"] = _only(whole["axes"], (*tolerances.FREE, "unit"))
+    if window := whole.get("window"):
+        kept["window"] = {"seconds": window["seconds"], "axes": _only(window["axes"], (*tolerances.WINDOWED, "unit"))}
+    return {**record, "steps": {**record["steps"], "compare": {**compared, "comparison": kept}}}
+
+
+def _only(axes: Mapping[str, Mapping[str, Any]], names: Sequence[str]) -> dict[str, dict[str, Any]]:
+    return {axis: {name: row[name] for name in names if name in row} for axis, row in axes.items()}
+
+
 def outputs_whole(step: Mapping[str, Any], reports: Path, digests: bool = False) -> bool:
     """Whether all that a step wrote is still there as it was written: by size, and by content if ``digests``."""
     if "files" not in step:  # of an older rovval
-        return all((reports / path).exists() for path in step["outputs"])
+        return all(named(reports, path).exists() for path in step["outputs"])
     return not damage(step["files"], reports, digests)
 
 

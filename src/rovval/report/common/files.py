@@ -7,13 +7,14 @@ from pathlib import Path
 from types import MappingProxyType
 
 from rovval.storage.atomic import drafts
+from rovval.storage.places import place
 
 Writer = Callable[[Path], None]
 
 
 def write_all(folder: Path, files: Mapping[str, str | Writer]) -> Mapping[str, Path]:
     """Write ``files`` (name -> text, or a function that writes to the path it is given) into ``folder``; name -> path."""
-    places = {name: folder / name for name in files}
+    places = {name: place(folder) / name for name in files}
     with drafts(*places.values()) as beside:
         for draft, content in zip(beside, files.values(), strict=True):
             if isinstance(content, str):
