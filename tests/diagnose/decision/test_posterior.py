@@ -81,3 +81,12 @@ def test_causes_are_at_work_whatever_else_of_the_file_is_off():
     assert found.causes > 0.99 and found.of("waves") > 0.99 and found.off_beside(frozenset({"waves"}))
     assert found.healthy + found.causes + found.file + found.something_else == pytest.approx(1.0)
     assert not belief({("waves",): 80.0}, filed=70.0).off_beside(frozenset({"waves"}))
+
+
+def test_a_further_cause_may_be_the_form_error_of_the_first_however_much_it_explains():
+    """No evidence tells a second cause from an equation that is off; the first, and who is healthy, are as sure as before."""
+    found = belief({("waves",): 400.0, ("dvl_scale",): 40.0, ("waves", "dvl_scale"): 900.0})
+    assert found.of("waves") > 0.99 and 0.5 < found.of("dvl_scale") < 0.6
+    assert found.best == {"waves", "dvl_scale"} and found.healthy < 1e-6
+    third = belief({("waves",): 400.0, ("waves", "dvl_scale"): 900.0, ("waves", "dvl_scale", "cross_drag"): 1500.0})
+    assert third.of("waves") > 0.99 > third.of("dvl_scale") > third.of("cross_drag")

@@ -3,6 +3,9 @@
 All are on one scale: prior mass times marginal likelihood, the likelihood tempered for equations that are only nearly right (coarsened posterior:
 Miller and Dunson 2019; `problem.Problem.tempering`). Something else is what no effect of the library is: a few generic forces, on a healthy vehicle or
 beside causes (model discrepancy: Kennedy and O'Hagan 2001).
+
+What the equations of causes are off by may look like one more cause (`FORM_ALIKE`). No log tells the two apart, since both predict the same: so the mass of
+each set is shared, by their priors, with the set without the cause that adds least.
 """
 
 from __future__ import annotations
@@ -11,7 +14,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, log
 
-from rovval.diagnose.criteria import GROUP_PROBABILITY, PRIOR_FILE, PRIOR_HEALTHY, PRIOR_SOMETHING_ELSE
+from rovval.diagnose.criteria import (
+    FORM_ALIKE,
+    GROUP_PROBABILITY,
+    PRIOR_CAUSES,
+    PRIOR_FILE,
+    PRIOR_HEALTHY,
+    PRIOR_SOMETHING_ELSE,
+)
 from rovval.diagnose.search.model import Model
 
 Names = frozenset[str]
@@ -116,7 +126,7 @@ def probabilities(
     top = max(known.values())
     weight = {key: exp(value - top) for key, value in known.items()}
     total = sum(weight.values())
-    share = {key: value / total for key, value in weight.items()}
+    share = _with_look_alikes({key: value / total for key, value in weight.items()}, best)
     inconstant = sum(p for (kind, _), p in share.items() if kind == "varying")
     return Probabilities(
         sets={names: p for (kind, names), p in share.items() if kind == "sets"},
@@ -124,6 +134,27 @@ def probabilities(
         filed={names: p for (kind, names), p in share.items() if kind == "filed" and names},
         file=share.get(("filed", frozenset()), 0.0), varying=inconstant, something_else=share["else", frozenset()] + inconstant,
     )  # fmt: skip
+
+
+def _with_look_alikes(share: Mapping[tuple[str, Names], float], best: Mapping[Names, Model]) -> dict[tuple[str, Names], float]:
+    """The probabilities with those of form errors that look like a further cause: the mass of sets of which the cause that adds least may be none."""
+    found = dict(share)
+    for size in range(len(PRIOR_CAUSES), 1, -1):
+        alike = FORM_ALIKE * PRIOR_CAUSES[size - 2]
+        for kind, names in [key for key in found if len(key[1]) == size and key[0] in ("sets", "beside", "filed")]:
+            moved = found[kind, names] * alike / (PRIOR_CAUSES[size - 1] + alike)
+            found[kind, names] -= moved
+            fewer = names - {_least(names, best)}
+            found[kind, fewer] = found.get((kind, fewer), 0.0) + moved
+    return found
+
+
+def _least(names: Names, best: Mapping[Names, Model]) -> str:
+    """The cause of a set that adds least evidence to the others; the last that was added where the sets without it were not fitted."""
+    fitted = [name for name in names if names - {name} in best]
+    if fitted:
+        return max(sorted(fitted), key=lambda name: best[names - {name}].evidence)
+    return best[names].causes[-1].name if names in best else max(names)
 
 
 def _best_of_each_set(models: Iterable[Model]) -> dict[Names, Model]:
