@@ -66,7 +66,8 @@ def test_exact_intervals_hold_nine_in_ten_whatever_the_share():
     """Of all that a binomial of 30 may show, the interval holds the true share in 90 % or more, by summing over outcomes."""
     for n, share in product((5, 30), (0.02, 0.3, 0.85)):
         held = [exact([True] * k + [False] * (n - k)) for k in range(n + 1)]
-        inside = sum(binom.pmf(k, n, share) for k, number in enumerate(held) if number["low"] <= share <= number["high"])
+        ends = [(number["low"] or 0.0, 1.0 if number["high"] is None else number["high"]) for number in held]
+        inside = sum(binom.pmf(k, n, share) for k, (low, high) in enumerate(ends) if low <= share <= high)
         assert inside >= 0.9
     assert exact([]) == {"value": None, "low": None, "high": None, "n": 0}
     assert exact([False] * 100)["high"] == pytest.approx(1.0 - 0.05 ** (1.0 / 100.0))

@@ -46,12 +46,14 @@ CASES: list[tuple[dict[str, Any], dict[str, Any], dict[str, float], tuple[str, f
 
 @pytest.fixture(scope="module")
 def scored() -> dict[str, Any]:
-    labels, answers, oracles = ({str(i): case[part] for i, case in enumerate(CASES)} for part in range(3))
-    return score_logs(labels, answers, oracles, MERLIN)
+    labels = {str(i): case[0] for i, case in enumerate(CASES)}
+    answers = {str(i): case[1] for i, case in enumerate(CASES)}
+    return score_logs(labels, answers, {str(i): case[2] for i, case in enumerate(CASES)}, MERLIN)
 
 
 def test_what_is_said_first_has_its_probability(scored: dict[str, Any]) -> None:
-    assert [(row["said"], pytest.approx(row["p_said"])) for row in scored["logs"]] == [case[3] for case in CASES]
+    assert [row["said"] for row in scored["logs"]] == [case[3][0] for case in CASES]
+    assert [row["p_said"] for row in scored["logs"]] == pytest.approx([case[3][1] for case in CASES])
     assert [row["visible"] for row in scored["logs"]] == [case[4] is not None for case in CASES]
 
 
@@ -85,9 +87,9 @@ def test_sets_are_pooled_by_plant_with_every_wrong_log(scored: dict[str, Any], t
         (tmp_path / name / "score.json").write_text(json.dumps(text, allow_nan=False), encoding="utf-8")
     found = pool([tmp_path / name for name in ("one", "two", "three")])
     assert {plant: row["logs"] for plant, row in found["plants"].items()} == {"a": len(CASES), "b": 2 * len(CASES)}
-    text = terminal.pooled(found)
-    assert "plant b" in text and text.count("body_lift x1 -> waves at 0.50") == 3
-    assert "buoyancy_error x1 (not visible) -> healthy at 0.80" in text
+    page = terminal.pooled(found)
+    assert "plant b" in page and page.count("body_lift x1 -> waves at 0.50") == 3
+    assert "buoyancy_error x1 (not visible) -> healthy at 0.80" in page
     with pytest.raises(UsageProblem, match="four"):
         pool([tmp_path / "one", tmp_path / "four"])
     with pytest.raises(UsageProblem, match="twice"):

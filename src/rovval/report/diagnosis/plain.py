@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from math import sqrt
 
 from rovval import effects
 from rovval.diagnose.result.diagnosis import Reduction
@@ -42,7 +43,7 @@ def regime(name: str) -> str:
 
 def remaining(share: float) -> float:
     """The part of an rms error that is left when the share ``share`` of its square is gone."""
-    return max(1.0 - share, 0.0) ** 0.5
+    return sqrt(max(1.0 - share, 0.0))
 
 
 def falls(share: float, low: float | None = None, high: float | None = None) -> str:
