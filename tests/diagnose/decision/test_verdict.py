@@ -25,4 +25,4 @@ RELATIVES = {  # withheld with the effect: the same law, or one that is it at so
 def test_a_withheld_effect_is_unknown_and_said_where(planted: str, axes: set[str]):
     document = written(diagnose([own((planted,), 5, 160.0)], merlin(), without=RELATIVES[planted]))
     assert document["verdict"] == "unknown" and document["causes"] == []
-    assert document["left"]["axes"][0] in axes and "no effect of the library" in document["left"]["text"]
+    assert document["left"]["axes"][0] in axes and "nothing in the library" in document["left"]["text"]

@@ -4,8 +4,8 @@ All are on one scale: prior mass times marginal likelihood, the likelihood tempe
 Miller and Dunson 2019; `problem.Problem.tempering`). Something else is what no effect of the library is: a few generic forces, on a healthy vehicle or
 beside causes (model discrepancy: Kennedy and O'Hagan 2001).
 
-What the equations of causes are off by may look like one more cause (`FORM_ALIKE`). No log tells the two apart, since both predict the same: so the mass of
-each set is shared, by their priors, with the set without the cause that adds least.
+What the equations of causes are off by may look like one more cause (`FORM_ALIKE`). No log tells the two apart, since both predict the same: so the
+probability that a cause is at work shares the mass of each set, by their priors, with the set without the cause that adds least.
 """
 
 from __future__ import annotations
@@ -38,6 +38,7 @@ class Probabilities:
         file: of a file that is off in many numbers, and of no cause.
         something_else: of something else alone, or of what comes near to a set of causes whose sizes would have to vary along the log.
         varying: the latter part of it.
+        at_work: of each cause, that it is at work, and not a form error that looks like it.
     """
 
     sets: Mapping[Names, float]
@@ -46,6 +47,7 @@ class Probabilities:
     file: float
     something_else: float
     varying: float
+    at_work: Mapping[str, float]
 
     @property
     def healthy(self) -> float:
@@ -74,7 +76,7 @@ class Probabilities:
 
     def of(self, name: str) -> float:
         """That a cause is at work."""
-        return sum(p for names, p in self._whole().items() if name in names)
+        return self.at_work.get(name, 0.0)
 
     def partly(self, names: Names) -> bool:
         """Whether something else is more likely beside these causes than not."""
@@ -126,27 +128,30 @@ def probabilities(
     top = max(known.values())
     weight = {key: exp(value - top) for key, value in known.items()}
     total = sum(weight.values())
-    share = _with_look_alikes({key: value / total for key, value in weight.items()}, best)
+    share = {key: value / total for key, value in weight.items()}
     inconstant = sum(p for (kind, _), p in share.items() if kind == "varying")
     return Probabilities(
         sets={names: p for (kind, names), p in share.items() if kind == "sets"},
         beside={names: p for (kind, names), p in share.items() if kind == "beside"},
         filed={names: p for (kind, names), p in share.items() if kind == "filed" and names},
         file=share.get(("filed", frozenset()), 0.0), varying=inconstant, something_else=share["else", frozenset()] + inconstant,
+        at_work=_at_work(share, best),
     )  # fmt: skip
 
 
-def _with_look_alikes(share: Mapping[tuple[str, Names], float], best: Mapping[Names, Model]) -> dict[tuple[str, Names], float]:
-    """The probabilities with those of form errors that look like a further cause: the mass of sets of which the cause that adds least may be none."""
-    found = dict(share)
+def _at_work(share: Mapping[tuple[str, Names], float], best: Mapping[Names, Model]) -> dict[str, float]:
+    """The probability that each cause is at work: of the mass of a set, a part is that of a form error that looks like the cause that adds least."""
+    mass = dict[Names, float]()
+    for (kind, names), p in share.items():
+        if kind in ("sets", "beside", "filed"):
+            mass[names] = mass.get(names, 0.0) + p
     for size in range(len(PRIOR_CAUSES), 1, -1):
         alike = FORM_ALIKE * PRIOR_CAUSES[size - 2]
-        for kind, names in [key for key in found if len(key[1]) == size and key[0] in ("sets", "beside", "filed")]:
-            moved = found[kind, names] * alike / (PRIOR_CAUSES[size - 1] + alike)
-            found[kind, names] -= moved
-            fewer = names - {_least(names, best)}
-            found[kind, fewer] = found.get((kind, fewer), 0.0) + moved
-    return found
+        for names in [one for one in mass if len(one) == size]:
+            moved, fewer = mass[names] * alike / (PRIOR_CAUSES[size - 1] + alike), names - {_least(names, best)}
+            mass[names] -= moved
+            mass[fewer] = mass.get(fewer, 0.0) + moved
+    return {name: sum(p for names, p in mass.items() if name in names) for name in {n for names in mass for n in names}}
 
 
 def _least(names: Names, best: Mapping[Names, Model]) -> str:

@@ -85,9 +85,8 @@ def search(
             break
     progress("weighing the causes beside each other", 0.7)
     healthy, models, best = _reconsidered(problem, prior, healthy, models, best, tried)
-    best = _leading(problem, models, best)
     rows = tuple(tuple((c.hypothesis.name, c.evidence, c.gain) for c in step) for step in tried)
-    return Selection(tuple(models), best, healthy, _ranking(problem, library, best, rows), rows, onset)
+    return Selection(tuple(models), _leading(problem, models, best), healthy, _ranking(problem, library, best, rows), rows, onset)
 
 
 def _extended(

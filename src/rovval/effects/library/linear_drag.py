@@ -12,7 +12,7 @@ from rovval.effects.effect import TOGETHER, Effect, Parameter, Tolerance
 from rovval.effects.lanes import Array, Lanes, reference_drag
 from rovval.vehicle.model import Vehicle, as_matrix
 
-SPLIT = 0.1  # m/s, rad/s: drag is known as a whole at this speed; how much of it is linear is off by as much as that (chosen)
+SPLIT = 0.3  # m/s, rad/s: drag is known as a whole at such a working speed; how much of it is linear is off by as much as that (chosen)
 UNKNOWN = 0.5  # m/s, rad/s: the same for an axis without linear drag in the file, where nobody has measured it (chosen)
 
 
