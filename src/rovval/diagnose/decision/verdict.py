@@ -80,7 +80,7 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
     over = best.evidence - selection.models[0].evidence
     generic = max(evidence, 0.0), max(more.get(best.names, 0.0), 0.0)
     found = Decision("no_gap", belief, (), None, {}, {}, {}, over, *generic, selection.healthy.largest_departure(), known, None)
-    contradicted = best.fit is not None and _contradicted(problem, residuals)
+    contradicted = any(h.effect.place != "sensor" for h in best.causes) and _contradicted(problem, residuals)
     if best.fit and belief.causes > max(belief.healthy, belief.file, belief.something_else) and not contradicted:
         return _named(problem, selection, found, best, best.fit, beside[best.names])
     found = replace(found, indications=indications(selection.steps[0] if selection.steps else (), known, faults))
