@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import random
-import struct
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
-from pyulog import ULog
+from log_files import N, ulog
 
 from rovval.core.errors import BadInput, UsageProblem
 from rovval.ingest import read
 from rovval.ingest.formats.ulog import contents
 
-N = 100
 PROFILE = """
 name = "px4"
 description = "of the tests"
@@ -33,32 +30,6 @@ w = { topic = "vehicle_local_position", field = "vz", unit = "m/s", frame = "wor
 """
 
 
-def message(kind: str, body: bytes) -> bytes:
-    return struct.pack("<HB", len(body), ord(kind)) + body
-
-
-def write(path: Path) -> Path:
-    """A vehicle that heads east and moves north: to port. PX4 developer guide, ULog file format."""
-    out = b"ULog\x01\x12\x35\x01" + struct.pack("<Q", 5_000_000) + message("B", bytes(40))
-    formats = (
-        "vehicle_attitude:uint64_t timestamp;float[4] q;",
-        "vehicle_local_position:uint64_t timestamp;float vx;float vy;float vz;",
-        "esc_status:uint64_t timestamp;float[2] rpm;",
-    )
-    for text in formats:
-        out += message("F", text.encode())
-    for at, (text, instance) in enumerate(zip((*formats, formats[2]), (0, 0, 0, 1), strict=True)):
-        out += message("A", struct.pack("<BH", instance, at) + text.partition(":")[0].encode())
-    half = np.sqrt(0.5)
-    for i in range(N):
-        us = 5_000_000 + i * 100_000
-        out += message("D", struct.pack("<HQ4f", 0, us, half, 0, 0, half)) + message("D", struct.pack("<HQ3f", 1, us, 0.5, 0, 0.1))
-        out += message("D", struct.pack("<HQ2f", 2, us, 0, 0)) + message("D", struct.pack("<HQ2f", 3, us, 60 * i, 0))
-    path.write_bytes(out)
-    ULog(str(path)).write_ulog(str(path))
-    return path
-
-
 @pytest.fixture
 def profile(tmp_path) -> str:
     (tmp_path / "px4.toml").write_text(PROFILE)
@@ -66,14 +37,14 @@ def profile(tmp_path) -> str:
 
 
 def test_messages_instances_and_axes(tmp_path, profile):
-    log = read(write(tmp_path / "dive.ulg"), profile)
+    log = read(ulog(tmp_path / "dive.ulg"), profile)
     assert log.channels["psi"].values == pytest.approx(np.pi / 2, abs=1e-6) and log.channels["psi"].t == pytest.approx(np.arange(N) / 10)
     assert log.channels["v"].values == pytest.approx(-0.5, abs=1e-6) and log.channels["w"].values == pytest.approx(0.1)
     assert log.channels["n:T1"].values == pytest.approx(np.arange(N)) and log.t0_ns is None and log.findings == ()
 
 
 def test_all_that_it_holds(tmp_path):
-    blocks = {b.topic: b for b in contents(write(tmp_path / "dive.ulg")) if b.topic}
+    blocks = {b.topic: b for b in contents(ulog(tmp_path / "dive.ulg")) if b.topic}
     assert set(blocks) == {"vehicle_attitude", "vehicle_local_position", "esc_status", "esc_status[1]"}
     assert list(blocks["vehicle_attitude"].numbers) == ["q[0]", "q[1]", "q[2]", "q[3]"] and blocks["esc_status"].clocks["header"][0] == 5.0
 
@@ -81,12 +52,12 @@ def test_all_that_it_holds(tmp_path):
 def test_what_is_missing_is_named(tmp_path):
     (tmp_path / "px4.toml").write_text(PROFILE.replace("esc_status[1]", "esc_report").replace('"vx"', '"v_x"'))
     with pytest.raises(BadInput, match=r"(?s)'v_x'; it has: vx, vy, vz.*esc_report"):
-        read(write(tmp_path / "dive.ulg"), str(tmp_path / "px4.toml"))
+        read(ulog(tmp_path / "dive.ulg"), str(tmp_path / "px4.toml"))
 
 
 def test_a_cut_log_is_read_to_where_it_ends(tmp_path, profile):
     """It was read without a word."""
-    path = write(tmp_path / "dive.ulg")
+    path = ulog(tmp_path / "dive.ulg")
     path.write_bytes(path.read_bytes()[:-1000])
     log = read(path, profile)
     assert [f.code for f in log.findings] == ["cut_file"] and "ends in the middle of a message" in log.findings[0].detail
@@ -94,7 +65,7 @@ def test_a_cut_log_is_read_to_where_it_ends(tmp_path, profile):
 
 
 def test_damage_gives_a_log_or_a_refusal(tmp_path, profile):
-    path = write(tmp_path / "dive.ulg")
+    path = ulog(tmp_path / "dive.ulg")
     whole, rng, read_some = path.read_bytes(), random.Random(0), 0
     for trial in range(40):
         content = bytearray(whole[: rng.randrange(len(whole))] if trial % 2 else whole)
@@ -109,7 +80,7 @@ def test_damage_gives_a_log_or_a_refusal(tmp_path, profile):
 
 
 def test_without_pyulog(tmp_path, profile, monkeypatch):
-    path = write(tmp_path / "dive.ulg")
+    path = ulog(tmp_path / "dive.ulg")
     monkeypatch.setitem(sys.modules, "pyulog", None)
     with pytest.raises(UsageProblem, match="pyulog") as refusal:
         read(path, profile)

@@ -69,9 +69,10 @@ def departures(problem: Problem, point: Posterior, among: Sequence[int]) -> list
     precision, evidence, found = point.precision.copy(), laplace_evidence(problem, point), list[Departures]()
     each = 2.0 * float(np.log(max(len(among), 1)))
     columns = [i for s in among if moves[i := point.columns.index(s)]]
+    A, b = point.total.A.sum(axis=0), point.total.b.sum(axis=0)
     while columns:
-        inverse = np.linalg.inv((point.total.A.sum(axis=0) + np.diag(precision))[np.ix_(moves, moves)])
-        slope = (point.total.b.sum(axis=0) - precision * point.departure)[moves]
+        inverse = np.linalg.inv((A + np.diag(precision))[np.ix_(moves, moves)])
+        slope = (b - precision * point.departure)[moves]
         at = (np.cumsum(moves) - 1)[columns]
         freed, off = precision[columns] * (1.0 - FILE_WIDTH**-2.0), point.departure[columns]
         step, own = inverse @ slope, np.diag(inverse)[at]

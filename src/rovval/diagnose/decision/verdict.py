@@ -93,7 +93,8 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
 
 def _leading(problem: Problem, selection: Selection, belief: Probabilities) -> list[Model]:
     """The most probable sets of causes, `SETS_WEIGHED` at most, fitted with care; none where they are not worth a thought (`NEGLIGIBLE`)."""
-    found = [max((m for m in selection.models if m.names == names), key=lambda m: m.evidence) for names in belief.ranked[:SETS_WEIGHED]]
+    models = (selection.best, *selection.models)  # the best first: its fit has sensitivities, and is not made again
+    found = [max((m for m in models if m.names == names), key=lambda m: m.evidence) for names in belief.ranked[:SETS_WEIGHED]]
     return [refitted(problem, m) for m in found if belief.of_set(m.names) > NEGLIGIBLE * max(belief.of_set(found[0].names), belief.healthy)]
 
 

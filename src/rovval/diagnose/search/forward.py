@@ -36,7 +36,7 @@ class Selection:
 
     Attributes:
         models: every model that was fitted, the healthy vehicle first.
-        best: the most probable set of causes, its fit with sensitivities; the healthy vehicle where beside that none is worth a thought (`NEGLIGIBLE`).
+        best: the most probable of them, its fit with sensitivities.
         healthy: the fit of coefficients within tolerance, without causes.
         ranking: every hypothesis with the reduction of the gap that it makes by itself, held out: the causes first, then by that.
         steps: candidates of each step that had any.
@@ -86,7 +86,7 @@ def search(
     progress("weighing the causes beside each other", 0.7)
     healthy, models, best = _reconsidered(problem, prior, healthy, models, best, tried)
     rows = tuple(tuple((c.hypothesis.name, c.evidence, c.gain) for c in step) for step in tried)
-    return Selection(tuple(models), _leading(problem, models, best), healthy, _ranking(problem, library, best, rows), rows, onset)
+    return Selection(tuple(models), best, healthy, _ranking(problem, library, best, rows), rows, onset)
 
 
 def _extended(
@@ -103,12 +103,6 @@ def _extended(
     if not any(h.evident or promised[h.label] > needed[h.label] for h in open_now):
         return [], onset
     return [c for c in candidates(problem, data, open_now, promised, baseline, chosen) if plausible(problem, c)], onset
-
-
-def _leading(problem: Problem, models: Sequence[Model], best: Model) -> Model:
-    """The most probable set of causes among ``models``, or ``best``, the most probable of all, where that is a healthy vehicle and no set comes near it."""
-    near = [m for m in models if m.fit and m.log_posterior > best.log_posterior + log(NEGLIGIBLE)]
-    return best if best.fit or not near else refitted(problem, max(near, key=lambda m: m.log_posterior))
 
 
 def _model(prior: ModelPrior, front: Model, one: Candidate) -> Model:
