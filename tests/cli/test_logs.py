@@ -3,7 +3,6 @@
 import json
 from dataclasses import replace
 from datetime import UTC, datetime
-from pathlib import Path
 
 import pytest
 from merlin_case import columns, text, write
@@ -100,21 +99,36 @@ def test_a_stretch_of_a_log_is_taken_and_said(tmp_path, monkeypatch, command):
     assert isinstance(beyond.exception, BadInput) and "beyond the log" in beyond.exception.message
 
 
+def stamped(folder):
+    """A dive whose stamps are date and time without a zone, and its profile."""
+    cells = columns(300)
+    stamps = [f"2024-06-01 {int(h):02d}:{int(m):02d}:{int(s):02d}.{int(ms):03d}" for h, m, s, ms in zip(*list(cells.values())[:4], strict=True)]
+    (folder / "dive.csv").write_text(text({"Stamp": stamps, **dict(list(cells.items())[4:])}), encoding="utf-8")
+    profile = (FOLDER / "merlin.toml").read_text(encoding="utf-8")
+    time = 'kind = "time_of_day"\ncolumns = ["Hour", "Minute", "Second", "Millisecond"]'
+    (folder / "mine.toml").write_text(profile.replace(time, 'kind = "datetime"\ncolumns = ["Stamp"]'), encoding="utf-8")
+    return ["dive.csv", "--profile", "mine.toml", "--timezone", "Europe/Berlin"]
+
+
 def test_the_zone_of_stamps_that_say_none_is_asked_for_by_every_command(tmp_path, monkeypatch):
     """Only `rovval ingest` had it: a comparison of the same file stood at another hour."""
     monkeypatch.chdir(tmp_path)
-    cells = columns(300)
-    stamps = [f"2024-06-01 {int(h):02d}:{int(m):02d}:{int(s):02d}.{int(ms):03d}" for h, m, s, ms in zip(*list(cells.values())[:4], strict=True)]
-    Path("dive.csv").write_text(text({"Stamp": stamps, **dict(list(cells.items())[4:])}), encoding="utf-8")
-    profile = (FOLDER / "merlin.toml").read_text(encoding="utf-8")
-    time = 'kind = "time_of_day"\ncolumns = ["Hour", "Minute", "Second", "Millisecond"]'
-    Path("mine.toml").write_text(profile.replace(time, 'kind = "datetime"\ncolumns = ["Stamp"]'), encoding="utf-8")
-    asked = ["dive.csv", "--profile", "mine.toml", "--timezone", "Europe/Berlin"]
+    asked = stamped(tmp_path)
     done = RUNNER.invoke(app, ["export", *asked, "--to", "parquet", "--out", "a.parquet", "--json"])
     assert done.exit_code == 0, done.output
     kept = RUNNER.invoke(app, ["ingest", *asked, "--json"])
     assert json.loads(done.stdout)["run"] == json.loads(kept.stdout)["logs"][0]["run"]
     assert open_run(json.loads(done.stdout)["run"]).t0_ns == datetime(2024, 6, 1, 8, tzinfo=UTC).timestamp() * 1e9
+
+
+def test_another_simulations_stamps_are_in_the_zone_of_the_log(tmp_path, monkeypatch):
+    """In UTC they stood two hours beside it: no moment in common."""
+    monkeypatch.chdir(tmp_path)
+    asked = [*stamped(tmp_path), "--with", "dive.csv", "--with-profile", "mine.toml"]
+    done = RUNNER.invoke(app, ["compare", *asked, "--json", "-q"])
+    assert done.exit_code == 0, done.output
+    beside = json.loads(done.stdout)["other"]["axes"]["surge"]
+    assert beside["n"] == 300 and beside["rmse"] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_every_command_that_takes_a_log_takes_the_same_of_it():

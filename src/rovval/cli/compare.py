@@ -98,7 +98,7 @@ def command(
     run = logs.opened(source, how, quiet)
     nominal = vehicle_of(run, vehicle)
     run = logs.checked_against(run, nominal, quiet)
-    other = None if with_ is None else other_velocities(with_, run, with_profile, archive)
+    other = None if with_ is None else other_velocities(with_, run, with_profile, archive, timezone)
     show("simulate", 0.3)
     sim = simulated(run, nominal, model.value, tuple(effect or ()), window)
     comparison = compare(run, sim, other, with_.name if with_ else "")

@@ -26,10 +26,10 @@ from rovval.ingest.contents.block import Block
 from rovval.ingest.dive import read_dive
 from rovval.ingest.files import compression, refuse_unusable, sha256
 from rovval.ingest.files.compression import is_compressed
-from rovval.ingest.files.dive_file import is_dive
+from rovval.ingest.files.dive_file import is_dive, load_dive, parts_of
 from rovval.ingest.profile import Profile, load_profile, profiles
 
-__all__ = ["Profile", "Reader", "formats_of", "load_profile", "plain", "profiles", "read", "reader", "readers"]
+__all__ = ["Profile", "Reader", "formats_of", "load_profile", "plain", "profiles", "read", "reader", "reader_of", "readers"]
 OF_TEXT = ("csv_log", "json_lines", "nmea")  # readers of text: they read it compressed, too
 
 
@@ -98,7 +98,10 @@ def read(path: Path, profile: str | None = None, timezone: str | None = None, pr
 @contextmanager
 def plain(path: Path) -> Iterator[tuple[Path, tuple[Finding, ...]]]:
     """The file that readers are given, and what is lost of it: a log as it is, a compressed one unpacked for as long as it is read. Readers of
-    text unpack for themselves, while they read."""
+    text unpack for themselves, while they read. Raises `BadInput` for a dive file, which is several logs."""
+    if is_dive(path):
+        names = ", ".join(str(file) for _, file in parts_of(path, load_dive(path)))
+        raise BadInput(f"{path}: a dive of several files, each with a profile of its own", f"give one of them: {names}")
     of_text = {s for name in OF_TEXT for s in reader(name).SUFFIXES}
     if path.is_dir() or compression.suffix(path) in of_text:
         yield path, ()
@@ -107,13 +110,19 @@ def plain(path: Path) -> Iterator[tuple[Path, tuple[Finding, ...]]]:
         yield whole, lost
 
 
+def reader_of(path: Path, profile: Profile) -> Reader:
+    """The reader that reads a log by ``profile``: of those that can read the file the profile's own first, as a CSV's profile reads a workbook, too.
+    Raises `BadInput` for a folder that the profile's format is not."""
+    able = [name for name in readers() if _able(name, path)]
+    chosen = reader(next(iter(_of_profile(profile, able)), profile.format))
+    if path.is_dir() and "" not in chosen.SUFFIXES:
+        raise BadInput(f"{path}: a folder; profile {profile.name!r} reads single files ({profile.format})", "give one of the files in it")
+    return chosen
+
+
 def _read(path: Path, profile: str | None, timezone: str | None, progress: Progress) -> RawLog:
     chosen = (load_profile(profile) if profile is not None else _the_one_that_fits(path)).in_zone(timezone)
-    able = [name for name in readers() if _able(name, path)]
-    chosen_reader = reader(next(iter(_of_profile(chosen, able)), chosen.format))
-    if path.is_dir() and "" not in chosen_reader.SUFFIXES:
-        raise BadInput(f"{path}: a folder; profile {chosen.name!r} reads single files ({chosen.format})", "give one of the files in it")
-    return chosen_reader.read(path, chosen, progress)
+    return reader_of(path, chosen).read(path, chosen, progress)
 
 
 def _the_one_that_fits(path: Path) -> Profile:

@@ -39,10 +39,10 @@ def checked_against(run: Run, vehicle: Vehicle) -> Run:
     return replace(run, findings=tuple(dict.fromkeys((*run.findings, *beside))))
 
 
-def other_velocities(path: Path, run: Run, profile: str | None, archive: Path) -> Array:
+def other_velocities(path: Path, run: Run, profile: str | None, archive: Path, timezone: str | None = None) -> Array:
     """Body velocities of another simulation of ``run`` on its grid (n, 6), NaN where there is none.
 
-    ``path`` is a parquet file of `rovval simulate` or any file that a profile reads.
+    ``path`` is a parquet file of `rovval simulate` or any file that a profile reads, in the ``timezone`` of the log.
     """
     import numpy as np
 
@@ -57,7 +57,7 @@ def other_velocities(path: Path, run: Run, profile: str | None, archive: Path) -
         if len(nu) != len(run):
             raise BadInput(f"{path}: {len(nu)} samples, run {run.id} has {len(run)}", "give the simulation of this run")
         return nu
-    other = open_run(str(path), profile, archive)
+    other = open_run(str(path), profile, archive, timezone)
     if not any(other.measured(name) for name in VELOCITIES):
         raise BadInput(
             f"{path}: holds none of {', '.join(VELOCITIES)} by profile {other.profile!r}",

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from bag_case import write
 from german_dive import german
-from log_files import ulog
+from log_files import CASES, ulog
 from merlin_case import columns as merlin_columns
 from merlin_case import text as csv_text
 from real_data import real
@@ -115,6 +115,24 @@ def test_check_shows_rows_in_si_and_what_is_left(tmp_path):
     document = json.loads(done.stdout)
     assert document["left_over"] == [["", "Modus"]] and document["channels"]["z"]["first"] == [2.5, 2.51, 2.52, 2.53]
     assert document["t0_ns"] == 1714737780 * 10**9  # 12:03 UTC
+
+
+@pytest.mark.parametrize("form", ["csv.gz", "xlsx", "parquet", "mat v5", "hdf5"])
+def test_check_of_a_profile_for_csv_takes_every_table(form, tmp_path):
+    """A workbook was refused as binary, though `rovval compare` reads it by the same profile."""
+    write_log, _ = CASES[form]
+    done = CliRunner().invoke(app, ["profile", "check", "merlin", str(write_log(tmp_path)), "--json"])
+    assert done.exit_code == 0, done.output
+    assert json.loads(done.stdout)["channels"]["u"]["samples"] == (60 if form == "xlsx" else 300)
+
+
+@pytest.mark.parametrize("command", [("inspect",), ("profile", "propose"), ("profile", "check", "merlin")])
+def test_a_dive_file_is_said_to_be_several_logs(command, tmp_path):
+    write_log, _ = CASES["csv"]
+    path = write_log(tmp_path)
+    (tmp_path / "dive.toml").write_text('[[log]]\nfile = "a.csv"\nprofile = "merlin"\n', encoding="utf-8")
+    done = CliRunner().invoke(app, [*command, str(tmp_path / "dive.toml")])
+    assert isinstance(done.exception, BadInput) and str(path) in done.exception.hint
 
 
 def test_check_refuses_a_log_that_the_profile_does_not_read(tmp_path):

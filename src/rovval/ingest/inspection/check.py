@@ -30,7 +30,7 @@ def checked(profile: str, path: Path, timezone: str | None = None) -> Check:
     raw = ingest.read(Path(path), profile, timezone)
     loaded = ingest.load_profile(profile)
     with ingest.plain(Path(path)) as (whole, _):
-        contents = summarised(ingest.reader(loaded.format).contents(whole))
+        contents = summarised(ingest.reader_of(whole, loaded).contents(whole))
     matched = match(loaded, contents)
     used = {place for places in matched.found.values() for place in places}
     left = [(topic.name, a) for topic in contents.topics.values() for a in topic.fields if (topic.name, a) not in used]
