@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from rovval.cli.app import app
 from rovval.core.errors import UsageProblem
 from rovval.pipeline import batch
-from rovval.pipeline.execution import lock
+from rovval.storage import lock
 from rovval.storage.archive import run_ids
 
 

@@ -89,7 +89,7 @@ def test_a_failed_write_leaves_nothing(run, tmp_path, monkeypatch):
     monkeypatch.setattr("pathlib.Path.write_bytes", full)
     with pytest.raises(Exception, match="No space left"):
         save_run(run, tmp_path / "archive")
-    assert list((tmp_path / "archive").iterdir()) == []
+    assert [p.name for p in (tmp_path / "archive").iterdir()] == [".lock"]
 
 
 def test_unknown_source_names_what_there_is(run, tmp_path):
@@ -119,4 +119,4 @@ def test_a_run_of_other_code_gives_way_in_the_archive(run, tmp_path):
         save_run(run, tmp_path / "archive")
     save_run(run, tmp_path / "archive", overwrite=True)
     same(load_run(run.id, tmp_path / "archive"), run)
-    assert [p.name for p in (tmp_path / "archive").iterdir()] == [run.id], "nothing is left beside it"
+    assert {p.name for p in (tmp_path / "archive").iterdir()} == {run.id, ".lock"}, "nothing is left beside it"

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from rovval.core.errors import Unwritable, UsageProblem
-from rovval.pipeline.execution import cluster, lock
+from rovval.pipeline.execution import cluster
 from rovval.pipeline.execution.processes import execute
 from rovval.pipeline.execution.worker import Outcome, set_aside, work
 from rovval.pipeline.keeping import catalogue, retention, summary
@@ -22,6 +22,7 @@ from rovval.pipeline.planning.config import Pipeline
 from rovval.pipeline.planning.plan import Plan, Task, plan
 from rovval.pipeline.planning.records import brief
 from rovval.report.batch.terminal import reasons
+from rovval.storage import archive, lock
 from rovval.storage.atomic import json_text, read_json, sweep, write_over
 from rovval.storage.places import reached
 
@@ -47,6 +48,7 @@ def run(
     began = time.monotonic()
     with reached(), lock.held(pipeline.reports) as still_ours:
         sweep(pipeline.reports)
+        archive.sweep(pipeline.archive)
         progress("plan", 0.0)
         todo = plan(pipeline, path.resolve().parent, retry, verify)
         why = todo.why  # before the work changes it

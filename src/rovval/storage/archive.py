@@ -12,7 +12,7 @@ import json
 import shutil
 import sys
 import uuid
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
@@ -23,11 +23,11 @@ import polars as pl
 from rovval.alignment import align
 from rovval.alignment.checks import check
 from rovval.core.data import ClockReport, Marker, Resampled, Run
-from rovval.core.errors import BadInput, Finding, RovvalError
+from rovval.core.errors import BadInput, Finding, RovvalError, UsageProblem
 from rovval.core.progress import Progress, silent
 from rovval.core.version import __version__
 from rovval.ingest import read
-from rovval.storage import places
+from rovval.storage import atomic, lock, places
 from rovval.storage.atomic import drafts, read_json, refusal
 
 SCHEMA = "rovval.run/1"
@@ -94,19 +94,29 @@ def _put(place: Path, table: bytes, manifest: dict[str, Any]) -> None:
 def _rename_into(place: Path, table: bytes, manifest: dict[str, Any], run: Run, overwrite: bool) -> None:
     draft = place.with_name(f".{run.id}.{uuid.uuid4().hex[:8]}.part")
     try:
-        draft.mkdir(parents=True)
-        (draft / "run.parquet").write_bytes(table)
-        (draft / "manifest.json").write_text(_text(manifest), encoding="utf-8")
-        try:
-            draft.rename(place)
-        except OSError:
-            if not place.exists():
-                raise
-            save_run(run, place.parent, overwrite)  # another process was faster
+        with lock.held(place.parent, wait=True, shared=True) if lock.KNOWN else nullcontext():
+            draft.mkdir(parents=True)
+            (draft / "run.parquet").write_bytes(table)
+            (draft / "manifest.json").write_text(_text(manifest), encoding="utf-8")
+            try:
+                draft.rename(place)
+            except OSError:
+                if not place.exists():
+                    raise
+                save_run(run, place.parent, overwrite)  # another process was faster
     except OSError as error:
         raise refusal(place, error) from None
     finally:
         shutil.rmtree(draft, ignore_errors=True)
+
+
+def sweep(archive: Path) -> None:
+    """Remove what a kill left half-written among the runs of an archive, unless another process writes there just now: the next one does it then."""
+    if places.is_remote(archive):
+        return
+    with suppress(UsageProblem, OSError), lock.held(archive):
+        for left in archive.glob(atomic.LEFTOVER):
+            shutil.rmtree(left, ignore_errors=True)
 
 
 def _text(manifest: dict[str, Any]) -> str:

@@ -1,1 +1,1 @@
-"""Tasks over workers, of this machine or of a cluster: one log through its steps, one lock for two batches."""
+"""Tasks over workers, of this machine or of a cluster: one log through its steps."""

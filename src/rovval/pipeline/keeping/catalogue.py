@@ -8,9 +8,9 @@ from typing import Any
 
 from rovval.core.channels import AXES
 from rovval.pipeline import tolerances
-from rovval.pipeline.execution import lock
 from rovval.pipeline.planning.config import Pipeline
-from rovval.storage import places
+from rovval.storage import lock, places
+from rovval.storage.atomic import sweep
 
 Record = Mapping[str, Any]
 NO_VEHICLE = "unknown"  # of a run that was only ingested, by a profile that names none
@@ -24,6 +24,7 @@ def enter(pipeline: Pipeline, records: Sequence[Record], now: datetime) -> list[
     from rovval.storage import catalogue
 
     with lock.held(pipeline.archive / catalogue.FOLDER, wait=True):
+        sweep(pipeline.archive / catalogue.FOLDER)
         return catalogue.update(pipeline.archive, [_row(pipeline, record) for record in records], now)
 
 

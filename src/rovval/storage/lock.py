@@ -1,4 +1,4 @@
-"""Two runs of one pipeline never overlap: the second says so and leaves."""
+"""Who may be at work in a folder: one alone, or several together. Two runs of one pipeline never overlap: the second says so and leaves."""
 
 from __future__ import annotations
 
@@ -6,12 +6,14 @@ import os
 import uuid
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from importlib.util import find_spec
 from pathlib import Path
 
 from rovval.core.errors import UsageProblem
 from rovval.storage import lease, places
 
 LOCK, SHARED = ".lock", ".shared"
+KNOWN = find_spec("fcntl") is not None  # whether this system has locks of files
 Check = Callable[[], None]
 
 
@@ -43,12 +45,12 @@ def _in_store(folder: Path, wait: bool, shared: bool) -> Iterator[Check]:
 
 @contextmanager
 def _on_disk(folder: Path, wait: bool, shared: bool) -> Iterator[Check]:
-    try:
-        import fcntl
-    except ImportError:
+    if not KNOWN:
         raise UsageProblem(
             "this system has no flock, which keeps two batches apart", "run the batch on Linux or macOS"
-        ) from None
+        )
+    import fcntl
+
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / LOCK).open("a+", encoding="utf-8") as file:
         try:
