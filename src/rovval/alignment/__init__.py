@@ -108,8 +108,10 @@ def _report(series: Series, method: str, longest_gap_s: float, reasons: Codes) -
 
 def _clock(raw: RawLog, values: Mapping[str, Array], start: float, dt: float, resampled: Mapping[str, Resampled]) -> ClockReport:
     span = {name: s for name, s in raw.channels.items() if name.partition(":")[0] in DRIVING} or dict(raw.channels)
-    off = [np.abs((s.t - start) / dt - np.rint((s.t - start) / dt)) for s in span.values()]
-    matched = int(sum((o <= ON_GRID + 1e-5).sum() for o in off))
+    matched = 0
+    for series in span.values():
+        at = (series.t - start) / dt
+        matched += int((np.abs(at - np.rint(at)) <= ON_GRID + 1e-5).sum())
     largest = max(resampled[name].largest_gap_s for name in span)
     offset, correlation, note = estimated_offset(values, dt)
     stamp = "+".join(sorted({s.stamp for s in span.values()}))

@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
 from rovval.alignment.attitude_unit import attitude_in_radians
+from rovval.alignment.kinematics import level_pose_against_velocities, pose_against_velocities
 from rovval.alignment.series import bad_samples, longest_bridge, still_runs
 from rovval.alignment.thruster_commands import against_commands
 from rovval.core.channels import channel
-from rovval.core.data import Array, Flags, RawLog, Series
+from rovval.core.data import RawLog, Series
 from rovval.core.errors import Finding
-from rovval.core.frames import EULER_RANGE, euler_rates, rotation_from_euler
-from rovval.core.units import mistaken_units
 
 STUCK_S = 3.0  # a living sensor does not repeat itself to the last digit for so long, unless the vehicle rests
 SENSORS = ("u", "v", "w", "p", "q", "r", "x", "y", "z", "phi", "theta", "psi", "udot", "vdot", "wdot", "altitude")
 COMMANDS = ("n", "n_cmd", "pwm", "stick")
-EULER = ("phi", "theta", "psi")
-KINEMATIC_CORRELATION = 0.5  # correlation of two signals that are one by kinematics, beyond which a sign or a scale may be named
 
 
 def check(raw: RawLog) -> tuple[Finding, ...]:
@@ -32,7 +28,10 @@ def check(raw: RawLog) -> tuple[Finding, ...]:
         found += bad_samples(name, series, None)[1]
         found += _rate(name, series)
         found += _commands_absent(raw, name, series)
-    return (*_merged(found), *_kinematics(raw), *_kinematics_when_level(raw), *attitude_in_radians(raw), *_merged(list(against_commands(raw))))
+    return (
+        *_merged(found), *pose_against_velocities(raw), *level_pose_against_velocities(raw), *attitude_in_radians(raw),
+        *_merged(list(against_commands(raw))),
+    )
 
 
 def _merged(found: list[Finding]) -> list[Finding]:
@@ -119,84 +118,3 @@ def _rate(name: str, series: Series) -> list[Finding]:
     i, a, b = changes[0]
     at = series.t[(i + 1) * len(series.t) // 10]
     return [Finding("rate_change", name, f"from {1 / a:.3g} to {1 / b:.3g} Hz near t = {at:.0f} s")]
-
-
-def _kinematics(raw: RawLog) -> list[Finding]:
-    """Pose against the integral of the body velocities over a second: the same way twice, so that sign and scale can be told
-    without any dynamics."""
-    if not all(n in raw.channels for n in EULER) or len(raw.channels["phi"].t) < 50:
-        return []
-    t = raw.channels["phi"].t
-    c = {n: np.interp(t, s.t, np.unwrap(s.values) if n in EULER else s.values, np.nan, np.nan) for n, s in raw.channels.items() if n in SENSORS}
-    k = max(1, round(1.0 / float(np.median(np.diff(t)))))
-    euler = np.stack([c[n] for n in EULER], axis=1)
-    moved: list[tuple[str, Array, Array]] = []
-    if all(n in c for n in "pqr"):
-        rates = euler_rates(euler, np.stack([c[n] for n in "pqr"], axis=1))
-        moved += [(f"{n}, {b}", _step(c[n], k), _way(rates[:, i], t, k)) for i, (n, b) in enumerate(zip(EULER, "pqr", strict=True))]
-    if all(n in c for n in "uvwz"):
-        down = np.einsum("ni,ni->n", rotation_from_euler(euler)[:, 2], np.stack([c[n] for n in "uvw"], axis=1))
-        moved.append(("z, w", _step(c["z"], k), _way(down, t, k)))
-    if all(n in c for n in "uvwxyz"):
-        turn = rotation_from_euler(euler)[k // 2 : k // 2 + len(t) - k]
-        room = np.einsum("nji,nj->ni", turn, np.stack([_step(c[n], k) for n in "xyz"], axis=1))
-        moved += [(f"{n}, {b}", room[:, i], _way(c[b], t, k)) for i, (n, b) in enumerate(zip("xyz", "uvw", strict=True))]
-    level = _while(np.abs(euler[:, :2]).max(axis=1) < EULER_RANGE, k) & (t[k:] - t[:-k] < 2.0)
-    found: list[Finding] = []
-    for names, way, said in moved:
-        known = level & np.isfinite(way) & np.isfinite(said)
-        if known.sum() >= 50 and not any(f.where == names for f in found):
-            found += _agree(names, way[known], said[known])
-    return found
-
-
-def _kinematics_when_level(raw: RawLog) -> list[Finding]:
-    """Heading against r and depth against w, of a log that holds neither roll nor pitch: a vehicle that is level, or nearly."""
-    found: list[Finding] = []
-    for pose, rate in (("psi", "r"), ("z", "w")):
-        if "phi" in raw.channels or "theta" in raw.channels or pose not in raw.channels or rate not in raw.channels:
-            continue
-        series, velocity = raw.channels[pose], raw.channels[rate]
-        t, x = series.t, np.unwrap(series.values) if pose == "psi" else series.values
-        k = max(1, round(1.0 / float(np.median(np.diff(t)))))
-        moved, said = _step(x, k), _way(np.interp(t, velocity.t, velocity.values, np.nan, np.nan), t, k)
-        known = np.isfinite(said) & (t[k:] - t[:-k] < 2.0)
-        if known.sum() >= 50:
-            agree = _agree(f"{pose}, {rate}", moved[known], said[known])
-            found += [replace(f, detail=f"{f.detail}; roll and pitch are not logged, taken as none") for f in agree]
-    return found
-
-
-def _step(x: Array, k: int) -> Array:
-    return np.asarray(x[k:] - x[:-k])
-
-
-def _way(rate: Array, t: Array, k: int) -> Array:
-    """Integral of ``rate`` over each ``k`` steps; NaN where it is not known all along."""
-    whole = np.concatenate(([0.0], np.cumsum(np.nan_to_num(0.5 * (rate[1:] + rate[:-1]) * np.diff(t)))))
-    return np.where(_while(np.isfinite(rate), k), whole[k:] - whole[:-k], np.nan)
-
-
-def _while(flag: Flags, k: int) -> Flags:
-    """Whether ``flag`` holds all along each ``k`` steps."""
-    broken = np.concatenate(([0], np.cumsum(~flag)))
-    return np.asarray(broken[k + 1 :] == broken[: -k - 1])
-
-
-def _agree(names: str, moved: Array, said: Array) -> list[Finding]:
-    a, b = moved - moved.mean(), said - said.mean()
-    aa, ab, bb = (float((x * y).sum()) for x, y in ((a, a), (a, b), (b, b)))
-    size = float(np.sqrt(aa * bb))
-    if size < 1e-12 * len(a):
-        return []
-    correlation, scale = ab / size, ab / bb
-    if correlation < -KINEMATIC_CORRELATION:
-        detail = f"the pose runs against the velocity that is its rate (correlation {correlation:.2f}): one of the signs is wrong"
-        return [Finding("sign", names, detail)]
-    if correlation > 0.9 and not 0.8 < scale < 1.25:
-        units = mistaken_units(scale)
-        detail = f"the pose moves {scale:.3g} times what the velocity that is its rate gives: one of the units or scales is wrong" + (
-            f" (the ratio of {units})" if units else ""
-        )
-        return [Finding("scale", names, detail)]
-    return []

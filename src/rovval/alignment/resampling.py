@@ -11,11 +11,14 @@ from rovval.core.frames import wrap
 
 ON_GRID = 0.25  # of a step: how far a stamp may be from its grid point to be that grid point's sample (20 ms of jitter at 10 Hz fit)
 FASTER_THAN_GRID = 1.5  # times the grid's rate: a channel above it is averaged, below it interpolated
+HEAD = 1000  # samples by which most channels that are not on the grid are told at once
 EPS_S = 1e-6  # stamps closer than this are the same
 
 
 def on_grid(t: Array, start: float, dt: float) -> NDArray[np.int64] | None:
     """The grid point of each stamp where the whole channel lies on the grid, one sample a point; else None."""
+    if len(t) > HEAD and on_grid(t[:HEAD], start, dt) is None:
+        return None
     k = np.rint((t - start) / dt).astype(np.int64)
     near = np.abs(t - start - k * dt) <= ON_GRID * dt + EPS_S
     return k if near.all() and (np.diff(k) > 0).all() else None
@@ -30,7 +33,7 @@ def resample(
     ``bad`` (len(series),) holds the reason of samples that must not be used: nothing is interpolated across one.
     """
     grid: Array = np.asarray(start + np.arange(n) * dt, dtype=np.float64)
-    good = bad == Reason.OK
+    good = _good(bad)
     t, v = series.t[good], series.values[good]
     if len(t) == 0:
         return np.full(n, np.nan), _at(series.t, bad, grid), "none"
@@ -50,6 +53,11 @@ def resample(
     return values, codes, said
 
 
+def _good(bad: Codes) -> NDArray[np.int64] | slice:
+    """Where the samples stand that may be used; all of them as a slice, which copies nothing."""
+    return np.flatnonzero(bad == Reason.OK) if bad.any() else slice(None)
+
+
 def _name(method: Resampling) -> str:
     """The method as it acts on a channel that is no faster than the grid."""
     return {"mean": "linear", "circular": "circular linear"}.get(method, method)
@@ -58,7 +66,7 @@ def _name(method: Resampling) -> str:
 def _bin_mean(t: Array, v: Array, start: float, n: int, dt: float, circular: bool) -> tuple[NDArray[np.int64], Array]:
     """Mean of the samples within half a step of each grid point, where their mean stamp is near it as well."""
     k = np.floor((t - start) / dt + 0.5).astype(np.int64)
-    inside = (k >= 0) & (k < n)
+    inside = slice(*np.searchsorted(k, (0, n)))  # stamps rise
     k, t, v = k[inside], t[inside], v[inside]
     count = np.bincount(k, minlength=n)
 
@@ -72,7 +80,7 @@ def _bin_mean(t: Array, v: Array, start: float, n: int, dt: float, circular: boo
 
 
 def _linear(series: Series, bad: Codes, grid: Array, gap_s: float, circular: bool) -> tuple[Array, Codes]:
-    good = np.flatnonzero(bad == Reason.OK)
+    good = _good(bad)
     t, v = series.t[good], series.values[good]
     codes = _outside(series.t, bad, t, grid, 0.0)
     if len(t) == 1:
@@ -85,13 +93,14 @@ def _linear(series: Series, bad: Codes, grid: Array, gap_s: float, circular: boo
     values = np.where(share < 1.0, v[j - 1] + step * share, v[j])
     inner = (codes == Reason.OK) & (share * width > EPS_S) & ((1.0 - share) * width > EPS_S)
     codes[inner & (width > gap_s + EPS_S)] = Reason.GAP
-    skipped = inner & (good[j] - good[j - 1] > 1)
-    codes[skipped] = bad[good[j - 1] + 1][skipped]
+    if not isinstance(good, slice):
+        skipped = inner & (good[j] - good[j - 1] > 1)
+        codes[skipped] = bad[good[j - 1] + 1][skipped]
     return (wrap(values) if circular else values), codes
 
 
 def _hold(series: Series, bad: Codes, grid: Array, gap_s: float, held_s: float | None) -> tuple[Array, Codes]:
-    good = np.flatnonzero(bad == Reason.OK)
+    good = _good(bad)
     t, v = series.t[good], series.values[good]
     period = float(np.median(np.diff(t))) if len(t) > 1 else 0.0
     codes = _outside(series.t, bad, t, grid, min(gap_s, FASTER_THAN_GRID * period) if held_s is None else held_s)

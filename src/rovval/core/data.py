@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from rovval.core.channels import Rule, channel
 from rovval.core.errors import BadInput, Finding
+from rovval.core.long_columns import at_rest, is_at_rest
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -40,7 +41,7 @@ class Reason(IntEnum):
 
 def frozen_array(values: Any, dtype: Any = np.float64) -> NDArray[Any]:
     """A read-only copy (a frozen dataclass alone does not freeze its arrays); an array that nobody can write to any more as it is."""
-    if isinstance(values, np.ndarray) and values.dtype == dtype and values.flags.owndata and not values.flags.writeable:
+    if isinstance(values, np.ndarray) and values.dtype == dtype and not values.flags.writeable and (values.flags.owndata or is_at_rest(values)):
         return values
     copy = np.array(values, dtype=dtype)
     copy.setflags(write=False)
@@ -57,8 +58,8 @@ class Series:
     stamp: str
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "t", frozen_array(self.t))
-        object.__setattr__(self, "values", frozen_array(self.values))
+        object.__setattr__(self, "t", at_rest(frozen_array(self.t)))
+        object.__setattr__(self, "values", at_rest(frozen_array(self.values)))
         if self.t.shape != self.values.shape or self.t.ndim != 1:
             raise BadInput(f"a channel has {self.values.shape} values at {self.t.shape} stamps")
         if not np.isfinite(self.values).all() or (np.diff(self.t) <= 0).any():

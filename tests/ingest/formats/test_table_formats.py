@@ -196,6 +196,21 @@ def test_a_cut_file_is_refused_or_read(tmp_path, columns, name):
             assert name in str(refusal)
 
 
+def test_panics_of_a_decoder_are_not_printed(tmp_path, columns, capfd):
+    """Of some damage polars' decoder panics in a thread of its own, and prints forty lines before it raises."""
+    path = tmp_path / "dive.parquet"
+    WRITERS[path.name](path, columns)
+    whole, refused = path.read_bytes(), 0
+    for at in range(1000, len(whole) - 64, 700):
+        path.write_bytes(whole[:at] + b"\xff" * 64 + whole[at + 64 :])
+        try:
+            read(path, "merlin")
+        except BadInput:
+            refused += 1
+    printed = capfd.readouterr()
+    assert refused and printed.err == printed.out == ""
+
+
 @pytest.mark.parametrize(("name", "library", "extra"), [("dive.xlsx", "fastexcel", "spreadsheet"), ("dive.h5", "h5py", "hdf5"), ("new.mat", "h5py", "hdf5")])
 def test_a_missing_extra_is_named(tmp_path, columns, monkeypatch, name, library, extra):
     WRITERS[name](tmp_path / name, columns)

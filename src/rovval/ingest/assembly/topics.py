@@ -16,6 +16,7 @@ import numpy as np
 
 from rovval.core.data import Array, Marker, RawLog
 from rovval.core.errors import BadInput, Finding, all_at_once
+from rovval.core.long_columns import at_rest
 from rovval.ingest.assembly import Signal, build
 from rovval.ingest.assembly.columns import columns_of, unused, wanted
 from rovval.ingest.assembly.markers import markers_of, not_there
@@ -123,7 +124,7 @@ def read_blocks(path: Path, profile: Profile, blocks: Iterable[Block]) -> RawLog
     starts = [float(c.t[0]) + _since(epoch, c) for _, c in known]
     signals = {}
     for part, clock in known:
-        t = clock.t + (_since(epoch, clock) - min(starts))
+        t = at_rest(clock.t + (_since(epoch, clock) - min(starts)))  # all channels share it
         for name, (source, fields) in part.channels.items():
             values = np.stack([part.topic.numbers[f][clock.rows] for f in fields], axis=1)
             signals[name] = Signal(t, values if len(fields) > 1 else values[:, 0], clock.stamp, source)

@@ -11,6 +11,7 @@ import numpy as np
 
 from rovval.core.data import Array, RawLog
 from rovval.core.errors import BadInput, Finding
+from rovval.core.long_columns import at_rest
 from rovval.core.progress import Progress, silent
 from rovval.ingest.assembly.columns import Columns, clock_columns, columns_of, unused, wanted
 from rovval.ingest.clocks.clock import DAY_S, increasing_stamps
@@ -77,7 +78,7 @@ def read(path: Path, profile: Profile, progress: Progress = silent) -> RawLog:
         start = {"stamp_s_at_start": repr(float(t[0]))}
     if profile.time.kind == "datetime":
         start = {"timezone": profile.time.timezone or "UTC where the stamps do not say theirs"}
-    since = np.asarray(t - t[0])
+    since = at_rest(np.asarray(t - t[0]))
     since.setflags(write=False)  # all channels share it
     kept = rows if len(rows) < len(lines) or (np.diff(rows) != 1).any() else None
     properties = {**start, "rows": str(len(rows)), "columns_unused": ", ".join(unused(profile, header, where))}

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import tempfile
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from rovval.core.data import RawLog
@@ -48,7 +51,29 @@ def _blocks(path: Path, rows: int | None = None) -> Iterator[Block]:
     from rovval.ingest.contents.frame_block import block_of
 
     try:
-        frame = pl.read_parquet(path, n_rows=rows, use_pyarrow=False, glob=False)
+        with _panics_unprinted():
+            frame = pl.read_parquet(path, n_rows=rows, use_pyarrow=False, glob=False)
     except (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError) as error:  # its decoder panics at some damage
         raise BadInput(f"{path}: damaged: {str(error).splitlines()[0]}", "Parquet keeps its index at the end: is the file whole?") from None
     yield block_of("", frame)
+
+
+@contextmanager
+def _panics_unprinted() -> Iterator[None]:
+    """What polars' decoder prints of its panics, some forty lines on stderr before it raises, is not printed: the refusal says it. What is printed
+    and nothing is raised, is passed on."""
+    try:
+        stderr = os.dup(2)
+    except OSError:  # a process without stderr
+        yield
+        return
+    with tempfile.TemporaryFile() as said:
+        os.dup2(said.fileno(), 2)
+        try:
+            yield
+        finally:
+            os.dup2(stderr, 2)
+            os.close(stderr)
+        said.seek(0)
+        if words := said.read():
+            os.write(2, words)

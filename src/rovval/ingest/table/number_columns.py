@@ -13,6 +13,7 @@ import polars as pl
 
 from rovval.core.data import Array
 from rovval.core.errors import BadInput, Finding, all_at_once
+from rovval.core.long_columns import LongColumn, at_rest
 from rovval.ingest.table.cells import BLANK, DECIMAL_COMMA, cells_of, shown
 from rovval.ingest.table.text_rows import Index, Rows, Tally
 from rovval.ingest.table.text_table import first_few
@@ -27,11 +28,12 @@ class NumberColumns:
     def __init__(self, columns: Mapping[str, int], texts: Mapping[str, int], separator: str, width: int) -> None:
         self.columns, self.texts, self.separator, self.width = columns, texts, separator, width
         self._texts: dict[str, list[pl.Series]] = {name: [] for name in texts}
-        self._values: dict[str, Array] = {name: np.zeros(0) for name in columns}
-        self._lines: list[Index] = []
+        self._values = {name: LongColumn() for name in columns}
+        self._lines = LongColumn(np.int64)
         self._blank = {name: Tally() for name in columns}
         self._bad = {name: Tally() for name in columns}
         self._examples: dict[str, list[str]] = {name: [] for name in columns}
+        self._broken: set[str] = set()  # columns that held a number that is not whole
         self._comma: set[str] = set()  # columns with a decimal comma
         self._both: set[str] = set()  # and those that have points further on
 
@@ -53,11 +55,9 @@ class NumberColumns:
             self._append(name, column.fill_null(np.nan).to_numpy())
 
     def _append(self, name: str, more: Array) -> None:
-        """Longer in its place: parts put together at the end would be there twice."""
-        column = self._values[name]
-        size = len(column)
-        column.resize(size + len(more), refcheck=False)
-        column[size:] = more
+        self._values[name].append(more)
+        if name not in self._broken and (np.mod(more[np.isfinite(more)], 1.0) != 0).any():
+            self._broken.add(name)
 
     def _read(self, rows: Rows) -> pl.DataFrame | None:
         """The columns as numbers; None where a cell is neither a number nor empty, or a quote may hide a separator."""
@@ -103,20 +103,16 @@ class NumberColumns:
         if pointed and name in self._comma:
             self._both.add(name)
         failed = column.filter(value.is_null())
-        if len(failed) and failed.str.contains(DECIMAL_COMMA).any() and not pointed and (name in self._comma or not self._had_point(name)):
+        if len(failed) and failed.str.contains(DECIMAL_COMMA).any() and not pointed and (name in self._comma or name not in self._broken):
             self._comma.add(name)
             value = column.str.replace(",", ".", literal=True).cast(pl.Float64, strict=False)
         return np.array(value.fill_null(np.nan).to_numpy(), dtype=float)
 
-    def _had_point(self, name: str) -> bool:
-        known = self._values[name][np.isfinite(self._values[name])]
-        return bool((np.mod(known, 1.0) != 0).any())
-
     def arrays(self) -> tuple[dict[str, Array], pl.DataFrame, Index, tuple[Finding, ...]]:
         """The numbers (NaN where missing), the columns kept as text, the rows' lines, each row once, and what was found of rows that were
         there again."""
-        lines = np.concatenate(self._lines) if self._lines else np.zeros(0, np.int64)
-        values = dict(self._values)
+        lines = self._lines.array()
+        values = {name: column.array() for name, column in self._values.items()}
         text = pl.DataFrame({name: pl.concat(parts) if parts else pl.Series(dtype=pl.String) for name, parts in self._texts.items()})
         again = _repeated(values, text)
         if not len(again):
@@ -125,13 +121,13 @@ class NumberColumns:
         once[again] = False
         detail = f"{len(again)} rows repeat an earlier one, stamp included; dropped"
         found = Finding("repeated_row", first_few(lines[again].tolist()), detail)
-        return {n: v[once] for n, v in values.items()}, text.filter(pl.Series(once)) if text.width else text, lines[once], (found,)
+        return {n: at_rest(v[once]) for n, v in values.items()}, text.filter(pl.Series(once)) if text.width else text, lines[once], (found,)
 
     def findings(self, path: str) -> tuple[Finding, ...]:
         """Blank cells and cells that are no numbers. Raises `BadInput` naming every column of which more than half are not."""
         findings: list[Finding] = []
         hopeless = [f"column {name!r} has decimal commas, and further on decimal points" for name in self.columns if name in self._both]
-        rows = sum(len(lines) for lines in self._lines)
+        rows = len(self._lines)
         for name in self.columns:
             blank, bad = self._blank[name], self._bad[name]
             if blank.count:
