@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import uuid
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib.util import find_spec
 from pathlib import Path
 
 from rovval.core.errors import UsageProblem
 from rovval.storage import lease, places
+from rovval.storage.atomic import refusal
 
 LOCK, SHARED = ".lock", ".shared"
 KNOWN = find_spec("fcntl") is not None  # whether this system has locks of files
@@ -24,7 +25,7 @@ def held(folder: Path, wait: bool = False, shared: bool = False) -> Iterator[Che
     raises `UsageProblem` where the lock was lost meanwhile.
 
     Raises:
-        UsageProblem: another process holds it, the system has no flock, or the object store cannot be used.
+        UsageProblem: another process holds it, it cannot be written, the system has no flock, or the object store cannot be used.
     """
     with _in_store(folder, wait, shared) if places.is_remote(folder) else _on_disk(folder, wait, shared) as check:
         yield check
@@ -51,8 +52,12 @@ def _on_disk(folder: Path, wait: bool, shared: bool) -> Iterator[Check]:
         )
     import fcntl
 
-    folder.mkdir(parents=True, exist_ok=True)
-    with (folder / LOCK).open("a+", encoding="utf-8") as file:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        opened = (folder / LOCK).open("a+", encoding="utf-8")
+    except OSError as error:
+        raise refusal(folder / LOCK, error) from None
+    with opened as file:
         try:
             fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | (0 if wait else fcntl.LOCK_NB))
         except BlockingIOError:
@@ -61,7 +66,12 @@ def _on_disk(folder: Path, wait: bool, shared: bool) -> Iterator[Check]:
                 f"{folder}: another run is at work (process {file.read().strip() or 'unknown'})", "wait for it, or end it"
             ) from None
         if not wait and not shared:  # whom others find is told to those that do not wait
-            file.truncate(0)
-            file.write(str(os.getpid()))
-            file.flush()
+            _say(file.fileno())
         yield lambda: None
+
+
+def _say(lock: int) -> None:
+    """Write who holds it into the lock; on a full disk it is held without."""
+    with suppress(OSError):
+        os.ftruncate(lock, 0)
+        os.write(lock, str(os.getpid()).encode())
