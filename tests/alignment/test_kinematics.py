@@ -26,7 +26,7 @@ def test_every_second_lies_in_one_piece(n):
 
 
 def test_a_channel_in_pieces_is_the_channel():
-    t = np.arange(400) * 0.05
+    t = np.arange(400.0) * 0.05
     series = Series(t[::3] + 0.013, np.angle(np.exp(1j * t[::3])), "row")
     whole = channel_at(series, t, angle=True)
     parts = np.concatenate([channel_at(series, part, angle=True) for part in np.split(t, [90, 200])])
@@ -38,7 +38,7 @@ def test_a_channel_in_pieces_is_the_channel():
 def test_a_log_longer_than_a_piece_tells_a_sign_from_all_of_it():
     """Depth runs with w in half of the first piece and against it in the longer rest."""
     n = 3 * PIECE
-    t = np.arange(n) * 0.02
+    t = np.arange(float(n)) * 0.02
     way = np.where(np.arange(n) < PIECE // 2, 1.0, -1.0)
     w = 0.2 * np.cos(0.5 * t)
     zero = np.zeros(n)

@@ -453,6 +453,19 @@ def test_a_spike_of_telemetry_is_dropped_and_a_burst_of_thrust_stays(tmp_path):
     assert raw.channels["n:HFS"].values.max() == pytest.approx(250 / 60)
 
 
+def test_what_is_true_of_every_thruster_is_said_once(tmp_path):
+    """Seven lines of blank cells pushed out of the terminal that no feedback was there at all."""
+
+    def edit(cells):
+        for name in cells:
+            if name.endswith("_PV"):
+                cells[name] = ["NaN"] * 300
+
+    raw = read(write(tmp_path, edit=edit))
+    (blank,), (empty,) = found(raw, "blank_cell"), found(raw, "empty_channel")
+    assert blank.where.count("_PV") == 7 and blank.detail.startswith("300 cells") and empty.where.count("n:") == 7
+
+
 def test_an_endless_cell_is_quoted_by_its_beginning(tmp_path):
     """Half a million digits reached the terminal."""
 

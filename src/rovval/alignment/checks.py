@@ -12,7 +12,7 @@ from rovval.alignment.series import bad_samples, longest_bridge, still_runs
 from rovval.alignment.thruster_commands import against_commands
 from rovval.core.channels import channel
 from rovval.core.data import RawLog, Series
-from rovval.core.errors import Finding
+from rovval.core.errors import Finding, merged
 
 STUCK_S = 3.0  # a living sensor does not repeat itself to the last digit for so long, unless the vehicle rests
 SENSORS = ("u", "v", "w", "p", "q", "r", "x", "y", "z", "phi", "theta", "psi", "udot", "vdot", "wdot", "altitude")
@@ -29,17 +29,9 @@ def check(raw: RawLog) -> tuple[Finding, ...]:
         found += _rate(name, series)
         found += _commands_absent(raw, name, series)
     return (
-        *_merged(found), *pose_against_velocities(raw), *level_pose_against_velocities(raw), *attitude_in_radians(raw),
-        *_merged(list(against_commands(raw))),
+        *merged(found), *pose_against_velocities(raw), *level_pose_against_velocities(raw), *attitude_in_radians(raw),
+        *merged(list(against_commands(raw))),
     )
-
-
-def _merged(found: list[Finding]) -> list[Finding]:
-    """What is true of several channels in the same words is one finding."""
-    where: dict[tuple[str, str], list[str]] = {}
-    for finding in found:
-        where.setdefault((finding.code, finding.detail), []).append(finding.where)
-    return [Finding(code, ", ".join(names), detail) for (code, detail), names in where.items()]
 
 
 def _gaps(raw: RawLog, name: str, series: Series) -> list[Finding]:

@@ -65,6 +65,14 @@ class Finding:
         return f"{self.code}: {self.where}: {self.detail}"
 
 
+def merged(found: Sequence[Finding]) -> list[Finding]:
+    """What is true of several channels or columns in the same words as one finding, where the first of them stood."""
+    where: dict[tuple[str, str], list[str]] = {}
+    for finding in found:
+        where.setdefault((finding.code, finding.detail), []).append(finding.where)
+    return [Finding(code, ", ".join(dict.fromkeys(names)), detail) for (code, detail), names in where.items()]
+
+
 def all_at_once(problems: Sequence[str], what: str) -> str:
     """Join every problem of one kind into one message, so that they are mended in one go."""
     if len(problems) == 1:

@@ -54,9 +54,9 @@ class LongColumn:
         try:
             if self._file is None:
                 self._file = tempfile.TemporaryFile(prefix="rovval-")  # noqa: SIM115 - `array` closes it
-                self._file.write(self._held)
+                self._file.write(self._held.tobytes())
                 self._written, self._held = size, self._held[:0].copy()
-            self._file.write(np.ascontiguousarray(more, dtype=self._held.dtype))
+            self._file.write(more.astype(self._held.dtype).tobytes())
             self._written += len(more)
         except OSError as error:
             hint = f"long columns are kept in {tempfile.gettempdir()} while they are read: make room there, or set TMPDIR"

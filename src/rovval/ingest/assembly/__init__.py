@@ -10,7 +10,7 @@ import numpy as np
 
 from rovval.core.channels import Rule
 from rovval.core.data import Array, Flags, Marker, RawLog, Series
-from rovval.core.errors import BadInput, Finding
+from rovval.core.errors import BadInput, Finding, merged
 from rovval.core.frames import ENU_TO_NED, FLU_TO_FSD, euler_from_quaternion, rotation_from_euler, wrap
 from rovval.core.units import to_si
 from rovval.ingest.assembly.heading import with_heading_zero
@@ -80,7 +80,7 @@ def build(
     ordered = {name: _angles(name, series[name], found) for name in _in_order(profile, series)}
     return RawLog(
         source=str(path), sha256=sha256, profile=profile.name, vehicle=profile.vehicle_file, t0_ns=t0_ns, channels=ordered,
-        findings=tuple(found), properties=facts, rules={n: r for n in ordered if (r := _rule(sources, n)) is not None},
+        findings=tuple(merged(found)), properties=facts, rules={n: r for n in ordered if (r := _rule(sources, n)) is not None},
         markers=tuple(markers),
     )  # fmt: skip
 
