@@ -132,6 +132,21 @@ def test_the_recording_carries_the_diagnosis(tmp_path: Path) -> None:
     assert scalars["/force/surge"].shape[1] == 1 and np.isfinite(scalars["/force/surge"]).any()
 
 
+def test_a_lane_is_a_gap_where_nothing_holds(tmp_path: Path) -> None:
+    from rerun.chunk import RrdReader
+
+    run = make_run(300, holes={"psi": slice(50, 60)})
+    recording.write(compare(run, make_sim(run)), tmp_path / "run.rrd", MERLIN, diagnosis=diagnosis())
+    shown: dict[str, dict[str, bool]] = {}
+    for chunk in RrdReader(str(tmp_path / "run.rrd")).stream():
+        batch = chunk.to_record_batch()
+        if "StateConfiguration:values" in batch.schema.names:
+            values, visible = (batch.column(f"StateConfiguration:{name}").to_pylist()[0] for name in ("values", "visible"))
+            shown[chunk.entity_path] = dict(zip(values, visible, strict=True))
+    assert shown["/state/log/psi"] == {"-": False, "gap": True}
+    assert all(any(lane.values()) for path, lane in shown.items() if path.startswith("/state/cause/"))
+
+
 @pytest.mark.parametrize(
     ("name", "when"), [("u > 0.5 m/s", "u > 0.5"), ("|r| < 8 deg/s", "r < 8"), ("time 3 to 5 s", "t"), ("HFP turning forward", ""), ("depth > 12 m", "z")]
 )

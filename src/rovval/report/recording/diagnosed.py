@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from rovval.vehicle.model import Vehicle
 
 LOG, LANES, FORCE = "/log", "/state", "/force"
+NOTHING = "-"  # the state of a lane on which nothing holds
 CHANNELS = {"depth": "z", "altitude": "altitude"}
 _LIMIT = re.compile(r"(\|?)(\w+)\|? ([<>]) (-?[\d.e-]+)(?: \S+)?")
 _TIMES = re.compile(r"time (\S+) to (\S+) s")
@@ -63,24 +64,27 @@ def _lanes(stream: Any, run: Run, d: Diagnosis) -> None:
     """A lane a cause, a lane a regime that holds most of the gap, one a channel that is not measured throughout, and one of the gap's level."""
     for c in d.causes:
         at_work = run.t >= (c.onset_s or 0.0)
-        _lane(stream, run, f"cause/{_slug(c.effect)}", np.where(at_work, titled(c.effect), "not yet"))
+        _lane(stream, run, f"cause/{_slug(c.effect)}", np.where(at_work, titled(c.effect), NOTHING), "corrected")
     for s in d.gap.where:
         flags = holds(run, s.regime)
         if flags is not None:
-            _lane(stream, run, f"where/{s.axis}_{_slug(s.regime)}", np.where(flags, f"{s.axis}: {regime(s.regime)}", "-"))
+            _lane(stream, run, f"where/{s.axis}_{_slug(s.regime)}", np.where(flags, f"{s.axis}: {regime(s.regime)}", NOTHING), "windows")
     if d.gap.change_points_s:
         level = np.searchsorted(np.array(d.gap.change_points_s), run.t, side="right")
-        _lane(stream, run, "gap_level", np.array([f"level {k + 1}" for k in level]))
+        _lane(stream, run, "gap_level", np.array([f"level {k + 1}" for k in level]), "free run")
     for name, codes in run.reasons.items():
         if (codes != Reason.OK).any():
-            words = np.array([Reason(k).name.lower().replace("_", " ") if k else "measured" for k in codes.tolist()])
-            _lane(stream, run, f"log/{_slug(name)}", words)
+            words = np.array([Reason(k).name.lower().replace("_", " ") if k else NOTHING for k in codes.tolist()])
+            _lane(stream, run, f"log/{_slug(name)}", words, "other")
 
 
-def _lane(stream: Any, run: Run, path: str, states: Any) -> None:
-    """A lane of states (n,), written where they change."""
+def _lane(stream: Any, run: Run, path: str, states: Any, colour: str) -> None:
+    """A lane of states (n,), written where they change: one colour for what holds, a gap where nothing does."""
     import rerun as rr
 
+    known = [str(s) for s in np.unique(states)]
+    shown = rr.StateConfiguration(values=known, colors=[COLOURS[colour]] * len(known), visible=[s != NOTHING for s in known])
+    stream.log(f"{LANES}/{path}", shown, static=True)
     at = np.flatnonzero(np.r_[True, states[1:] != states[:-1]])
     clock = [rr.TimeColumn("run_time", duration=run.t[at])]
     stream.send_columns(f"{LANES}/{path}", clock, rr.StateChange.columns(state=[str(s) for s in states[at]]))

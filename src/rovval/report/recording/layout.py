@@ -30,7 +30,8 @@ def blueprint(comparison: Comparison, body: str, corrected: bool, longest: float
         thrusters = [_curves("/thruster/speed", "speed, rpm"), _curves("/thruster/force", "force, N")]
         tabs.append(rrb.Vertical(*thrusters, name="Thrusters"))
     if diagnosed:
-        lanes, log = rrb.StateTimelineView(origin="/state", name="What holds when"), rrb.TextLogView(origin="/log", name="In words")
+        lanes = rrb.StateTimelineView(origin="/state", name="What holds when", time_view=_whole_run())
+        log = rrb.TextLogView(origin="/log", name="In words")
         forces = [_curves(f"/force/{a}", f"{a}: missing force") for a in measured]
         tabs = [rrb.Vertical(lanes, log, name="Diagnosis"), rrb.Grid(*forces, grid_columns=2, name="Missing force"), *tabs]
     third = ", corrected (green)" if corrected else ""
@@ -50,8 +51,14 @@ def blueprint(comparison: Comparison, body: str, corrected: bool, longest: float
 
 def _curves(origin: str, name: str) -> Any:
     """A plot of the whole run; the viewer's own default would show half a minute round the cursor."""
+    import rerun.blueprint as rrb
+
+    return rrb.TimeSeriesView(origin=origin, name=name, axis_x=_whole_run())
+
+
+def _whole_run() -> Any:
+    """An axis of all the time there is."""
     import rerun as rr
     import rerun.blueprint as rrb
 
-    whole = rr.TimeRange(start=rr.TimeRangeBoundary.infinite(), end=rr.TimeRangeBoundary.infinite())
-    return rrb.TimeSeriesView(origin=origin, name=name, axis_x=rrb.TimeAxis(view_range=whole))
+    return rrb.TimeAxis(view_range=rr.TimeRange(start=rr.TimeRangeBoundary.infinite(), end=rr.TimeRangeBoundary.infinite()))
