@@ -38,7 +38,8 @@ def load(
     Args:
         source: a log file or bag folder, or the id of a run in ``archive``.
         profile: how to read the log: a name of `rovval list profile` or a TOML file; None takes the one built-in profile that fits.
-        start_s, end_s: the stretch of it that is taken, s since the run's start; None is where it begins and ends.
+        start_s: where the stretch of it that is taken begins, s since the run's start; None is where the log begins.
+        end_s: where it ends; None is where the log ends.
 
     Raises:
         BadInput: the log cannot be used, fits none or several of the built-in profiles, or the stretch is beyond it or empty.

@@ -1,7 +1,5 @@
 """The README's commands, run as they are written there."""
 
-import csv
-import gzip
 import os
 import re
 import shlex
@@ -13,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from own_log import write_own_log
 from typer.testing import CliRunner
 
 import rovval
@@ -22,15 +21,6 @@ from rovval.cli.app import COMMANDS, app
 from rovval.ingest.profile import load_profile
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-KNOT = 1852.0 / 3600.0
-RENAMED = {
-    "LinVelX": "speed_ahead",
-    "LinVelY": "speed_right",
-    "LinVelZ": "speed_down",
-    "AngVelZ": "turn_rate",
-    "Depth": "depth",
-    "Heading": "heading",
-}
 
 
 def after(marker: str) -> list[str]:
@@ -40,19 +30,6 @@ def after(marker: str) -> list[str]:
 
 def commands(marker: str) -> list[str]:
     return [line for block in after(marker) for line in block.splitlines() if line]
-
-
-def write_own_log(path: Path, seconds: int = 60) -> None:
-    """The sample dive under the names and units of the README's own CSV."""
-    with gzip.open(demo.SAMPLE, "rt", encoding="utf-8") as sample:
-        rows = list(csv.DictReader(sample))[: seconds * 10]
-    thrusters = [name.removesuffix("_PV") for name in rows[0] if name.endswith("_PV")]
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(["t", *RENAMED.values(), *(f"rpm_{t}" for t in thrusters)])
-        for i, row in enumerate(rows):
-            values = [float(row[c]) / (KNOT if c.startswith("LinVel") else 1.0) for c in RENAMED]
-            writer.writerow([i / 10, *values, *(row[f"{t}_PV"] for t in thrusters)])
 
 
 def invoke(line: str) -> None:

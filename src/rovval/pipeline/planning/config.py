@@ -28,9 +28,9 @@ class Strict(BaseModel):
 class Source(Strict):
     """Logs of one kind. Patterns are globs relative to the pipeline file; ``vehicle`` "" is the one that the profile names."""
 
-    logs: Annotated[tuple[str, ...], Field(min_length=1)]
-    profile: str | None = None
-    vehicle: str = ""
+    logs: Annotated[tuple[str, ...], Field(min_length=1, description="globs of log files, bag folders or dive files, or `s3://bucket/prefix/*.csv`")]
+    profile: str | None = Field(None, description="name of `rovval list profile`, or a TOML file; without it the one that fits each log")
+    vehicle: str = Field("", description="name of `rovval list vehicle`, or a TOML file; without it the one that the profile names")
 
     @field_validator("logs")
     @classmethod
@@ -41,29 +41,35 @@ class Source(Strict):
 
 
 class Pipeline(Strict):
-    """The file. Folders are relative to it, so that it works from any working directory (cron has its own).
+    """Folders are relative to the file, so that it works from any working directory (cron has its own)."""
 
-    ``recordings``: whether the report of a comparison has a recording for the viewer, two thirds of its bytes; `rovval view` makes one of any run.
-    ``most_redone``: how many logs that older code of rovval has judged are judged anew a night, the newest first. ``keep_replaced_days``: how
-    long the reports on a log's former content stay after it changed; None is for ever.
-    """
-
-    name: str
-    source: Annotated[tuple[Source, ...], Field(min_length=1)]
-    steps: Annotated[tuple[Step, ...], Field(min_length=1)] = ("ingest", "simulate", "compare")
-    archive: Place = Path("../archive")
-    reports: Place = Path("../reports")
-    model: str = USUAL
-    effects: tuple[str, ...] = ()
-    window_s: Annotated[float, Field(ge=0.5)] = 10.0
-    calibration_slop: Annotated[float, Field(ge=0, le=0.5)] = 0.05
-    workers: Annotated[int, Field(ge=1, le=1024)] | None = None
-    timeout_s: Annotated[float, Field(gt=0)] | None = None
-    settle_s: Annotated[float, Field(ge=0)] = 0.0
-    tolerances: tuple[str, ...] = ()
-    recordings: bool = False
-    most_redone: Annotated[int, Field(ge=0)] | None = None
-    keep_replaced_days: Annotated[float, Field(ge=0)] | None = None
+    name: str = Field(description="of the batch, in its reports and in the catalogue")
+    source: Annotated[tuple[Source, ...], Field(min_length=1, description="the logs, one table a kind of them")]
+    steps: Annotated[tuple[Step, ...], Field(min_length=1)] = Field(
+        ("ingest", "simulate", "compare"), description="what is done with each log; `diagnose` is the long one"
+    )
+    archive: Place = Field(Path("../archive"), description="where runs are kept: a folder, or `s3://bucket/prefix`")
+    reports: Place = Field(Path("../reports"), description="where pages, records and the summary are written: a folder, or `s3://bucket/prefix`")
+    model: str = Field(USUAL, description="platform whose simulator is judged")
+    effects: tuple[str, ...] = Field((), description="settings such as `inflow_loss:loss=0.3` that the simulator is given")
+    window_s: Annotated[float, Field(ge=0.5)] = Field(10.0, description="length of the restarted windows")
+    calibration_slop: Annotated[float, Field(ge=0, le=0.5)] = Field(
+        0.05, description="relative standard deviation that a healthy simulator's coefficients may have"
+    )
+    workers: Annotated[int, Field(ge=1, le=1024)] | None = Field(None, description="processes; without it one a core")
+    timeout_s: Annotated[float, Field(gt=0)] | None = Field(None, description="a log that takes longer is set aside; without it none is")
+    settle_s: Annotated[float, Field(ge=0)] = Field(0.0, description="a log that changed so shortly ago is still being copied, and waits for the next run")
+    tolerances: tuple[str, ...] = Field((), description='limits on errors, `AXIS[.METRIC]=VALUE` of the free run or `window.AXIS.METRIC=VALUE`, in SI, '
+        "and `trend.AXIS=SIGMAS` against the vehicle's 20 dives before; one that is exceeded makes exit code 1")  # fmt: skip
+    recordings: bool = Field(
+        False, description="whether the report of a comparison has a recording for the viewer, two thirds of its bytes; `rovval view` makes one of any run"
+    )
+    most_redone: Annotated[int, Field(ge=0)] | None = Field(
+        None, description="how many logs that older code of rovval has judged are judged anew a night, the newest first; without it all"
+    )
+    keep_replaced_days: Annotated[float, Field(ge=0)] | None = Field(
+        None, description="how long the reports on a log's former content stay after it changed; without it for ever"
+    )
 
     @field_validator("tolerances")
     @classmethod
