@@ -6,6 +6,7 @@ import inspect
 import sys
 from collections.abc import Iterator
 from enum import Enum
+from html import escape
 from typing import Any
 
 import typer
@@ -74,7 +75,7 @@ def _row(parameter: Any) -> str:
         shown = opts if parameter.is_flag else f"{opts} {shown}"
     default = "required" if parameter.required else _default(parameter.default)
     said = " ".join((parameter.help or "").split())
-    return "| " + " | ".join(cell.replace("|", r"\|") for cell in (f"`{shown}`", default, said)) + " |"
+    return "| " + " | ".join(cell.replace("|", "&#124;") for cell in (f"<code>{escape(shown)}</code>", default, said)) + " |"
 
 
 def _default(value: Any) -> str:
