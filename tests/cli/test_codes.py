@@ -1,6 +1,7 @@
 """What the wrapper does with each way to end: exit code, one message, and where a traceback goes."""
 
 import errno
+import json
 import os
 import re
 import signal
@@ -10,8 +11,10 @@ import time
 from pathlib import Path
 
 import pytest
+from jsonschema import Draft202012Validator
 
 import rovval.cli
+from conftest import ROOT
 from rovval.cli.app import app
 from rovval.core.errors import BadInput, RovvalError, SimulationStopped, UsageProblem
 
@@ -125,3 +128,31 @@ def test_ctrl_c_by_signal_is_130(tmp_path):
         _, err = process.communicate(timeout=20)
     assert process.returncode == 130
     assert "Traceback" not in err
+
+
+@pytest.mark.parametrize(
+    ("args", "code", "kind", "said"),
+    [
+        (["show", "effect", "inflow_los", "--json"], 2, "UsageProblem", "did you mean inflow_loss"),
+        (["compare", "nope.csv", "--json"], 3, "BadInput", "no such log file"),
+        (["compare", "--json", "--nope"], 2, "UsageProblem", "--nope"),
+        (["diagnose", "nope.csv", "--json", "-"], 3, "BadInput", "no such log file"),
+    ],
+)
+def test_with_json_a_refusal_is_one_line_of_json(monkeypatch, capsys, tmp_path, args, code, kind, said):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", ["rovval", *args])
+    with pytest.raises(SystemExit) as left:
+        rovval.cli.main()
+    shown = capsys.readouterr()
+    document = json.loads(shown.err.splitlines()[-1])
+    Draft202012Validator(json.loads((ROOT / "docs" / "schemas" / "error.json").read_text(encoding="utf-8"))).validate(document)
+    assert (left.value.code, document["exit_code"], document["kind"], shown.out) == (code, code, kind, "")
+    assert said in document["message"] + document["next"]
+
+
+def test_with_json_success_still_ends_with_its_code(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["rovval", "list", "vehicle", "--json"])
+    with pytest.raises(SystemExit) as left:
+        rovval.cli.main()
+    assert left.value.code == 0 and "merlin" in json.loads(capsys.readouterr().out)

@@ -39,3 +39,48 @@ def test_a_reader_tells_how_much_of_the_file_it_has_read(tmp_path, name):
     read(path, profile_of(tmp_path), progress=lambda step, share: heard.append(share))
     assert heard and heard == sorted(heard) and heard[0] >= 0.0 and heard[-1] <= 1.0
     assert heard[-1] > 0.5 or len(heard) == 1, "a short file of lines is told of once"
+
+
+def test_the_time_that_is_left_is_told_once_it_can_be(monkeypatch):
+    clock = iter([100.0, 101.0, 110.0])
+    monkeypatch.setattr(output.time, "monotonic", lambda: next(clock))
+    monkeypatch.setattr(sys, "stderr", terminal := Terminal())
+    show = output.progress()
+    show("fit", 0.1)
+    assert "left" not in terminal.getvalue(), "a second tells nothing"
+    show("fit", 0.25)
+    assert terminal.getvalue().endswith("25 %, 30 s left")
+
+
+def test_a_batch_writes_lines_where_there_is_no_terminal(monkeypatch, capsys):
+    clock = iter([0.0, 1.0, 2.0, 13.0, 14.0])
+    monkeypatch.setattr(output.time, "monotonic", lambda: next(clock))
+    show = output.progress_of_many()
+    for number in range(5):
+        show(f"{number + 1} of 5 logs", (number + 1) / 5)
+    told = [line.split("  ")[1] for line in capsys.readouterr().err.splitlines()]
+    assert told == ["1 of 5 logs", "4 of 5 logs", "5 of 5 logs"], "the first, one after ten seconds, the last"
+    output.progress_of_many(quiet=True)("x", 0.5)
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize(("environment", "coloured"), [({}, True), ({"NO_COLOR": "1"}, False), ({"TERM": "dumb"}, False)])
+def test_colour_stands_on_a_terminal_alone_and_never_with_no_color(monkeypatch, environment, coloured):
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.setenv("TERM", "xterm")
+    for name, value in environment.items():
+        monkeypatch.setenv(name, value)
+    assert output.styled("x", fg="red") == "x", "no terminal"
+    monkeypatch.setattr(sys, "stdout", Terminal())
+    assert ("\x1b[" in output.styled("x", fg="red")) is coloured
+
+
+def test_headings_are_bold_on_a_terminal_and_nothing_else_changes(monkeypatch, capsys):
+    text = "The answer.\n  where  surge\n\nplain\n"
+    output.result_in_sections(text)
+    assert capsys.readouterr().out == text + "\n"
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setattr(sys, "stdout", terminal := Terminal())
+    output.result_in_sections(text)
+    assert terminal.getvalue() == "\x1b[1mThe answer.\x1b[0m\n  where  surge\n\nplain\n\n"

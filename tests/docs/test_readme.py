@@ -1,5 +1,6 @@
 """The README's commands, run as they are written there."""
 
+import json
 import os
 import re
 import shlex
@@ -11,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from jsonschema import Draft202012Validator
 from own_log import write_own_log
 from typer.testing import CliRunner
 
@@ -119,6 +121,8 @@ def test_the_batch(tmp_path, monkeypatch):
     [line] = commands("batch")
     invoke(line)
     assert len(list(Path("reports/nightly").glob("*/comparison/report.html"))) == 1
+    schema = json.loads((ROOT / "docs" / "schemas" / "summary.json").read_text(encoding="utf-8"))
+    Draft202012Validator(schema).validate(json.loads(Path("reports/nightly/summary.json").read_text(encoding="utf-8")))
 
 
 def test_every_command_is_in_the_readme_and_every_one_there_exists():

@@ -107,7 +107,7 @@ def command(
     document = _report(comparison, nominal, folder, json_)
     show("report", 1.0)
     if beyond := tolerances.exceeded(limits, document):
-        output.say("\n".join(f"rovval: tolerance exceeded: {line}" for line in beyond))
+        output.say("\n".join(output.styled(f"rovval: tolerance exceeded: {line}", err=True, fg="red") for line in beyond))
     logs.refuse_stopped(sim)
     if beyond:
         raise typer.Exit(1)

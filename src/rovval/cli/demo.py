@@ -34,5 +34,5 @@ def command(
     if json_:
         output.result_json(shown.document)
         return
-    output.result(shown.text)
+    output.result_in_sections(shown.text)
     output.result("\nWritten:\n" + output.places(shown.files))

@@ -113,7 +113,7 @@ def _print(found: Diagnosis, json_: Path | None, quiet: bool) -> None:
     if str(json_) == "-":
         output.result_json(found.document())
         return
-    output.result(diagnosis_text(found))
+    output.result_in_sections(diagnosis_text(found))
     if json_ is not None:
         write_json(json_, found.document())
         output.say(f"written: {json_}", quiet)

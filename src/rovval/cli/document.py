@@ -18,7 +18,8 @@ HEAD = """# Commands
 Written by `python -m rovval.cli.document` out of `src/rovval/cli`; change that. `rovval COMMAND --help` prints the same.
 
 Results go to stdout, messages and progress to stderr. With `--json` stdout is one JSON document (schemas: [JSON](schemas.md)), and a refusal is one, too,
-on stderr. No colour and no progress is written where stderr is no terminal, and no colour anywhere with `NO_COLOR` set.
+on stderr. Colour and bars are for terminals; with `NO_COLOR` set there is no colour at all. `rovval run` without a terminal writes a line of progress every ten
+seconds.
 
 | exit code | meaning |
 |---|---|

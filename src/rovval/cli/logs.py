@@ -84,7 +84,8 @@ def print_findings(run: Run, quiet: bool = False) -> None:
     """What a reader of any result should know about this log, on stderr."""
     if not run.findings:
         return
-    lines = [f"{run.id}: {len(run.findings)} finding{'s'[: len(run.findings) > 1]} in this log"]
+    counted = f"{run.id}: {len(run.findings)} finding{'s'[: len(run.findings) > 1]} in this log"
+    lines = [output.styled(counted, err=True, fg="yellow")]
     lines += [f"  {finding}" for finding in run.findings[:MOST_FINDINGS]]
     if (more := len(run.findings) - MOST_FINDINGS) > 0:
         lines.append(f"  and {more} more: `rovval ingest --json` and the report of `rovval compare` have all")

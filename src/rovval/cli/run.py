@@ -57,7 +57,7 @@ def command(
     if dry_run:
         _say_plan(batch.dry_run(pipeline, retry, verify), json_)
         return
-    document = batch.run(pipeline, workers, scheduler, retry, output.progress(quiet), verify)
+    document = batch.run(pipeline, workers, scheduler, retry, output.progress_of_many(quiet), verify)
     output.result_json(document) if json_ else output.result(text(document))
     output.say(f"every run of it on one page: {config.load(pipeline).reports / batch.INDEX}", quiet)
     raise typer.Exit(document["exit_code"])

@@ -25,6 +25,7 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
+from rovval.core.did_you_mean import suggestion
 from rovval.core.errors import UsageProblem
 from rovval.effects.effect import FAMILIES, Effect, Parameter, Tolerance
 
@@ -46,7 +47,7 @@ def module(name: str) -> ModuleType:
         UsageProblem: a name that is not in the library.
     """
     if name not in names():
-        raise UsageProblem(f"no effect named {name!r}", f"use one of: {', '.join(names())}")
+        raise UsageProblem(f"no effect named {name!r}", suggestion(name, names(), "`rovval list effect`"))
     return import_module(f"rovval.effects.library.{name}")
 
 

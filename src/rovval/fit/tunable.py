@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Sequence
 
 from rovval import effects
+from rovval.core.did_you_mean import near
 from rovval.core.errors import UsageProblem, all_at_once
 from rovval.plant import Plant
 
@@ -51,5 +51,5 @@ def _meant(plant: Plant, one: str) -> list[int]:
 
 def _near(plant: Plant, asked: str) -> str:
     names = dict.fromkeys([*effects.FAMILIES, *(n for s in plant.slots for n in (s.effect, s.hypothesis, s.key))])
-    close = difflib.get_close_matches(asked, list(names), n=3, cutoff=0.6)
+    close = near(asked, names)
     return f", perhaps {' or '.join(close)}" if close else ""

@@ -13,6 +13,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from rovval.core.did_you_mean import suggestion
 from rovval.core.errors import UsageProblem, all_at_once
 
 FOLDER = Path(__file__).parent / "missions"
@@ -188,7 +189,8 @@ def load(name_or_path: str | Path) -> Mission:
     path = FOLDER / f"{name_or_path}.toml" if str(name_or_path) in names() else Path(name_or_path)
     if not path.is_file():
         raise UsageProblem(
-            f"{name_or_path}: no such mission file", f"missions that come with rovval: {', '.join(names())}; docs/missions.md says how to write one"
+            f"{name_or_path}: no such mission file",
+            f"{suggestion(str(name_or_path), names(), 'docs/missions.md')}, or write one as docs/missions.md says",
         )
     if path.suffix.lower() == ".csv":
         return parse({"name": re.sub(r"[^A-Za-z0-9._-]", "_", path.stem), "leg": [{"kind": "speeds", "file": path.name}]}, path)

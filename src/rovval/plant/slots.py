@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rovval import effects
 from rovval.core.channels import AXES
+from rovval.core.did_you_mean import suggestion
 from rovval.core.errors import UsageProblem, all_at_once
 from rovval.effects import Parameter
 from rovval.effects.lanes import reference_drag_force, reference_speed
@@ -152,4 +153,4 @@ def _unknown(hypothesis: str, known: set[str], setting: str) -> str:
     name = hypothesis.partition("[")[0]
     if name in effects.names():
         return f"{setting!r}: {name} belongs to one of: {', '.join(sorted(h for h in known if h.partition('[')[0] == name))}"
-    return f"{setting!r}: no effect named {name!r}; the library has {', '.join(effects.names())}"
+    return f"{setting!r}: no effect named {name!r}; {suggestion(name, effects.names(), '`rovval list effect`')}"

@@ -23,6 +23,7 @@ import polars as pl
 from rovval.alignment import align
 from rovval.alignment.checks import check
 from rovval.core.data import ClockReport, Marker, Resampled, Run
+from rovval.core.did_you_mean import near
 from rovval.core.errors import BadInput, Finding, RovvalError, UsageProblem
 from rovval.core.progress import Progress, silent
 from rovval.core.version import __version__
@@ -47,9 +48,7 @@ def open_run(
     if (path / "manifest.json").is_file() or (not path.exists() and (archive / str(source)).is_dir()):
         return load_run(source, archive)
     if not path.exists():
-        near = ", ".join(run_ids(archive)[:5])
-        hint = f"runs in {archive}: {near}" if near else f"check the path; {archive} holds no runs"
-        raise BadInput(f"{source}: no such log file, and no such run in {archive}", hint)
+        raise BadInput(f"{source}: no such log file, and no such run in {archive}", _meant(path, archive))
     if not places.is_remote(path):
         return _read(path, profile, timezone, progress)
     with places.fetched(path) as local:
@@ -57,6 +56,16 @@ def open_run(
             return replace(_read(local, profile, timezone, progress), source=str(path))
         except RovvalError as error:
             raise type(error)(error.message.replace(str(local), str(path)), error.hint) from None
+
+
+def _meant(path: Path, archive: Path) -> str:
+    """What to do about a log that is not there: files beside it and runs of nearly that name, else the first runs there are."""
+    runs = [str(run) for run in run_ids(archive)]
+    beside = [] if places.is_remote(path) or not path.parent.is_dir() else [p.name for p in path.parent.iterdir() if not p.name.startswith(".")]
+    close = [str(path.parent / name) for name in near(path.name, beside)] + near(path.name, runs)
+    if close:
+        return f"did you mean {' or '.join(close)}?"
+    return f"runs in {archive}: {', '.join(runs[:5])}" if runs else f"check the path; {archive} holds no runs"
 
 
 def _read(path: Path, profile: str | None, timezone: str | None, progress: Progress) -> Run:

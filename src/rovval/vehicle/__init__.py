@@ -6,6 +6,7 @@ import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rovval.core.did_you_mean import suggestion
 from rovval.core.errors import BadVehicle, UsageProblem, all_at_once
 
 if TYPE_CHECKING:
@@ -30,7 +31,8 @@ def load(name_or_path: str | Path) -> Vehicle:
     if path.suffix != ".toml":
         path = LIBRARY / f"{name_or_path}.toml"
         if not path.exists():
-            raise UsageProblem(f"no vehicle named {str(name_or_path)!r}", f"use one of {', '.join(names())}, or a path to a .toml file")
+            meant = suggestion(str(name_or_path), names(), "`rovval list vehicle`")
+            raise UsageProblem(f"no vehicle named {str(name_or_path)!r}", f"{meant}, or give a path to a .toml file")
     if not path.is_file():
         raise UsageProblem(f"vehicle file {path} does not exist", "see `rovval list vehicle`; the README shows how to write one")
     return parse(path.read_text(encoding="utf-8"), str(path))

@@ -17,6 +17,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rovval.core.did_you_mean import suggestion
 from rovval.core.errors import BadInput, UsageProblem
 from rovval.core.units import integral_unit
 
@@ -77,6 +78,6 @@ def names() -> tuple[str, ...]:
 def get(name: str) -> Metric:
     """The metric of that name; refuses one that is not there."""
     if name not in names():
-        raise UsageProblem(f"no metric named {name!r}", f"use one of: {', '.join(names())}")
+        raise UsageProblem(f"no metric named {name!r}", suggestion(name, names(), "`rovval list metric`"))
     m = import_module(f"rovval.comparison.metrics.{name}")
     return Metric(m.NAME, m.TITLE, m.UNIT, m.SCALES, m.PERFECT, (m.__doc__ or "").strip(), m.compute)

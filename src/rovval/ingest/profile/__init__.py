@@ -14,6 +14,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from rovval.core.did_you_mean import suggestion
 from rovval.core.errors import UsageProblem, all_at_once
 from rovval.ingest.profile.model import ARDUSUB_FRAMES, ATTITUDE, GEODETIC, WORLD_VELOCITY, Clock, Profile, Source
 from rovval.ingest.profile.problems import problems
@@ -35,7 +36,7 @@ def load_profile(name_or_path: str | Path) -> Profile:
     try:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
     except (FileNotFoundError, IsADirectoryError):
-        hint = f"use a path to a TOML file or one of: {', '.join(profiles())}"
+        hint = f"{suggestion(str(name_or_path), profiles(), '`rovval list profile`')}, or give a path to a TOML file"
         raise UsageProblem(f"unknown profile {str(name_or_path)!r}", hint) from None
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise UsageProblem(f"profile {path}: not readable as TOML: {error}") from None

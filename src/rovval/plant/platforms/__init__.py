@@ -13,6 +13,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rovval.core.did_you_mean import suggestion
 from rovval.core.errors import UsageProblem
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ def names() -> tuple[str, ...]:
 def load(name: str) -> Platform:
     """The platform of that name. Raises UsageProblem where there is none."""
     if name not in names():
-        raise UsageProblem(f"no platform named {name!r}", f"model is one of {', '.join(names())}; see `rovval list platform`")
+        raise UsageProblem(f"no platform named {name!r}", suggestion(name, names(), "`rovval list platform`"))
     found = importlib.import_module(f"{__name__}.{name}").PLATFORM
     assert isinstance(found, Platform)
     return found
