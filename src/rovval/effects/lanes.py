@@ -13,6 +13,8 @@ from rovval.vehicle.model import Vehicle, allocation, as_matrix, inertia
 
 Array = NDArray[np.float64]
 PASSES = 0.1  # cosine under which a jet passes the hull by (chosen: 6 degrees, as a jet spreads)
+WORKING_SPEED = 0.3  # m/s, rad/s, of a vehicle at work, at which its drag is known as a whole (chosen),
+UNMEASURED_SPEED = 0.5  # m/s, rad/s: and of an axis of which nobody has measured the linear part (chosen)
 SECONDS_PER_MINUTE = 60.0  # thrust gains in a vehicle file are N / rpm^2, here N / (rev/s)^2
 
 
@@ -116,6 +118,17 @@ def reference_drag(vehicle: Vehicle) -> tuple[Array, Array]:
     is zero, linear drag refers to the quadratic force at 0.1 m/s (rad/s), quadratic to the linear force at 1 m/s (chosen)."""
     linear, quadratic = np.diag(as_matrix(vehicle.body.linear_drag)), np.diag(as_matrix(vehicle.body.quadratic_drag))
     return np.where(linear > 0, linear, 0.1 * quadratic), np.where(quadratic > 0, quadratic, linear)
+
+
+def drag_tolerances(vehicle: Vehicle) -> tuple[Array, Array]:
+    """Standard deviations (6,) of relative departures of linear and of quadratic drag, in calibration tolerances: a drag is known as a whole at
+    `WORKING_SPEED`, and each part of it is off by as much as the whole may be there; of an axis without linear drag in the file, where nobody has
+    measured it, by as much at `UNMEASURED_SPEED`."""
+    linear, quadratic = np.diag(as_matrix(vehicle.body.linear_drag)), np.diag(as_matrix(vehicle.body.quadratic_drag))
+    of_linear, of_quadratic = reference_drag(vehicle)
+    speed = np.where(linear > 0, WORKING_SPEED, UNMEASURED_SPEED)
+    ratios = [np.divide(a, b, out=np.zeros(6), where=b > 0) for a, b in ((quadratic, of_linear), (linear, of_quadratic))]
+    return 1.0 + speed * ratios[0], 1.0 + ratios[1] / WORKING_SPEED
 
 
 def reference_added_mass(vehicle: Vehicle) -> Array:

@@ -50,6 +50,7 @@ ALIASES = [
     (planted("sticky_thruster", "HFP"), cause("thruster_sticking[HFP]"), True),
     (planted("sticky_thruster", "HFP"), cause("thruster_sticking[HFS]"), False),
     (planted("water_leak", None), cause("buoyancy_drift"), True),
+    (planted("manipulator", None), cause("moving_tool"), True),
 ]
 
 

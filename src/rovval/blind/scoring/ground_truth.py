@@ -16,7 +16,9 @@ from rovval.blind.plant.spec import AXES
 Row = Mapping[str, Any]  # one effect of a label
 TARGETED = {"added_mass", "linear_drag", "quadratic_drag", "inertia_error", "thruster_degraded", "thruster_fault_onset"}
 TARGETED |= {"thruster_reversed", "thruster_misaligned", "thruster_interaction", "thruster_sticking"}  # by axis or thruster, as the library has them
-NAMED_SINCE = {"sticky_thruster": "thruster_sticking", "water_leak": "buoyancy_drift"}  # what a plant holds for foreign and the library has learnt
+NAMED_SINCE = {  # what a plant holds for foreign and the library has learnt
+    "sticky_thruster": "thruster_sticking", "water_leak": "buoyancy_drift", "manipulator": "moving_tool",
+}  # fmt: skip
 EARLY_S = 10.0  # an onset within the first window is no onset to a diagnosis in windows of 10 s
 MAIN_AXIS = 0.5  # an axis belongs to an effect that pushes it at least half as hard as its hardest
 SAME_INERTIA = {"added_mass": "inertia_error", "inertia_error": "added_mass"}  # one law about roll, pitch and yaw

@@ -2,7 +2,7 @@
 
 Resistance along an axis is a |v|^(n-1) v with n and a such that it equals the sheet's at working speed and at half of it: a friction coefficient
 that falls with a power of the Reynolds number (Hoerner 1965, ch. 2). Sway and heave are taken at five Gauss points along the hull (cross-flow
-principle, Faltinsen 1990, 6.1), so that slipping and turning act on each other; the strips carry `STRIP_SHARE` of the sheet's drag of turning.
+principle, Faltinsen 1990, 6.1), so that slipping and turning act on each other: by `STRIP_SHARE` of the sheet's drag of turning, at working speed.
 """
 
 from __future__ import annotations
@@ -11,12 +11,14 @@ import copy
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import brentq
 
 from rovval.blind.plant.spec import Array
 from rovval.blind.second.sheet import TURN_RAD_S, Sheet
 
 NODES, WEIGHTS = (x.tolist() for x in np.polynomial.legendre.leggauss(5))
 STRIP_SHARE = 0.03  # of the drag of turning (chosen): more of it would couple slip and turn by more than a file within tolerance may be off
+SLIP = 0.6  # of the working speed: how fast a vehicle at work goes sideways or down (as the pilots ask for it)
 
 
 @dataclass(slots=True)
@@ -81,13 +83,20 @@ def law(first: float, half: float, speed: float) -> tuple[float, float]:
 
 
 def _turning(sheet: Sheet, axis: int, level: float, power: float) -> tuple[float, float, float]:
-    """Half-length of the strips, and level and power of what else resists a turn about ``axis``."""
-    wanted = STRIP_SHARE * sheet.drag(axis, TURN_RAD_S)
-    each = sum(0.5 * w * abs(x) ** (power + 1.0) for x, w in zip(NODES, WEIGHTS, strict=True)) * level
-    if wanted <= 0.0 or each <= 0.0:
-        return 0.0, 0.0, 2.0
-    span = min(sheet.half_length, (wanted / (each * TURN_RAD_S**power)) ** (1.0 / (power + 1.0)))
-    rest = [sheet.drag(axis, rate) - each * span ** (power + 1.0) * rate**power for rate in (TURN_RAD_S, TURN_RAD_S / 2.0)]
+    """Half-length of the strips, and level and power of what else resists a turn about ``axis``; none of it where the sheet has none."""
+
+    def strips(span: float, slip: float, rate: float) -> float:
+        """Moment of the strips against a turn at ``rate`` while they slip."""
+        speeds = [(w, x * span, slip + x * span * rate) for x, w in zip(NODES, WEIGHTS, strict=True)]
+        return float(sum(0.5 * w * x * level * abs(v) ** (power - 1.0) * v for w, x, v in speeds if v))
+
+    def beyond(span: float) -> float:
+        return strips(span, SLIP * sheet.cruise, TURN_RAD_S) - STRIP_SHARE * sheet.drag(axis, TURN_RAD_S)
+
+    if level <= 0.0 or sheet.drag(axis, TURN_RAD_S) <= 0.0:
+        return 0.0, *law(sheet.drag(axis, TURN_RAD_S), sheet.drag(axis, TURN_RAD_S / 2.0), TURN_RAD_S)
+    span = sheet.half_length if beyond(sheet.half_length) < 0.0 else float(brentq(beyond, 0.0, sheet.half_length))
+    rest = [sheet.drag(axis, rate) - strips(span, 0.0, rate) for rate in (TURN_RAD_S, TURN_RAD_S / 2.0)]
     return span, *law(rest[0], rest[1], TURN_RAD_S)
 
 

@@ -110,12 +110,17 @@ def standard_errors(problem: Problem, fitted: HypothesisFit, fixed: Sequence[int
     free, bread = np.array([c not in fixed for c in point.columns]), np.zeros_like(point.curvature)
     bread[np.ix_(free, free)] = np.linalg.inv(point.curvature[np.ix_(free, free)])
     score = point.total.b - np.einsum("wij,j->wi", point.total.A, point.solve(point.curvature, point.descent))
-    score -= score.mean(axis=0)  # not zero on a bound, which takes up the rest
-    pairs = score[: len(score) // 2 * 2].reshape(-1, 2, len(bread)).sum(axis=1)
-    half = bread[:k] @ pairs.T
-    sandwich = (half**2).sum(axis=1) * (len(score) / max(2 * len(pairs), 1)) * len(pairs) / max(len(pairs) - k, 1)
+    sandwich = sandwich_variance(bread[:k], score - score.mean(axis=0))  # the mean is not zero on a bound, which takes up the rest
     by_tolerance = problem.tempering * (bread[:k, k:] ** 2 @ point.precision[k:])
     return np.asarray(np.sqrt(np.maximum(sandwich + by_tolerance, problem.design_effect * np.diag(bread)[:k])))
+
+
+def sandwich_variance(bread: Array, score: Array) -> Array:
+    """Variances (k,) of estimates by the sandwich formula (White 1982): ``bread`` (k, p), rows of the inverse curvature; ``score`` (m, p) of each window,
+    summed over pairs of neighbours."""
+    pairs = score[: len(score) // 2 * 2].reshape(-1, 2, score.shape[1]).sum(axis=1)
+    of_pairs = ((bread @ pairs.T) ** 2).sum(axis=1) * (len(score) / max(2 * len(pairs), 1))
+    return np.asarray(of_pairs * len(pairs) / max(len(pairs) - len(bread), 1))
 
 
 def only_places(problem: Problem, slot: int) -> bool:

@@ -10,10 +10,11 @@ from rovval.core.data import Array
 from rovval.diagnose.criteria import GROUP_NAMES, PARAMETER_FORM_ERROR
 from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
+from rovval.diagnose.inference.heterogeneity import ByRun, by_run
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, confidence_interval, fit_quickly, standard_errors
 from rovval.diagnose.inference.shrinkage import shrinkage
 from rovval.diagnose.problem.problem import Problem
-from rovval.diagnose.result.diagnosis import Cause, Parameter, Shrinkage
+from rovval.diagnose.result.diagnosis import Cause, Parameter, RunValue, Shrinkage
 
 
 def causes(problem: Problem, decision: Decision, before: list[Array], since: float | None, seed: int) -> tuple[Cause, ...]:
@@ -67,12 +68,23 @@ def _cause(problem: Problem, decision: Decision, h: Hypothesis, before: list[Arr
 
 def _parameters(problem: Problem, fitted: HypothesisFit, h: Hypothesis) -> dict[str, Parameter]:
     """Values of the joint fit; their intervals add the form error of the equations and stay within the parameters' bounds."""
-    found, error = dict[str, Parameter](), standard_errors(problem, fitted)
+    found, error, each = dict[str, Parameter](), standard_errors(problem, fitted), by_run(problem, fitted)
     for slot in h.slots:
         p, value = problem.plant.slots[slot].parameter, float(fitted.beta[slot])
         form = PARAMETER_FORM_ERROR * abs(value - float(problem.origin[slot]))
         low, high = confidence_interval(value, float(np.hypot(error[fitted.slots.index(slot)], form)), problem.window_count)
         found[p.name] = Parameter(
-            value=value, low=max(low, p.low), high=min(high, p.high), unit=p.unit, null=p.null, at_bound=slot in fitted.at_bound
-        )
+            value=value, low=max(low, p.low), high=min(high, p.high), unit=p.unit, null=p.null, at_bound=slot in fitted.at_bound,
+            by_run=_run_values(problem, each[slot]) if slot in each else {}, homogeneity=each[slot].homogeneity if slot in each else None,
+        )  # fmt: skip
+    return found
+
+
+def _run_values(problem: Problem, each: ByRun) -> dict[str, RunValue]:
+    """What the runs say that say something, by their ids."""
+    found = dict[str, RunValue]()
+    for i, part in enumerate(problem.runs):
+        if np.isfinite(each.values[i]):
+            low, high = confidence_interval(float(each.values[i]), float(each.errors[i]), part.count)
+            found[part.run.id] = RunValue(value=float(each.values[i]), low=low, high=high)
     return found

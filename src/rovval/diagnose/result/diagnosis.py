@@ -93,6 +93,12 @@ class Shrinkage(Reduction):
     held_out: bool = Field(default=True, description="whether it was scored on data left out of the fit")
 
 
+class RunValue(Interval):
+    """A parameter of a cause as one of several runs has it."""
+
+    value: float = Field(description="estimate, in the parameter's unit")
+
+
 class Parameter(Interval):
     """A parameter of a cause, from the joint fit of all causes."""
 
@@ -100,6 +106,12 @@ class Parameter(Interval):
     unit: str = Field(description="unit of value, low, high and null; 1 for a ratio")
     null: float | None = Field(default=None, description="value at which the effect changes nothing")
     at_bound: bool = Field(default=False, description="whether the fit rests at a bound of the parameter")
+    by_run: Mapping[str, RunValue] = Field(
+        default_factory=dict, description="what each of several runs says of it, the vehicle's file as all of them have it; runs that say something"
+    )
+    homogeneity: float | None = Field(
+        default=None, description="probability that runs which share one value differ by as much (Cochran 1954); null where fewer than two say something"
+    )
 
 
 class Cause(Record):

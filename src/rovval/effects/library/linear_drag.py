@@ -9,18 +9,13 @@ import numpy as np
 
 from rovval.core.channels import AXES
 from rovval.effects.effect import TOGETHER, Effect, Parameter, Tolerance
-from rovval.effects.lanes import Array, Lanes, reference_drag
-from rovval.vehicle.model import Vehicle, as_matrix
-
-SPLIT = 0.3  # m/s, rad/s: drag is known as a whole at such a working speed; how much of it is linear is off by as much as that (chosen)
-UNKNOWN = 0.5  # m/s, rad/s: the same for an axis without linear drag in the file, where nobody has measured it (chosen)
+from rovval.effects.lanes import Array, Lanes, drag_tolerances, reference_drag
+from rovval.vehicle.model import Vehicle
 
 
 def _tolerance(parameter: Parameter, vehicle: Vehicle, axis: str) -> float:
     """Relative, of the linear drag that ``scale`` refers to."""
-    i, (linear, quadratic) = AXES.index(axis), reference_drag(vehicle)
-    known = np.diag(as_matrix(vehicle.body.linear_drag))[i] > 0
-    return float(1.0 + (SPLIT if known else UNKNOWN) * quadratic[i] / linear[i])
+    return float(drag_tolerances(vehicle)[0][AXES.index(axis)])
 
 
 EFFECT = Effect(

@@ -9,7 +9,14 @@ import numpy as np
 
 from rovval.core.channels import AXES
 from rovval.effects.effect import TOGETHER, Effect, Parameter, Tolerance
-from rovval.effects.lanes import Array, Lanes, reference_drag
+from rovval.effects.lanes import Array, Lanes, drag_tolerances, reference_drag
+from rovval.vehicle.model import Vehicle
+
+
+def _tolerance(parameter: Parameter, vehicle: Vehicle, axis: str) -> float:
+    """Relative, of the quadratic drag that ``scale`` refers to."""
+    return float(drag_tolerances(vehicle)[1][AXES.index(axis)])
+
 
 EFFECT = Effect(
     name="quadratic_drag",
@@ -24,7 +31,8 @@ EFFECT = Effect(
     parameters=(
         Parameter(
             "scale", "1", -0.95, 9.0, 0.0, 0.3, "published BlueROV2 surge values run from 18 (Wu 2018) to 141 N s2/m2 (von Benzon 2022)",
-            vanishes_at="low", tolerance=Tolerance(1.0, "the declared calibration tolerance itself", loop_gain=1.0),
+            vanishes_at="low",
+            tolerance=Tolerance(_tolerance, "the calibration tolerance, and how much of a drag that is known as a whole is quadratic (chosen)", loop_gain=1.0),
         ),
     ),
     per="axis",

@@ -7,11 +7,12 @@ from collections.abc import Mapping
 from rovval import effects
 from rovval.core.units import in_degrees
 from rovval.diagnose.result.diagnosis import AxisGap, Cause, Coefficient, Diagnosis, GapSlice, Parameter, SensorFault, Shrinkage
-from rovval.report.common.numbers import MISSING, estimate, number, per_cent, share
+from rovval.report.common.numbers import MISSING, estimate, number, per_cent, probability, share
 from rovval.report.diagnosis.plain import falls_to, regime, remaining
 
 SCOPE = "Every number is about this simulator, this log and this library of effects."
 SQUARED = "Errors are told as rms. Shares of the gap are of squared errors, which add up: an error that falls to a half leaves a quarter of them."
+RUNS_DIFFER = 0.01  # probability that runs of one value differ by as much, below which the reader is asked what changed (chosen)
 UNMOVED = 0.005  # of the squared gap: a change that rounds to nothing
 
 
@@ -28,6 +29,20 @@ def group(cause: Cause) -> list[str]:
 def parameter(name: str, p: Parameter | Coefficient | SensorFault) -> str:
     """loss = 0.299 [0.241, 0.358]."""
     return f"{name} = {estimate(p.value, p.low, p.high, p.unit)}"
+
+
+def runs(name: str, p: Parameter) -> str:
+    """What each of several runs says of a parameter, and whether they agree; empty for one run.
+
+    loss by run: dive_1 0.299 [0.241, 0.358], dive_2 0.31 [0.25, 0.37]; runs of one value would differ as much with probability 0.64.
+    """
+    if not p.by_run:
+        return ""
+    said = f"{name} by run: " + ", ".join(f"{run} {estimate(v.value, v.low, v.high, p.unit)}" for run, v in p.by_run.items())
+    if p.homogeneity is None:
+        return f"{said}; the other runs say too little of it"
+    differ = f"runs of one value would differ as much with probability {probability(p.homogeneity)}"
+    return f"{said}; {differ}" + (": what changed between these runs?" if p.homogeneity < RUNS_DIFFER else "")
 
 
 def moved(parameters: Mapping[str, Parameter]) -> Mapping[str, Parameter]:
