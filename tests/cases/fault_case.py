@@ -26,7 +26,8 @@ LOGS = 4
 CATALOGUE = "archive/catalogue"
 NIGHTLY = ("index.html", "summary.json")  # written anew each night, with its time
 KEPT_APART = (".lock", ".locks", ".shared", ".hashes.json", ".damaged")  # of one place and time, or of no night
-OF_THE_TIME = ("when", "evaluated")
+OF_THE_TIME = ("when", "evaluated", "digest")  # the last is a record's own, of all its steps
+WRITTEN = 1767225600  # 2026-01-01
 PATIENCE_S = 300.0  # a batch of `LOGS` logs takes some seconds; more than so long, and it hangs
 
 
@@ -62,6 +63,11 @@ class Night:
         """What a kill has left half-written."""
         return [name for name in self.files() if is_left_over(name)]
 
+    def holder(self) -> str:
+        """What the lock says of who has it."""
+        lock = self.folder / "reports" / ".lock"
+        return lock.read_text() if lock.exists() else ""
+
     def files(self) -> dict[str, bytes]:
         found = {}
         for part in ("archive", "reports"):
@@ -81,6 +87,10 @@ class Night:
                 for row in pl.read_parquet(io.BytesIO(content)).to_dicts():
                     rows += 1
                     results[f"{CATALOGUE}/{row['run']}"] = digest(row)
+            elif name.endswith("/record.json"):  # step by step, as it is written
+                record = json.loads(content)
+                results |= {f"{name}: {step}": digest(facts) for step, facts in record.pop("steps").items()}
+                results[name] = digest(record)
             else:
                 results[name] = digest(json.loads(content)) if "/quarantine/" in name else hashlib.sha256(content).hexdigest()
         return results, rows
@@ -95,9 +105,9 @@ def digest(document: dict[str, Any]) -> str:
 
 
 def logs_in(folder: Path, number: int = LOGS) -> Path:
-    """A folder of so many small logs."""
+    """A folder of so many small logs, which know no date: their files' time of change stands for it."""
     for seed in range(number):
-        batch_case.write_log(folder / f"{seed}.csv", seed=seed)
+        os.utime(batch_case.write_log(folder / f"{seed}.csv", seed=seed), (WRITTEN, WRITTEN))
     return folder
 
 
@@ -168,9 +178,8 @@ def at_work(night: Night, process: subprocess.Popen[bytes]) -> None:
     """Wait until the batch has begun: it has the lock, and has said so."""
     deadline = time.monotonic() + PATIENCE_S
     while process.poll() is None and time.monotonic() < deadline:
-        with suppress(FileNotFoundError):
-            if (night.folder / "reports" / ".lock").read_text() == str(process.pid):
-                return
+        if str(process.pid) in night.holder().split():
+            return
         time.sleep(0.005)
 
 
@@ -198,12 +207,23 @@ def everything(process: subprocess.Popen[bytes], _chance: random.Random) -> bool
 def worker(process: subprocess.Popen[bytes], chance: random.Random) -> bool:
     """Kill -9 of one worker, if there is one; the batch goes on."""
     workers = [grandchild for child in children(process.pid) for grandchild in children(child)]
-    if not workers:
+    return bool(workers) and killed(chance.choice(workers))
+
+
+def killed(process: int) -> bool:
+    """Whether that process was there to be killed."""
+    try:
+        os.kill(process, signal.SIGKILL)
+    except ProcessLookupError:
         return False
-    with suppress(ProcessLookupError):
-        os.kill(chance.choice(workers), signal.SIGKILL)
-        return True
-    return False
+    return True
+
+
+def command_line(process: int) -> str:
+    """How a process was started; "" where it is gone."""
+    with suppress(FileNotFoundError, ProcessLookupError):
+        return Path(f"/proc/{process}/cmdline").read_text()
+    return ""
 
 
 def children(process: int) -> list[int]:

@@ -61,6 +61,30 @@ def objects(prefix: str = "") -> dict[str, int]:
     return {found["Key"]: found["Size"] for page in pages for found in page.get("Contents", ())}
 
 
+def content(key: str) -> bytes | None:
+    """What an object holds; None where it is not there."""
+    import boto3
+
+    store = boto3.client("s3")
+    try:
+        held: bytes = store.get_object(Bucket=BUCKET, Key=key)["Body"].read()
+    except store.exceptions.NoSuchKey:
+        return None
+    return held
+
+
+def put(key: str, content: bytes) -> None:
+    import boto3
+
+    boto3.client("s3").put_object(Bucket=BUCKET, Key=key, Body=content)
+
+
+def remove(key: str) -> None:
+    import boto3
+
+    boto3.client("s3").delete_object(Bucket=BUCKET, Key=key)
+
+
 def write_site(folder: Path, prefix: str, logs: int = 3, *lines: str, steps: str = '["ingest"]') -> Path:
     """A pipeline file on this machine over s3://BUCKET/prefix: so many logs, archive, reports."""
     root = f"s3://{BUCKET}/{prefix}"

@@ -24,3 +24,11 @@ def test_what_a_batch_holds_of_a_record_says_all_that_the_record_says():
     assert said[0] == said[1] and len(said[0]["tolerances_exceeded"]) == len(limits) > 0
     assert html.text(said[0], [record]) == html.text(said[1], [brief(record)])
     assert len(json.dumps(brief(record))) < len(json.dumps(record)) / 3
+
+
+def test_records_share_the_names_that_all_of_them_have():
+    """A thousand records held a thousand copies of each name; most of their memory was that."""
+    text = json.dumps({"log": "d.csv", "run": "d-ab", "steps": {"ingest": {"key": "k", "outputs": ["a", "r.html"], "code": "c", "files": {"a": {"bytes": 9}}}}})
+    one, other = brief(json.loads(text)), brief(json.loads(text))
+    assert one == {"log": "d.csv", "run": "d-ab", "steps": {"ingest": {"outputs": ["r.html"], "code": "c"}}}
+    assert all(mine is theirs for mine, theirs in zip(one["steps"]["ingest"], other["steps"]["ingest"], strict=True))

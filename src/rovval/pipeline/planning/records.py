@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from rovval.storage.places import named
 
 RECORD = "record.json"
 DIGEST = "digest"
+CHECKED = ("key", "files")  # facts of a step that only the plan asks for
 
 
 def read_record(folder: Path) -> dict[str, Any] | None:
@@ -44,16 +46,33 @@ def read_quarantine(path: Path) -> dict[str, Any] | None:
 
 
 def brief(record: Mapping[str, Any]) -> Mapping[str, Any]:
-    """What of a record the summary, the catalogue and the page of a batch are made of, a fifth of it: a batch holds one of every log at once."""
-    compared = record["steps"].get("compare")
-    if not compared:
-        return record
+    """What of a record the summary, the catalogue and the page of a batch are made of, a tenth of it: a batch holds one of every log at once, and
+    the names that all of them have once."""
+    steps = {step: {name: fact for name, fact in facts.items() if name not in CHECKED} for step, facts in record["steps"].items()}
+    for facts in steps.values():
+        facts["outputs"] = [place for place in facts["outputs"] if place.endswith(".html")]
+    if "compare" in steps:
+        steps["compare"] = _compared(steps["compare"])
+    shared: Mapping[str, Any] = _interned({**record, "steps": steps})
+    return shared
+
+
+def _compared(compared: Mapping[str, Any]) -> dict[str, Any]:
     whole = compared["comparison"]
     kept = {name: whole[name] for name in ("vehicle", "stops", "findings") if name in whole}
     kept["axes"] = _only(whole["axes"], (*tolerances.FREE, "unit"))
     if window := whole.get("window"):
         kept["window"] = {"seconds": window["seconds"], "axes": _only(window["axes"], (*tolerances.WINDOWED, "unit"))}
-    return {**record, "steps": {**record["steps"], "compare": {**compared, "comparison": kept}}}
+    return {**compared, "comparison": kept}
+
+
+def _interned(fact: Any) -> Any:
+    """The same with every text held once, however many records have it."""
+    if isinstance(fact, dict):
+        return {sys.intern(name): _interned(value) for name, value in fact.items()}
+    if isinstance(fact, list):
+        return [_interned(value) for value in fact]
+    return sys.intern(fact) if type(fact) is str else fact
 
 
 def _only(axes: Mapping[str, Mapping[str, Any]], names: Sequence[str]) -> dict[str, dict[str, Any]]:
