@@ -28,7 +28,7 @@ NIGHTLY = ("index.html", "summary.json")  # written anew each night, with its ti
 KEPT_APART = (".lock", ".locks", ".shared", ".hashes.json", ".damaged")  # of one place and time, or of no night
 OF_THE_TIME = ("when", "evaluated", "digest")  # the last is a record's own, of all its steps
 WRITTEN = 1767225600  # 2026-01-01
-PATIENCE_S = 300.0  # a batch of `LOGS` logs takes some seconds; more than so long, and it hangs
+PATIENCE_S = 600.0  # a batch of `LOGS` logs takes some seconds; more than so long, and it hangs
 
 
 class Night:

@@ -108,11 +108,17 @@ def json_text(document: dict[str, Any]) -> str:
 
 def read_json(path: Path) -> dict[str, Any] | None:
     """A JSON object; None where there is none, or what lies there is damaged."""
+    return read_json_with_text(path)[0]
+
+
+def read_json_with_text(path: Path) -> tuple[dict[str, Any] | None, str]:
+    """As `read_json`, and the text that it was read from."""
     try:
-        document = json.loads(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
+        document = json.loads(text)
     except (FileNotFoundError, IsADirectoryError, ValueError, RecursionError):
-        return None
-    return document if isinstance(document, dict) else None
+        return None, ""
+    return (document if isinstance(document, dict) else None), text
 
 
 def sweep(root: Path) -> None:

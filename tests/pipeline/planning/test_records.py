@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 
 import report_cases
 
 from rovval.comparison import compare
 from rovval.pipeline.keeping import summary
-from rovval.pipeline.planning.records import brief
+from rovval.pipeline.planning.records import RECORD, brief, read_record, write_record
 from rovval.report.batch import html
 from rovval.report.comparison.json import document
 
@@ -32,3 +33,19 @@ def test_records_share_the_names_that_all_of_them_have():
     one, other = brief(json.loads(text)), brief(json.loads(text))
     assert one == {"log": "d.csv", "run": "d-ab", "steps": {"ingest": {"outputs": ["r.html"], "code": "c"}}}
     assert all(mine is theirs for mine, theirs in zip(one["steps"]["ingest"], other["steps"]["ingest"], strict=True))
+
+
+def test_a_record_is_as_it_was_written_or_none(tmp_path):
+    """Also one whose digest an older rovval took of its content, and one of before there were digests."""
+    record = {"log": 'a "digest": "x', "run": "d-ab", "steps": {"ingest": {"key": "k", "outputs": []}}}
+    write_record(tmp_path, record)
+    file = tmp_path / RECORD
+    text = file.read_text()
+    assert read_record(tmp_path) == record
+    for changed in (text.replace("d-ab", "d-ac"), text.replace('"steps"', ' "steps"'), text.replace('"k"', '"k", "l": 1'), text[:-2]):
+        file.write_text(changed)
+        assert changed != text and read_record(tmp_path) is None
+    older = hashlib.sha256(json.dumps(record, sort_keys=True).encode()).hexdigest()
+    for kept in ({"digest": older}, {}):
+        file.write_text(json.dumps({**record, **kept}))
+        assert read_record(tmp_path) == record

@@ -10,19 +10,23 @@ from pathlib import Path
 from typing import Any
 
 from rovval.pipeline import tolerances
-from rovval.storage.atomic import read_json, write_json
+from rovval.storage.atomic import json_text, read_json, read_json_with_text, write_text
 from rovval.storage.contents import damage
 from rovval.storage.places import named
 
 RECORD = "record.json"
 DIGEST = "digest"
+MARK, NO_DIGEST = f'"{DIGEST}": "', "0" * 64
 CHECKED = ("key", "files")  # facts of a step that only the plan asks for
 
 
 def read_record(folder: Path) -> dict[str, Any] | None:
     """The record of the log whose reports lie in ``folder``; None where there is none or it is damaged."""
-    record = read_json(folder / RECORD)
-    if record is None or record.pop(DIGEST, None) not in (None, _digest(record)):  # one of an older rovval has no digest
+    record, text = read_json_with_text(folder / RECORD)
+    if record is None:
+        return None
+    digest = record.pop(DIGEST, None)
+    if digest is not None and digest != _digest_of_text(text) and digest != _digest_of_older(record):  # one of a still older rovval has none
         return None
     steps = record.get("steps")
     sound = isinstance(steps, dict) and all(isinstance(s, dict) and {"key", "outputs"} <= s.keys() for s in steps.values())
@@ -35,8 +39,10 @@ def is_damaged(folder: Path) -> bool:
 
 
 def write_record(folder: Path, record: Mapping[str, Any]) -> None:
-    """Write it with its digest."""
-    write_json(folder / RECORD, {**record, DIGEST: _digest(record)})
+    """Write it with its digest: that of its text, as a reader has it; that of its content took two thirds of the time of reading a record."""
+    text = json_text({**record, DIGEST: NO_DIGEST})
+    before, mark, after = text.rpartition(MARK)
+    write_text(folder / RECORD, before + mark + _digest_of_text(text) + after[len(NO_DIGEST) :])
 
 
 def read_quarantine(path: Path) -> dict[str, Any] | None:
@@ -86,5 +92,11 @@ def outputs_whole(step: Mapping[str, Any], reports: Path, digests: bool = False)
     return not damage(step["files"], reports, digests)
 
 
-def _digest(record: Mapping[str, Any]) -> str:
+def _digest_of_text(text: str) -> str:
+    """That of a record's text, of which its digest is the last entry, with zeros in the place of that."""
+    before, mark, after = text.rpartition(MARK)
+    return hashlib.sha256((before + mark + NO_DIGEST + after[len(NO_DIGEST) :]).encode()).hexdigest()
+
+
+def _digest_of_older(record: Mapping[str, Any]) -> str:
     return hashlib.sha256(json.dumps(record, sort_keys=True).encode()).hexdigest()
