@@ -84,9 +84,11 @@ def test_two_workers_and_dask(tmp_path):
     import dask_case
 
     logs = site(tmp_path / "site", SIDE_BY_SIDE).parent / "logs"
-    night, took, left = fault_case.Night(tmp_path / "night", logs, STEPS), {}, {}
+    night = fault_case.Night(tmp_path / "night", logs, STEPS)
+    took: dict[str, float] = {}
+    left: dict[str, str] = {}
     with dask_case.cluster(2) as made:
-        ways = {"one worker": {"workers": 1}, "two workers": {"workers": 2}, "Dask, two workers": {"scheduler": made.address}}
+        ways: dict[str, dict[str, Any]] = {"one worker": {"workers": 1}, "two workers": {"workers": 2}, "Dask, two workers": {"scheduler": made.address}}
         for _ in range(2):
             for way, how in ways.items():
                 night.wipe()
