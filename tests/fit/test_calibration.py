@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from html import unescape
 
 import numpy as np
 import pytest
@@ -13,8 +14,9 @@ from rovval.core.errors import BadInput
 from rovval.fit.calibration import Calibration, calibrate
 from rovval.fit.record import record
 from rovval.fit.unknowns import applied, unknowns
-from rovval.report.fit import text
+from rovval.report.fit import html, text
 from rovval.simulation import simulate
+from rovval.simulation.fitted_commands import beyond_fitted, fitted
 from rovval.vehicle import parse
 from rovval.vehicle.model import Vehicle
 from rovval.vehicle.write import to_toml
@@ -58,12 +60,33 @@ def test_a_second_calibration_changes_nothing():
     again = calibrate([dive(1)], parse(to_toml(done().vehicle), "calibrated"))
     moved = {row.unknown.key: abs(np.log(row.value) if row.unknown.kind == "factor" else row.value) / row.unknown.sd for row in again.rows}
     assert max(moved.values()) < 0.05, moved
+    assert fitted(again.vehicle) == fitted(done().vehicle), "nor what it was driven with"
+
+
+def test_the_written_vehicle_knows_how_far_it_was_driven_in_its_logs():
+    written = parse(to_toml(done().vehicle), "calibrated")
+    speed = 60.0 * dive(1).stack(tuple(f"n:{name}" for name in merlin().thrusters))
+    for name, ahead, astern in zip(merlin().thrusters, np.nanmax(speed, axis=0), np.nanmin(speed, axis=0), strict=True):
+        assert fitted(written)[f"command.ahead[{name}]"] == pytest.approx(max(ahead, 0.0), abs=0.1)
+        assert fitted(written)[f"command.astern[{name}]"] == pytest.approx(max(-astern, 0.0), abs=0.1)
+    assert beyond_fitted(dive(1), written) == ()
 
 
 def test_what_the_logs_do_not_show_is_said_to_be_held_by_its_prior():
     held = {row.unknown.key for row in done().rows if not row.shown}
     assert held
     assert all(key in text(done().document()) for key in held)
+    page = unescape(html(done().document())).partition("Held by their prior")[2].partition("</section>")[0]
+    assert all(row.unknown.manoeuvre in page for row in done().rows if not row.shown)
+
+
+def test_correlations_are_those_of_a_covariance():
+    found = np.array(done().matrix)
+    assert found.shape == (len(done().rows),) * 2
+    assert np.allclose(np.diag(found), 1.0)
+    assert np.linalg.eigvalsh(found).min() > 0
+    close = {frozenset((done().rows[i].unknown.key, done().rows[j].unknown.key)) for i, j in zip(*np.nonzero(np.abs(np.tril(found, -1)) >= 0.7), strict=True)}
+    assert close == {frozenset(pair[:2]) for pair in done().correlations}
 
 
 def test_every_log_that_cannot_be_used_is_told_and_none_at_all_is_refused():

@@ -23,6 +23,7 @@ from rovval.fit.record import Record, record, residual
 from rovval.fit.unknowns import Unknown, applied, unknowns
 from rovval.plant import Plant, parse_settings
 from rovval.simulation import carried_effects, simulate
+from rovval.simulation.fitted_commands import Excess, excesses, fitted, largest
 from rovval.simulation.step import steps_a_sample
 from rovval.vehicle.model import Vehicle
 
@@ -36,13 +37,14 @@ Progress = Callable[[str, float], None]
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One unknown: ``value`` beside the file as it was given (a factor, or an offset in ``unit``) with its 90 % interval, ``moved`` from its prior's mean in
-    standard deviations of the prior, and whether the logs ``show`` it or the prior holds it."""
+    """One unknown: ``value`` beside the file as it was given (a factor, or an offset in ``unit``) with its 90 % interval and standard ``error`` (of a
+    factor's logarithm), ``moved`` from its prior's mean in standard deviations of the prior, and whether the logs ``show`` it or the prior holds it."""
 
     unknown: Unknown
     value: float
     low: float
     high: float
+    error: float
     moved: float
     shown: bool
 
@@ -63,20 +65,23 @@ class AxisError:
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """The calibrated ``vehicle``; its unknowns; pairs of them that go together, with their correlation; errors of free runs; of each of the ``options``
-    the change of twice the log likelihood of every run left out, and which were ``accepted``; whether the search ``converged``; logs ``left_out``."""
+    """The calibrated ``vehicle``; its unknowns; the ``matrix`` (k, k) of their correlations, and pairs of them that go together; errors of free runs; of
+    each of the ``options`` the change of twice the log likelihood of every run left out, and which were ``accepted``; whether the search ``converged``;
+    logs ``left_out``; thrusters that a run drives further than the runs that it was predicted from (``extrapolated``)."""
 
     vehicle: Vehicle
     rows: tuple[Row, ...]
+    matrix: tuple[tuple[float, ...], ...]
     correlations: tuple[tuple[str, str, float], ...]
     errors: tuple[AxisError, ...]
     options: Mapping[str, tuple[float, ...]]
     accepted: tuple[str, ...]
     converged: bool
     left_out: tuple[str, ...]
+    extrapolated: tuple[tuple[str, Excess], ...] = ()
 
     def document(self) -> dict[str, Any]:
-        """The same as JSON (schema rovval.calibration/1), factors of the file's numbers and offsets in SI."""
+        """The same as JSON (schema rovval.calibration/1), factors of the file's numbers and offsets in SI, commands in rpm."""
         return {
             "schema": "rovval.calibration/1",
             "rovval": __version__,
@@ -86,16 +91,23 @@ class Calibration:
             "unknowns": {
                 one.unknown.key: {
                     "kind": one.unknown.kind, "value": one.value, "low": one.low, "high": one.high, "unit": one.unknown.unit,
-                    "meaning": one.unknown.meaning, "moved": one.moved, "shown": one.shown,
+                    "meaning": one.unknown.meaning, "moved": one.moved, "shown": one.shown, "standard_error": one.error, "prior": one.unknown.sd,
+                    "manoeuvre": one.unknown.manoeuvre,
                 }
                 for one in self.rows
             },
+            "matrix": [list(row) for row in self.matrix],
             "correlations": [{"of": [a, b], "value": value} for a, b, value in self.correlations],
             "free_run": [
                 {"run": e.run, "axis": e.axis, "unit": e.unit, "given": e.given, "calibrated": e.calibrated, "left_out": e.left_out, "n": e.rows}
                 for e in self.errors
             ],
             "options": [{"name": name, "gain": list(by_run), "accepted": name in self.accepted} for name, by_run in self.options.items()],
+            "commands": dict(fitted(self.vehicle)),
+            "extrapolated": [
+                {"run": run, "thruster": e.thruster, "way": e.way, "rpm": e.worst, "others": e.limit, "rows": e.count, "n": e.rows}
+                for run, e in self.extrapolated
+            ],
             "converged": self.converged,
             "left_out": list(self.left_out),
         }  # fmt: skip
@@ -130,11 +142,13 @@ def calibrate(runs: Sequence[Run], vehicle: Vehicle, *, model: str = "fossen", w
             if min(gains[name]) > 0:
                 estimate, chosen, predicted = _estimate(records, vehicle, wider, model, (start,)), wider, better
     say("simulating the logs with the calibrated vehicle", 0.8)
-    calibrated = applied(vehicle, chosen, estimate.values)
+    calibrated = _remembering(applied(vehicle, chosen, estimate.values), records)
     errors = _errors(records, vehicle, calibrated, chosen, model, estimate.values)
     accepted = tuple(name for name, by_run in gains.items() if min(by_run) > 0)
     rows = tuple(_row(vehicle, one, estimate, i) for i, one in enumerate(chosen))
-    return Calibration(calibrated, rows, _pairs(chosen, estimate), errors, gains, accepted, estimate.converged, left_out)
+    matrix = tuple(tuple(float(value) for value in row) for row in estimate.correlation)
+    further = _extrapolated(records, vehicle)
+    return Calibration(calibrated, rows, matrix, _pairs(chosen, estimate), errors, gains, accepted, estimate.converged, left_out, further)
 
 
 def _records(runs: Sequence[Run], vehicle: Vehicle, window_s: float) -> tuple[tuple[Record, ...], tuple[str, ...]]:
@@ -153,6 +167,24 @@ def _records(runs: Sequence[Run], vehicle: Vehicle, window_s: float) -> tuple[tu
 def _channels(records: Sequence[Record]) -> tuple[str, ...]:
     """Channels that some run holds."""
     return tuple(c for c in (*VELOCITIES, "phi", "theta", "z") if any(one.run.measured(c) for one in records))
+
+
+def _remembering(vehicle: Vehicle, records: Sequence[Record]) -> Vehicle:
+    """The vehicle with the largest command of each thruster in its logs beside what the calibration moved: beyond them nothing was fitted."""
+    return vehicle.model_copy(update={"calibration": {**vehicle.calibration, **largest([_speed(one) for one in records], vehicle)}})
+
+
+def _extrapolated(records: Sequence[Record], vehicle: Vehicle) -> tuple[tuple[str, Excess], ...]:
+    """Thrusters of each run that go further there than in all the others, which predict it."""
+    if len(records) < 2:
+        return ()
+    limits = [largest([_speed(one) for one in _without(records, i)], vehicle) for i in range(len(records))]
+    return tuple((one.run.id, e) for one, limit in zip(records, limits, strict=True) for e in excesses(_speed(one), limit, vehicle))
+
+
+def _speed(one: Record) -> Array:
+    """Thruster speeds (n, k) rev/s of a run, where they are known."""
+    return one.actuation.inputs.speed[one.actuation.known]
 
 
 def _problem(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unknown], model: str) -> Problem:
@@ -258,7 +290,7 @@ def _row(vehicle: Vehicle, one: Unknown, estimate: Estimate, i: int) -> Row:
     value, error = float(estimate.values[i]), float(estimate.error[i])
     middle, low, high = (exp(x) if one.kind == "factor" else x for x in (value, value - QUANTILE * error, value + QUANTILE * error))
     moved = (value + vehicle.calibration.get(one.key, 0.0)) / one.sd
-    return Row(one, middle, low, high, moved, error < HELD_BY_PRIOR * one.sd)
+    return Row(one, middle, low, high, error, moved, error < HELD_BY_PRIOR * one.sd)
 
 
 def _pairs(chosen: Sequence[Unknown], estimate: Estimate) -> tuple[tuple[str, str, float], ...]:

@@ -35,6 +35,33 @@ LAG_S = 0.1  # s: where neither file nor data sheet states one; T200: 0.05 to 0.
 SPLIT = 0.1  # m/s, rad/s: speed at which a linear drag that a file leaves out is taken to equal the quadratic one, and 1 / SPLIT the other way round
 SPHERE = 0.5  # added mass of a sphere over the mass that it displaces (Lamb 1932, art. 92), where a file has none
 
+# What a log must hold for an unknown to show by itself, as pilots call it.
+KNOWN_FORCE = "a known force against the thrusters (depth held with a weighed bag hung on, or a spring balance): motion shows thrust only over mass and drag"
+GROUPS = "steps in heave by the vertical thrusters alone, beside steps in surge and sway by the horizontal ones alone"
+BOTH_WAYS = "one axis ahead and astern at the same command, each until the speed is steady"
+STEPS = "steps of command from rest and back to none, each held for some seconds"
+FREE_TILT = "steps in surge and sway with roll and pitch left free (no attitude hold)"
+COAST = "a coast-down in {0}, thrusters off until it stands: at the slow end linear drag is all that is left"
+STEADY = "steady motion in {0} at two speeds or more, the fastest near full command"
+FROM_REST = "accelerations in {0} from rest, beside steady speeds: before it moves there is no drag, and thrust over mass is all that shows"
+RIGHTED = (  # the same three where weight and buoyancy bring the vehicle back
+    "let go from a held {0} with all thrusters off: how its last, small swings die away",
+    "let go from as much {0} as the thrusters can hold: how its first, large swings die away",
+    "let go from a held {0} with all thrusters off: the period of its swings",
+)
+PENDULUM = "no motion in water, which shows only its sum with the added mass in {0}: swing the vehicle in air, or add up weighed parts"
+DRIFT = "half a minute submerged and level with all thrusters off: how it rises or sinks"
+LEVEL = "fast steady {0} with a depth sensor: a false angle is depth that changes where the attitude says it should not"
+STRAIGHT = "fast straight runs in {0} and in {1}: in a turned frame one of them shows in the other"
+SPOT = "turns on the spot in {0} and {1}: a sensor off the centre goes round it"
+TETHER = "the same runs and turns with much tether out and with little"
+SETTLES = {  # by the axis of the centre of buoyancy
+    "x": "rest with all thrusters off until pitch settles",
+    "y": "rest with all thrusters off until roll settles",
+    "z": "let go from a roll or pitch held by thrusters, all off: how fast it swings back",
+}
+TURNED = {"roll": ("sway", "heave"), "pitch": ("surge", "heave"), "yaw": ("surge", "sway")}  # axes that a turn of the sensor's frame mixes
+SWUNG = {"x": ("pitch", "yaw"), "y": ("roll", "yaw"), "z": ("roll", "pitch")}  # turns that move a sensor which is off along this axis
 
 SENSORS = {  # unknown: effect and parameter that say it in a vehicle's file
     **{f"attitude.{c}": ("attitude_bias", c) for c in ("phi", "theta")},
@@ -45,40 +72,48 @@ SENSORS = {  # unknown: effect and parameter that say it in a vehicle's file
 
 @dataclass(frozen=True, slots=True)
 class Unknown:
-    """``key`` says what and where; ``sd`` of its normal prior about 0, of the logarithm for a ``factor``, in ``unit`` for an ``offset``. ``optional``
-    ones are free only where they are asked for."""
+    """``key`` says what and where; ``sd`` of its normal prior about 0, of the logarithm for a ``factor``, in ``unit`` for an ``offset``. ``manoeuvre``
+    is what a log must hold for it to show by itself. ``optional`` ones are free only where they are asked for."""
 
     key: str
     kind: Literal["factor", "offset"]
     sd: float
     unit: str
     meaning: str
+    manoeuvre: str
     optional: bool = False
 
 
 def unknowns(vehicle: Vehicle, channels: Sequence[str]) -> tuple[Unknown, ...]:
     """What a log with these measured ``channels`` can be asked about a vehicle."""
     arm = max(float(np.linalg.norm(t.position)) for t in vehicle.thruster)
-    found = [Unknown("thrust.gain", "factor", WIDE, "1", "thrust of all thrusters")]
+    found = [Unknown("thrust.gain", "factor", WIDE, "1", "thrust of all thrusters", KNOWN_FORCE)]
     if 0 < sum(map(_vertical, vehicle.thruster)) < len(vehicle.thruster):
-        found.append(Unknown("thrust.vertical", "factor", VERTICAL, "1", "thrust of the vertical thrusters beside the horizontal ones"))
-    found.append(Unknown("thrust.astern", "factor", ASTERN, "1", "thrust astern beside ahead"))
-    found += [Unknown(f"thrust.single[{t}]", "factor", SINGLE, "1", f"thrust of {t} beside the others", True) for t in vehicle.thrusters]
-    found.append(Unknown("thrust.lag", "factor", WIDE, "1", "time constant of the thrusters' speed"))
-    found.append(Unknown("thrust.height", "offset", ARM * arm, "m", "height of the horizontal thrusters, down"))
+        found.append(Unknown("thrust.vertical", "factor", VERTICAL, "1", "thrust of the vertical thrusters beside the horizontal ones", GROUPS))
+    found.append(Unknown("thrust.astern", "factor", ASTERN, "1", "thrust astern beside ahead", BOTH_WAYS))
+    found += [
+        Unknown(f"thrust.single[{t}]", "factor", SINGLE, "1", f"thrust of {t} beside the others", f"{t} alone, ahead and astern, the others off", True)
+        for t in vehicle.thrusters
+    ]
+    found.append(Unknown("thrust.lag", "factor", WIDE, "1", "time constant of the thrusters' speed", STEPS))
+    found.append(Unknown("thrust.height", "offset", ARM * arm, "m", "height of the horizontal thrusters, down", FREE_TILT))
     for axis in AXES:
-        found.append(Unknown(f"linear_drag[{axis}]", "factor", WIDE, "1", f"linear drag in {axis}"))
-        found.append(Unknown(f"quadratic_drag[{axis}]", "factor", WIDE, "1", f"quadratic drag in {axis}"))
-        found.append(Unknown(f"added_mass[{axis}]", "factor", ADDED, "1", f"added mass in {axis}"))
-    found += [Unknown(f"inertia[{axis}]", "factor", INERTIA, "1", f"moment of inertia in {axis}") for axis in AXES[3:]]
-    found.append(Unknown("trim.buoyancy", "offset", TRIM * vehicle.weight, "N", "buoyancy beyond the file's"))
-    found += [Unknown(f"trim.centre.{c}", "offset", CENTRE * arm, "m", f"centre of buoyancy, {c}") for c in "xyz"]
+        slow, fast, jerk = (how.format(axis) for how in (RIGHTED if axis in ("roll", "pitch") else (COAST, STEADY, FROM_REST)))
+        found.append(Unknown(f"linear_drag[{axis}]", "factor", WIDE, "1", f"linear drag in {axis}", slow))
+        found.append(Unknown(f"quadratic_drag[{axis}]", "factor", WIDE, "1", f"quadratic drag in {axis}", fast))
+        found.append(Unknown(f"added_mass[{axis}]", "factor", ADDED, "1", f"added mass in {axis}", jerk))
+    found += [Unknown(f"inertia[{axis}]", "factor", INERTIA, "1", f"moment of inertia in {axis}", PENDULUM.format(axis)) for axis in AXES[3:]]
+    found.append(Unknown("trim.buoyancy", "offset", TRIM * vehicle.weight, "N", "buoyancy beyond the file's", DRIFT))
+    found += [Unknown(f"trim.centre.{c}", "offset", CENTRE * arm, "m", f"centre of buoyancy, {c}", how) for c, how in SETTLES.items()]
     if {"phi", "theta"} & set(channels):
-        found += [Unknown(f"attitude.{c}", "offset", TILT, "rad", f"{c} of the attitude sensor beside the vehicle's") for c in ("phi", "theta")]
+        found += [
+            Unknown(f"attitude.{c}", "offset", TILT, "rad", f"{c} of the attitude sensor beside the vehicle's", LEVEL.format(axis))
+            for c, axis in (("phi", "sway"), ("theta", "surge"))
+        ]
     if {"u", "v", "w"} <= set(channels):
-        found += [Unknown(f"velocity.{c}", "offset", TILT, "rad", f"{c} of the velocity sensor's frame") for c in ("roll", "pitch", "yaw")]
-        found += [Unknown(f"velocity.lever.{c}", "offset", LEVER, "m", f"place of the velocity sensor, {c}") for c in "xyz"]
-    found.append(Unknown("tether.drag", "factor", WIDE, "1", "quadratic drag of the tether where it is made fast", True))
+        found += [Unknown(f"velocity.{c}", "offset", TILT, "rad", f"{c} of the velocity sensor's frame", STRAIGHT.format(*of)) for c, of in TURNED.items()]
+        found += [Unknown(f"velocity.lever.{c}", "offset", LEVER, "m", f"place of the velocity sensor, {c}", SPOT.format(*of)) for c, of in SWUNG.items()]
+    found.append(Unknown("tether.drag", "factor", WIDE, "1", "quadratic drag of the tether where it is made fast", TETHER, True))
     return tuple(found)
 
 

@@ -29,13 +29,15 @@ def vehicle_of(run: Run, wanted: str | None) -> Vehicle:
 
 
 def checked_against(run: Run, vehicle: Vehicle) -> Run:
-    """The run with what it shows beside the vehicle's own file among its findings: speeds beyond its limits, thrusters that lack an input."""
+    """The run with what it shows beside the vehicle's own file among its findings: speeds beyond its limits or
+    beyond the logs that it was fitted on, thrusters that lack an input."""
     from dataclasses import replace
 
     from rovval.simulation.actuation import replaced_input
+    from rovval.simulation.fitted_commands import beyond_fitted
     from rovval.simulation.sanity_limits import overspeed, thrust_against_motion
 
-    beside = (*replaced_input(run, vehicle), *overspeed(run, vehicle), *thrust_against_motion(run, vehicle))
+    beside = (*replaced_input(run, vehicle), *overspeed(run, vehicle), *thrust_against_motion(run, vehicle), *beyond_fitted(run, vehicle))
     return replace(run, findings=tuple(dict.fromkeys((*run.findings, *beside))))
 
 
