@@ -43,7 +43,7 @@ def test_a_reader_tells_how_much_of_the_file_it_has_read(tmp_path, name):
 
 def test_the_time_that_is_left_is_told_once_it_can_be(monkeypatch):
     clock = iter([100.0, 101.0, 110.0])
-    monkeypatch.setattr(output.time, "monotonic", lambda: next(clock))
+    monkeypatch.setattr("rovval.cli.output.time.monotonic", lambda: next(clock))
     monkeypatch.setattr(sys, "stderr", terminal := Terminal())
     show = output.progress()
     show("fit", 0.1)
@@ -54,7 +54,7 @@ def test_the_time_that_is_left_is_told_once_it_can_be(monkeypatch):
 
 def test_a_batch_writes_lines_where_there_is_no_terminal(monkeypatch, capsys):
     clock = iter([0.0, 1.0, 2.0, 13.0, 14.0])
-    monkeypatch.setattr(output.time, "monotonic", lambda: next(clock))
+    monkeypatch.setattr("rovval.cli.output.time.monotonic", lambda: next(clock))
     show = output.progress_of_many()
     for number in range(5):
         show(f"{number + 1} of 5 logs", (number + 1) / 5)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 TERMS = {
     "gap": "the simulated minus the measured motion, in short windows that each start from the measured state",
     "window": "a stretch of the log, 10 s as a rule, that is simulated from its measured first state",
@@ -19,3 +21,34 @@ TERMS = {
     "skill": "1 - MSE / MSE of predicting no motion: 1 is perfect, 0 no better than predicting none, below 0 worse",
     "free run": "one simulation from the log's first state to its end, in which errors add up",
 }
+CLOSED = {"a", "code", "script", "style", "svg", "h1", "h2", "title", "button", "select"}  # elements in which no word becomes a link
+_TAG = re.compile(r"(<[^>]*>)")
+_NAME = re.compile(r"<(/?)(\w+)")
+_LINKED = re.compile(r'<a class="term" href="#word-([^"]+)"')
+_WORD = re.compile(rf"(?<![\w-])({'|'.join(re.escape(t) for t in sorted(TERMS, key=len, reverse=True))})(?=s?(?![\w-]))", re.IGNORECASE)
+_NAMED = {term.lower(): term for term in TERMS}
+
+
+def linked(html: str) -> str:
+    """A page of which each section links every term, where it first stands there, to its meaning at the page's foot (`#word-TERM`)."""
+    head, body, rest = html.partition("<body>")
+    text, foot, words = rest.partition('<section id="words">')
+    closed: list[str] = []
+    known: set[str] = set()
+
+    def link(found: re.Match[str]) -> str:
+        term = _NAMED[found[1].lower()]
+        if term in known:
+            return found[0]
+        known.add(term)
+        return f'<a class="term" href="#word-{term.replace(" ", "-")}">{found[0]}</a>'
+
+    parts = []
+    for part in _TAG.split(text):
+        if tag := _NAME.match(part):
+            known = set() if part.startswith("<section") else known
+            known |= {already[1].replace("-", " ") for already in [_LINKED.match(part)] if already}
+            if tag[2] in CLOSED and not part.endswith("/>"):
+                closed = [*closed, tag[2]] if not tag[1] else closed[: -1 if closed and closed[-1] == tag[2] else None]
+        parts.append(part if closed or part.startswith("<") else _WORD.sub(link, part))
+    return "".join((head, body, *parts, foot, words))

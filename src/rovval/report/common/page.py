@@ -18,7 +18,7 @@ from markupsafe import Markup, escape
 
 from rovval.core.units import DEGREE_UNITS, DEGREES, integral_unit
 from rovval.report.common import numbers
-from rovval.report.common.glossary import TERMS
+from rovval.report.common.glossary import TERMS, linked
 
 ROOM = Path(__file__).parent.parent
 EXPLAINED = ("comparison.html", "diagnosis.html")  # pages that end with the meaning of their words
@@ -30,7 +30,8 @@ def render(template: str, curves: Mapping[str, Any] | None = None, **data: Any) 
     """The whole document of ``templates/<template>`` filled with ``data``. ``curves`` is what the script draws (see `curves.plot`); a page without
     any has no script. A name that the template uses and ``data`` lacks is an error."""
     words = TERMS if template in EXPLAINED else {}
-    return _environment().get_template(template).render(curves=None if curves is None else _json(curves), glossary=words, **data)
+    page = _environment().get_template(template).render(curves=None if curves is None else _json(curves), glossary=words, **data)
+    return linked(page) if words else page
 
 
 @cache
