@@ -21,7 +21,7 @@ TERMS = {
     "skill": "1 - MSE / MSE of predicting no motion: 1 is perfect, 0 no better than predicting none, below 0 worse",
     "free run": "one simulation from the log's first state to its end, in which errors add up",
 }
-CLOSED = {"a", "code", "script", "style", "svg", "h1", "h2", "title", "button", "select"}  # elements in which no word becomes a link
+HEADINGS = ("th", "dt")  # elements whose words are names of what stands below or beside them; a row's own name is none of these words
 _TAG = re.compile(r"(<[^>]*>)")
 _NAME = re.compile(r"<(/?)(\w+)")
 _LINKED = re.compile(r'<a class="term" href="#word-([^"]+)"')
@@ -30,10 +30,11 @@ _NAMED = {term.lower(): term for term in TERMS}
 
 
 def linked(html: str) -> str:
-    """A page of which each section links every term, where it first stands there, to its meaning at the page's foot (`#word-TERM`)."""
+    """A page of which each section links every term that heads a column or a value, where it first does, to its meaning at the page's foot
+    (`#word-TERM`); terms in sentences are linked by their templates."""
     head, body, rest = html.partition("<body>")
     text, foot, words = rest.partition('<section id="words">')
-    closed: list[str] = []
+    inside = False
     known: set[str] = set()
 
     def link(found: re.Match[str]) -> str:
@@ -48,7 +49,6 @@ def linked(html: str) -> str:
         if tag := _NAME.match(part):
             known = set() if part.startswith("<section") else known
             known |= {already[1].replace("-", " ") for already in [_LINKED.match(part)] if already}
-            if tag[2] in CLOSED and not part.endswith("/>"):
-                closed = [*closed, tag[2]] if not tag[1] else closed[: -1 if closed and closed[-1] == tag[2] else None]
-        parts.append(part if closed or part.startswith("<") else _WORD.sub(link, part))
+            inside = not tag[1] and 'scope="row"' not in part if tag[2] in HEADINGS else inside and tag[2] != "code"
+        parts.append(_WORD.sub(link, part) if inside and not part.startswith("<") else part)
     return "".join((head, body, *parts, foot, words))
