@@ -19,7 +19,7 @@ from rovval.storage.archive import run_ids
 pytestmark = pytest.mark.slow
 
 SPITE = [
-    "-rf", "$(touch x)", "`id`", "a;b", "a b", "'", '"', "<script>alert(1)", "{{ 7*7 }}", "%2e%2e%2f", "..csv",
+    "-rf", "$(touch x)", "`id`", "a;b", "a b", "'", '"', "<script>alert(1)", "{{ 7*7 }}", "%2e%2e%2f", "x..csv",
     "*", "[a]", "?", "~", "#", "\n", "\t", "\\",
     "\u202etxt", "é", "e\u0301", "İ", "CON", "nul.csv.csv", "s3:", "a=b", "vehicle=x", "\x1b[31m", "n" * 251, "ü" * 125, ",", "|", "\x7f",
 ]  # fmt: skip
