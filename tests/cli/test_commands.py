@@ -218,6 +218,16 @@ def test_fit_passes_on_what_was_asked_for(here, monkeypatch):
     assert Path("tuned.toml").read_text() == "name = 'tuned'\n"
 
 
+def test_a_page_that_cannot_be_written_is_refused_before_the_fit(here):
+    Path("taken").touch()
+    with pytest.raises(UsageProblem, match="taken"):
+        run("fit", "dive.csv", "--out", "v.toml", "--report", "taken")
+    Path("bench.csv").write_text("1,2\n2,4\n")
+    with pytest.raises(UsageProblem, match="has no page"):
+        run("fit", "bench.csv", "--motor", "--report", "page")
+    assert not Path("v.toml").exists()
+
+
 def test_blind_make(here):
     Path("cases.json").write_text(
         '[{"mission": "rich", "effects": [{"name": "buoyancy_error", "severity": 1.0}], "duration_s": 30, "seed": 7}]'

@@ -62,6 +62,7 @@ def test_the_tour_on_ones_own_csv(tmp_path, monkeypatch):
             assert load_profile("my_log.toml").draft
             Path("my_log.toml").write_text(profile, encoding="utf-8")
     assert Path("diagnosis.json").exists()
+    assert "What is seen together" in Path("reports/calibrated/fit.html").read_text(encoding="utf-8")
     assert len(list(Path("reports").glob("*/report.html"))) == 3
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rovval.core.data import Comparison, SimResult
@@ -70,3 +70,12 @@ def write_flight(flight: Flight, folder: Path) -> Mapping[str, Path]:
     from rovval.storage.atomic import json_text
 
     return write_all(folder, {"flight.json": json_text(json.document(flight)), "flight.html": html.text(flight)})
+
+
+def write_fit(document: dict[str, Any], folder: Path) -> Mapping[str, Path]:
+    """Write fit.json and fit.html of a fit or a calibration into ``folder``, both or neither; name -> path."""
+    from rovval.report.common.files import write_all
+    from rovval.report.fit import html
+    from rovval.storage.atomic import json_text
+
+    return write_all(folder, {"fit.json": json_text(document), "fit.html": html(document)})

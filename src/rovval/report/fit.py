@@ -1,4 +1,4 @@
-"""A fit to be read in a terminal."""
+"""A fit to be read in a terminal, or as a page."""
 
 from __future__ import annotations
 
@@ -6,7 +6,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rovval.core.units import in_degrees
+from rovval.report import calibration as calibration_page
 from rovval.report.common.numbers import interval, number, per_cent, share
+from rovval.report.common.page import render
+from rovval.report.common.versions import versions
 
 MOST_PAIRS = 5  # correlated pairs that are named
 FAR = 2.0  # standard deviations of the prior from which a departure is told
@@ -14,7 +17,23 @@ FAR = 2.0  # standard deviations of the prior from which a departure is told
 
 def text(document: Mapping[str, Any]) -> str:
     """A fit of chosen parameters (rovval.fit/1) or a calibration (rovval.calibration/1)."""
-    return calibration(document) if document.get("schema") == "rovval.calibration/1" else tuned(document)
+    return calibration(document) if is_calibration(document) else tuned(document)
+
+
+def html(document: Mapping[str, Any]) -> str:
+    """The page of either, self-contained."""
+    if is_calibration(document):
+        return calibration_page.html(document)
+    return render(
+        "fit.html", title=f"{document['run']} · rovval fit", eyebrow="Fit", name=document["run"], banner="",
+        said=[f"{len(document['parameters'])} parameters tuned."], facts={key: document[key] for key in ("vehicle", "model", "windows")},
+        parameters=document["parameters"], text=text(document), footer=" · ".join(f"{k} {v}" for k, v in versions().items()),
+    )  # fmt: skip
+
+
+def is_calibration(document: Mapping[str, Any]) -> bool:
+    """Whether a document is of a calibration, and not of chosen parameters."""
+    return document.get("schema") == "rovval.calibration/1"
 
 
 def calibration(document: Mapping[str, Any]) -> str:

@@ -56,7 +56,7 @@ def page_of(result: object) -> Page:
         case Diagnosis():
             return Page(diagnosis_html.text(worded(result)))
         case FitResult():
-            return Page(_fit(result.document))
+            return Page(fit.html(result.document))
         case SimResult():
             return Page(_simulation(result))
         case Flight():
@@ -118,22 +118,6 @@ def _curves(
 def _drawn(values: Array, unit: str) -> Array:
     """Angles and rates in degrees, as every page shows them."""
     return np.asarray(values * in_degrees(1.0, unit)[0])
-
-
-def _fit(document: dict[str, Any]) -> str:
-    """Each tuned parameter with its interval, and the text of the terminal."""
-    return render(
-        "fit.html",
-        title=f"{document['run']} · rovval fit",
-        eyebrow="Fit",
-        name=document["run"],
-        banner="",
-        said=[f"{len(document['parameters'])} parameters tuned."],
-        facts={key: document[key] for key in ("vehicle", "model", "windows")},
-        parameters=document["parameters"],
-        text=fit.text(document),
-        footer=_footer(),
-    )
 
 
 def _footer() -> str:
