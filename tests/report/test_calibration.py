@@ -15,7 +15,7 @@ from rovval.fit import FitResult
 from rovval.fit.calibration import AxisError, Calibration, Row
 from rovval.fit.unknowns import unknowns
 from rovval.report import write_fit
-from rovval.report.calibration import answer, foremost, heat_map, html, whisker
+from rovval.report.calibration import answer, foremost, heat_map, html, rest, whisker
 from rovval.report.common.drawing import Box, Dot, Text
 from rovval.report.notebook import page_of
 from rovval.simulation.fitted_commands import Excess, largest
@@ -105,6 +105,14 @@ def test_the_head_says_what_a_run_is_predicted_with_or_that_nobody_knows():
     assert "more than it on 4 of 4" in answer(made(0.2).document())
     assert "40 % of the error of the file as given" in answer(made(None).document())
     assert "give two or more" in answer(made(None).document())
+
+
+def test_the_head_names_what_moved_most_from_the_file_as_it_was_given():
+    """Not from the prior's mean: of a file that was calibrated before, that lies elsewhere."""
+    document = made().document()
+    document["unknowns"]["trim.buoyancy"] |= {"value": 9.0, "shown": True, "moved": 0.0}
+    document["unknowns"]["thrust.gain"] |= {"moved": 3.0}
+    assert rest(document)[0].startswith("Furthest from the file: trim.buoyancy (9.00 N)")
 
 
 def test_what_must_be_known_before_the_vehicle_is_used_is_on_the_page():

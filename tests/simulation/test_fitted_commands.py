@@ -6,7 +6,7 @@ import numpy as np
 from report_cases import make_run
 
 from rovval import vehicle
-from rovval.core.data import Run
+from rovval.core.data import Array, Run
 from rovval.pipeline.steps import checked_against
 from rovval.simulation.fitted_commands import beyond_fitted, fitted, largest
 from rovval.vehicle import parse
@@ -16,7 +16,7 @@ from rovval.vehicle.write import to_toml
 MERLIN = vehicle.load("merlin")
 
 
-def speeds(run: Run) -> np.ndarray:
+def speeds(run: Run) -> Array:
     return run.stack(tuple(f"n:{name}" for name in MERLIN.thrusters))
 
 

@@ -64,11 +64,17 @@ def answer(document: Mapping[str, Any]) -> str:
 def rest(document: Mapping[str, Any]) -> list[str]:
     """What else stands at the head: how far the furthest unknowns moved, and a search that has not settled."""
     rows = {key: row for key, row in document["unknowns"].items() if row["shown"]}
-    far = sorted(rows, key=lambda key: -abs(rows[key]["moved"]))[:3]
+    far = sorted(rows, key=lambda key: -_size(rows[key]))[:3]
     said = ["Furthest from the file: " + listed(f"{key} ({beside(rows[key])})" for key in far) + "."] if far else []
     if not document["converged"]:
         said.append("The search had not settled when it ended: give longer logs, or a vehicle's file that is nearer.")
     return said
+
+
+def _size(row: Row) -> float:
+    """How far an unknown is from the file as it was given, in standard deviations of its prior."""
+    moved = log(row["value"]) if row["kind"] == "factor" else float(row["value"])
+    return abs(moved) / float(row["prior"])
 
 
 def beside(row: Row) -> str:
