@@ -9,3 +9,8 @@ Progress = Callable[[str, float], None]
 
 def silent(step: str, share: float) -> None:
     """Nobody looks."""
+
+
+def part_of(progress: Progress, number: int, parts: int) -> Progress:
+    """The progress of one of several equal parts as that of the whole; ``number`` from 0."""
+    return lambda step, share: progress(step, (number + share) / parts)

@@ -90,13 +90,13 @@ def read(path: Path, profile: str | None = None, timezone: str | None = None, pr
     refuse_unusable(path)
     if is_dive(path):
         return read_dive(path, partial(read, progress=progress), profile, timezone)
-    with plain(path) as (whole, lost):
+    with plain(path, progress) as (whole, lost):
         raw = _read(whole, profile, timezone, progress)
     return raw if whole == path else replace(raw, source=str(path), sha256=sha256(path), findings=(*lost, *raw.findings))
 
 
 @contextmanager
-def plain(path: Path) -> Iterator[tuple[Path, tuple[Finding, ...]]]:
+def plain(path: Path, progress: Progress = silent) -> Iterator[tuple[Path, tuple[Finding, ...]]]:
     """The file that readers are given, and what is lost of it: a log as it is, a compressed one unpacked for as long as it is read. Readers of
     text unpack for themselves, while they read. Raises `BadInput` for a dive file, which is several logs."""
     if is_dive(path):
@@ -106,7 +106,7 @@ def plain(path: Path) -> Iterator[tuple[Path, tuple[Finding, ...]]]:
     if path.is_dir() or compression.suffix(path) in of_text:
         yield path, ()
         return
-    with compression.unpacked(path) as (whole, lost):
+    with compression.unpacked(path, progress) as (whole, lost):
         yield whole, lost
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from rovval.core.errors import BadInput, UsageProblem
+from rovval.core.progress import Progress, part_of, silent
 
 MATLAB_CLASS = "MATLAB_class"  # attribute that says what an array was in Matlab
 TEXT_CLASSES = (b"char", b"string")
@@ -30,7 +31,7 @@ def opened(path: Path) -> Iterator[Any]:
         raise BadInput(f"{path}: damaged or no HDF5: {said}", "is the file whole? was it closed by what wrote it?") from None
 
 
-def nested(group: Any, matlab: bool = False, path: str = "") -> tuple[dict[str, Any], dict[str, str]]:
+def nested(group: Any, matlab: bool = False, path: str = "", progress: Progress = silent) -> tuple[dict[str, Any], dict[str, str]]:
     """Mappings of arrays as the groups of the file, and path -> unit where an attribute ``units`` or ``unit`` states one.
 
     A compound array is a mapping of its fields. ``matlab``: arrays are turned, texts are decoded, a file's own bookkeeping is passed over."""
@@ -38,13 +39,14 @@ def nested(group: Any, matlab: bool = False, path: str = "") -> tuple[dict[str, 
 
     arrays: dict[str, Any] = {}
     units: dict[str, str] = {}
-    for key, member in group.items():
+    for number, (key, member) in enumerate(group.items()):
+        progress("reading arrays", number / len(group))
         name = key if isinstance(key, str) else key.decode(errors="replace")  # h5py leaves a name that is no UTF-8 as bytes
         here = f"{path}{path and '/'}{name}"
         if matlab and name.startswith("#"):
             continue
         if isinstance(member, h5py.Group):
-            arrays[name], inside = nested(member, matlab, here)
+            arrays[name], inside = nested(member, matlab, here, part_of(progress, number, len(group)))
             units |= inside
         elif isinstance(member, h5py.Dataset):
             arrays[name] = _matlab_array(member) if matlab else _array(member)

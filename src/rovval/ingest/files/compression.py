@@ -6,7 +6,6 @@ import bz2
 import errno
 import io
 import lzma
-import shutil
 import tempfile
 import zlib
 from collections.abc import Callable, Iterator
@@ -15,6 +14,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, cast
 
 from rovval.core.errors import BadInput, Finding
+from rovval.core.progress import Progress, silent
 
 BLOCK = 1 << 16  # bytes of the packed file that are read at a time
 PIECE = 1 << 10  # bytes of it that are unpacked at a time, and lost where the stream is damaged in one of them
@@ -76,7 +76,7 @@ def lost_of(file: BinaryIO, path: Path) -> tuple[Finding, ...]:
 
 
 @contextmanager
-def unpacked(path: Path) -> Iterator[tuple[Path, tuple[Finding, ...]]]:
+def unpacked(path: Path, progress: Progress = silent) -> Iterator[tuple[Path, tuple[Finding, ...]]]:
     """The content of a compressed file as a file of its own, which is gone afterwards, and what is lost of it; any other path as it is.
 
     What is refused meanwhile names the compressed file. Raises `BadInput` where nothing of it can be unpacked, or no room is left for it.
@@ -87,7 +87,9 @@ def unpacked(path: Path) -> Iterator[tuple[Path, tuple[Finding, ...]]]:
     with scratch_folder(path) as scratch:
         plain = scratch / (path.stem if path.suffix.lower() in SUFFIXES else path.name)
         with opened(path) as packed, plain.open("wb") as file:
-            shutil.copyfileobj(packed, file, BLOCK)
+            while block := packed.read(BLOCK):
+                file.write(block)
+                progress("unpacking", share_read(packed, path))
             lost = lost_of(packed, path)
         if not plain.stat().st_size:
             raise BadInput(f"{path}: {lost[0].detail if lost else 'holds nothing'}", "is the file whole? fetch or export it again")

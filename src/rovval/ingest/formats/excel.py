@@ -51,7 +51,8 @@ def contents(path: Path, progress: Progress = silent) -> Iterator[Block]:
         raise UsageProblem(f"{path}: a workbook needs fastexcel", "pip install 'rovval[spreadsheet]'") from None
     try:
         book = fastexcel.read_excel(path)
-        for name in book.sheet_names:
+        for number, name in enumerate(book.sheet_names):
+            progress(f"reading sheet {name}", number / len(book.sheet_names))
             yield _block(book, name)
     except fastexcel.FastExcelError as error:
         said = str(error).splitlines()[0]

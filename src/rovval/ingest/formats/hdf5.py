@@ -41,5 +41,5 @@ def contents(path: Path, progress: Progress = silent) -> Iterator[Block]:
     from rovval.ingest.contents.nested_arrays import blocks_of
 
     with opened(path) as file:
-        arrays, units = nested(file)
+        arrays, units = nested(file, progress=progress)
     yield from blocks_of(arrays, units, "/")

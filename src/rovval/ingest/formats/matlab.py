@@ -17,6 +17,7 @@ from rovval.core.data import RawLog
 from rovval.core.errors import BadInput
 from rovval.core.progress import Progress, silent
 from rovval.ingest.contents.block import Block
+from rovval.ingest.files.watched_file import watched
 from rovval.ingest.profile import Profile
 
 SUFFIXES = (".mat",)
@@ -52,22 +53,23 @@ def contents(path: Path, progress: Progress = silent) -> Iterator[Block]:
 
     with path.open("rb") as file:
         new = file.read(len(HDF5_SINCE)) == HDF5_SINCE
-    yield from blocks_of(_plain(_of_hdf5(path) if new else _of_scipy(path)), {}, ".")
+    yield from blocks_of(_plain(_of_hdf5(path, progress) if new else _of_scipy(path, progress)), {}, ".")
 
 
-def _of_hdf5(path: Path) -> dict[str, Any]:
+def _of_hdf5(path: Path, progress: Progress) -> dict[str, Any]:
     from rovval.ingest.contents.hdf5_arrays import nested, opened
 
     with opened(path) as file:
-        return nested(file, matlab=True)[0]
+        return nested(file, matlab=True, progress=progress)[0]
 
 
-def _of_scipy(path: Path) -> dict[str, Any]:
+def _of_scipy(path: Path, progress: Progress) -> dict[str, Any]:
     from scipy.io import loadmat
     from scipy.io.matlab import MatReadError
 
     try:
-        found = loadmat(path, simplify_cells=True)
+        with watched(path, "reading variables", progress) as file:
+            found = loadmat(file, simplify_cells=True)
     except (MatReadError, ValueError, TypeError, KeyError, IndexError, OSError, OverflowError, MemoryError, EOFError, zlib.error) as error:
         said = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise BadInput(f"{path}: damaged or no Matlab file: {said}", "is the file whole?") from None

@@ -16,6 +16,7 @@ from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, Finding, UsageProblem
 from rovval.core.progress import Progress, silent
 from rovval.ingest.contents.block import Block
+from rovval.ingest.files.watched_file import watched
 from rovval.ingest.profile import Profile
 
 SUFFIXES = (".ulg", ".ulog")
@@ -43,16 +44,16 @@ def read(path: Path, profile: Profile, progress: Progress = silent) -> RawLog:
     """The log of ``path``. Raises `BadInput` naming everything that is missing, `UsageProblem` without pyulog."""
     from rovval.ingest.assembly.topics import read_blocks
 
-    return read_blocks(path, profile, _blocks(path, _names(profile)))
+    return read_blocks(path, profile, _blocks(path, _names(profile), progress))
 
 
 def contents(path: Path, progress: Progress = silent) -> Iterator[Block]:
     """A block for each message (and instance). Raises `BadInput` for a damaged log, `UsageProblem` without pyulog."""
-    return _blocks(path, None)
+    return _blocks(path, None, progress)
 
 
-def _blocks(path: Path, names: Sequence[str] | None) -> Iterator[Block]:
-    log = _opened(path, names)
+def _blocks(path: Path, names: Sequence[str] | None, progress: Progress) -> Iterator[Block]:
+    log = _opened(path, names, progress)
     facts = {name: str(value) for name, value in log.msg_info_dict.items() if name in ("sys_name", "ver_hw", "ver_sw", "sys_uuid")}
     findings = []
     if log.dropouts:
@@ -92,14 +93,14 @@ def _names(profile: Profile) -> list[str] | None:
     return None if not topics or any("*" in t for t in topics) or profile.absent else sorted({t.partition("[")[0] for t in topics})
 
 
-def _opened(path: Path, names: Sequence[str] | None) -> Any:
+def _opened(path: Path, names: Sequence[str] | None, progress: Progress = silent) -> Any:
     try:
         from pyulog import ULog
         from pyulog.exceptions import ULogException
     except ImportError:
         raise UsageProblem(f"{path}: a log of PX4 needs pyulog", "pip install 'rovval[autopilot]'") from None
     try:
-        with path.open("rb") as file, contextlib.redirect_stdout(io.StringIO()):  # it prints of damage; a finding says it instead
+        with watched(path, "reading messages", progress) as file, contextlib.redirect_stdout(io.StringIO()):  # it prints of damage; a finding says it instead
             return ULog(file, names)
     except (ULogException, TypeError, ValueError, KeyError, IndexError, AttributeError, OSError, MemoryError, struct.error) as error:
         said = str(error).splitlines()[0] if str(error) else type(error).__name__

@@ -45,7 +45,7 @@ def inspect(path: Path, progress: Progress = silent) -> Inspection:
     """Everything that the log holds, by the reader whose format it is. Raises `BadInput` for a file that no reader reads."""
     path = Path(path)
     refuse_unusable(path)
-    with ingest.plain(path) as (whole, lost):
+    with ingest.plain(path, progress) as (whole, lost):
         found = _inspected(whole, progress)
     return found if whole == path else replace(found, path=path, contents=replace(found.contents, findings=(*lost, *found.findings)))
 
