@@ -64,6 +64,18 @@ def test_a_cut_log_is_read_to_where_it_ends(tmp_path, profile):
     assert 0.7 * N < len(log.channels["v"].t) < N
 
 
+def test_messages_whose_definition_lost_its_stamp_are_left_out_and_said(tmp_path, profile):
+    """A damaged definition ended in a KeyError."""
+    path = ulog(tmp_path / "dive.ulg")
+    whole = path.read_bytes()
+    defined = whole.index(b"timestamp", whole.index(b"esc_status:"))
+    path.write_bytes(whole[:defined] + b"timestomp" + whole[defined + 9 :])
+    (finding,) = {f for b in contents(path) for f in b.findings if f.where.startswith("esc_status")}
+    assert finding.code == "damaged" and "no timestamp" in finding.detail
+    with pytest.raises(BadInput, match=r"esc_status"):
+        read(path, profile)
+
+
 def test_damage_gives_a_log_or_a_refusal(tmp_path, profile):
     path = ulog(tmp_path / "dive.ulg")
     whole, rng, read_some = path.read_bytes(), random.Random(0), 0

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import sqlite3
 import struct
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import closing
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rovval.core.errors import BadInput, Finding
 from rovval.ingest.bags.block import Block, Connection
@@ -20,6 +21,7 @@ from rovval.ingest.bags.damage import Damage
 MAGIC = b"SQLite format 3\0"
 ROWS = 20_000  # rows fetched at a time
 Row = tuple[int, int, int, bytes]
+Rows = tuple[Sequence[int], NDArray[np.int64], NDArray[np.int64], Sequence[bytes]]  # number, topic, stamp (ns), message
 
 
 class Sqlite:
@@ -67,13 +69,11 @@ class Sqlite:
         wanted = [number for number, connection in self._topics.items() if connection.topic in topics]
         with closing(self._open()) as base:
             top = max(_last_number(base), 1)
-            for rows in _rows(base, None if self.cut else wanted, damage, pages(self.path)[1]):
-                _, of_topic, stamps, messages = zip(*rows, strict=True)
-                ids, ns = np.array(of_topic, dtype=np.int64), np.array(stamps, dtype=np.int64)
-                size = np.fromiter(map(len, messages), dtype=np.int64, count=len(rows))
+            for numbers, ids, ns, messages in _rows(base, None if self.cut else wanted, damage, pages(self.path)[1]):
+                size = np.fromiter(map(len, messages), dtype=np.int64, count=len(messages))
                 start, data = np.concatenate(([0], np.cumsum(size)[:-1])), np.frombuffer(b"".join(messages), dtype=np.uint8)
                 damage.found(ns)
-                self.share = min(rows[-1][0] / top, 1.0)
+                self.share = min(numbers[-1] / top, 1.0)
                 for number in wanted:
                     if (of := ids == number).any():
                         yield Block(self._topics[number], ns[of], data, start[of], size[of])
@@ -86,8 +86,8 @@ class Sqlite:
         return base
 
 
-def _rows(base: sqlite3.Connection, wanted: list[int] | None, damage: Damage, most: int) -> Iterator[list[Row]]:
-    """Whole rows in the order of their numbers; where SQLite cannot go on, from the next number at which it can, ``most`` (pages) times."""
+def _rows(base: sqlite3.Connection, wanted: list[int] | None, damage: Damage, most: int) -> Iterator[Rows]:
+    """Whole rows, by the column, in the order of their numbers; where SQLite cannot go on, from the next number at which it can, ``most`` (pages) times."""
     which = "" if wanted is None else f" AND topic_id IN ({', '.join(map(str, wanted))})"
     query = f"SELECT id, topic_id, timestamp, data FROM messages WHERE id > ?{which} ORDER BY id"
     last, top = 0, None
@@ -96,15 +96,16 @@ def _rows(base: sqlite3.Connection, wanted: list[int] | None, damage: Damage, mo
             cursor = base.execute(query, (last,))
             while rows := cursor.fetchmany(ROWS):
                 last = max(last, int(rows[-1][0]))
-                if good := rows if _are_messages(rows) else [row for row in rows if _is_message(row)]:
+                good = _columns(rows)
+                if len(good[0]):
                     yield good
-                if len(good) < len(rows):
-                    damage.lost["a row that holds no message"] += len(rows) - len(good)
+                if len(good[0]) < len(rows):
+                    damage.lost["a row that holds no message"] += len(rows) - len(good[0])
             return
         except sqlite3.DatabaseError:
             rows = _singly(base, query, last)
             last = max(last, rows[-1][0]) if rows else last
-            if good := [row for row in rows if _is_message(row)]:
+            if rows and len((good := _columns(rows))[0]):
                 yield good
             top = _last_number(base) if top is None else top
             most -= 1
@@ -128,13 +129,15 @@ def _singly(base: sqlite3.Connection, query: str, last: int) -> list[Row]:
     return rows
 
 
-def _are_messages(rows: list[Row]) -> bool:
-    """Whether all of them are: asked of many at once, since nearly always they are."""
-    return [set(map(type, column)) for column in zip(*rows, strict=True)] == [{int}, {int}, {int}, {bytes}]
-
-
-def _is_message(row: Row) -> bool:
-    return isinstance(row[1], int) and isinstance(row[2], int) and isinstance(row[3], bytes)
+def _columns(rows: list[Row]) -> Rows:
+    """The rows that are messages, by the column: taken as such at once, since nearly always all of them are."""
+    numbers, ids, stamps, messages = zip(*rows, strict=True)
+    columns = np.array(ids), np.array(stamps)
+    if [c.dtype.kind for c in columns] == ["i", "i"] and set(map(type, messages)) == {bytes}:
+        return numbers, columns[0], columns[1], messages
+    good = [row for row in rows if isinstance(row[1], int) and isinstance(row[2], int) and isinstance(row[3], bytes)]
+    topics, times = (np.array([row[k] for row in good], dtype=np.int64) for k in (1, 2))
+    return [row[0] for row in good], topics, times, [row[3] for row in good]
 
 
 def _last_number(base: sqlite3.Connection) -> int:

@@ -66,6 +66,9 @@ def _blocks(path: Path, names: Sequence[str] | None, progress: Progress) -> Iter
         findings.append(Finding("damaged", path.name, "parts of the file are damaged; what could be read before and after them is"))
     yield Block("", facts=facts, findings=tuple(findings))
     for data in log.data_list:
+        if STAMP not in data.data:
+            yield Block("", findings=(Finding("damaged", _topic(data), "its messages have no timestamp by their definition; left out"),))
+            continue
         stamps = np.asarray(data.data[STAMP], dtype=np.float64) * 1e-6
         numbers = {name: np.asarray(v, dtype=np.float64) for name, v in data.data.items() if name != STAMP and np.asarray(v).dtype.kind in "biuf"}
         yield Block(_topic(data), data.name, clocks={"header": stamps, "record": stamps}, numbers=numbers)
