@@ -9,6 +9,7 @@ import pytest
 
 from rovval import vehicle
 from rovval.core.errors import UsageProblem
+from rovval.effects.lanes import reference_speed
 from rovval.fly import mission as missions
 from rovval.fly.document import text
 from rovval.fly.dry_run import dry_run
@@ -75,6 +76,17 @@ def test_the_protocol_is_the_thesis_s():
     surge = phases[0].speed
     assert surge is not None and np.abs(surge).max() == pytest.approx(70 / 60)
     assert np.sign(np.round(surge[0], 9)).tolist() == [0, 0, 0, 1, -1, -1, 1]
+
+
+@pytest.mark.parametrize("name", vehicle.names())
+def test_each_thruster_turns_alone_both_ways_on_every_vehicle(name):
+    own = vehicle.load(name)
+    mission = missions.load("thrusters_singly")
+    phases = lay_out(mission, own, thrusters_of(own, mission.limits))
+    speed = np.concatenate([p.speed for p in phases if p.speed is not None])
+    assert ((speed != 0).sum(axis=1) <= 1).all() and not speed[-1].any()
+    assert (speed.max(axis=0) == -speed.min(axis=0)).all() and speed.max(axis=0) == pytest.approx(0.5 * reference_speed(own))
+    assert phases[-1].end_s == pytest.approx(40.0 * len(own.thrusters))
 
 
 def test_a_dry_run_says_what_would_be_exceeded(tmp_path):

@@ -21,7 +21,7 @@ def command(
         str,
         typer.Argument(
             metavar="MISSION", autocompletion=complete.missions,
-            help="A mission file, a CSV of t_s and each thruster's rpm, or a mission that comes with rovval: protocol, steps, survey.",
+            help="A mission file, a CSV of t_s and each thruster's rpm, or a mission that comes with rovval: protocol, steps, survey, thrusters_singly.",
         ),
     ],
     vehicle: Annotated[

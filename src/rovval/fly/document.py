@@ -16,14 +16,16 @@ HEAD = """# Missions
 
 What `rovval fly MISSION.toml` reads. Written by `python -m rovval.fly.document` out of `src/rovval/fly/mission.py`; change that.
 
-A mission is a vehicle, a start, and legs that follow one another: planned thruster speeds, the movement protocol, set-points for the autopilot, way
-points. Units stand in the names; depth is positive down, heading from north over east. A misspelt key is refused, all problems of a file at once.
+A mission is a vehicle, a start, and legs that follow one another: planned thruster speeds, the movement protocol, each thruster alone, set-points for the
+autopilot, way points. Units stand in the names; depth is positive down, heading from north over east. A misspelt key is refused, all problems at once.
 
     rovval fly survey --dry-run                    its timeline, and what it would exceed; flies nothing
     rovval fly survey --out archive/survey         flies it; the run is a log like any other
     rovval compare archive/survey                  the simulator beside its own flight: zero, but for rounding and what the filter has wrong
     rovval fly steps --vehicle minerva --draws 1000 --effect current_constant:east=0.2
     rovval fly speeds.csv --vehicle merlin         planned thruster speeds alone: t_s and the rpm of each thruster, as in a leg of kind "speeds"
+    rovval fly thrusters_singly                    each thruster alone: the log that shows each thruster's loss and direction
+    rovval fit archive/thrusters_singly-merlin-fossen --parameters 'thruster_degraded,thruster_misaligned[HFS]' --out tuned.toml
 
 How it flies: the platform (`--model`) moves on 0.1 s at a time, thrusters turning linearly between samples. With a `[sensors]` table instruments measure
 the true motion, with noise, bias, delay and drop-outs, and an INS-like Kalman filter closes the loop and is what the run holds; without it, or with
@@ -36,7 +38,7 @@ The surface takes buoyancy and nothing else, the bottom is flat and acts at the 
 TABLES: tuple[tuple[str, type[BaseModel]], ...] = (
     ("The file", Mission), ("[start]", Start), ("[water]", Water), ("[limits]", Limits), ("[control]", Control), ("[control.AXIS]", Gains),
     ("[sensors]", Sensors), ("[sensors.NAME]", Sensor), ('[[leg]] kind = "speeds"', Speeds), ('[[leg]] kind = "protocol"', Protocol),
-    ('[[leg]] kind = "hold"', Hold), ('[[leg]] kind = "way_points"', WayPoints),
+    ('[[leg]] kind = "singly"', mission.Singly), ('[[leg]] kind = "hold"', Hold), ('[[leg]] kind = "way_points"', WayPoints),
 )  # fmt: skip
 HIDDEN = ("folder", "kind")
 

@@ -11,7 +11,7 @@ from rovval.core.channels import AXES
 from rovval.core.data import Array
 from rovval.fly.loop.allocation import Thrusters, thrusters_of
 from rovval.fly.loop.controllers import axis_of, strongest
-from rovval.fly.mission import Hold, Mission, Protocol, Speeds, WayPoints
+from rovval.fly.mission import Hold, Mission, Protocol, Singly, Speeds, WayPoints
 from rovval.fly.plan import DT, Phase, lay_out
 from rovval.vehicle.audit import uncontrolled_axes
 from rovval.vehicle.model import Vehicle
@@ -75,7 +75,7 @@ def _does(phase: Phase) -> str:
             return ", ".join(WORDS[name].format(f"{value:g}") for name, value in given.items())
         case WayPoints() as leg:
             return f"{len(leg.points)} points at {leg.speed_m_s:g} m/s"
-        case Speeds() | Protocol():
+        case Speeds() | Protocol() | Singly():
             fastest = 0.0 if phase.speed is None else float(np.abs(phase.speed).max()) * 60.0
             return f"thrusters at up to {fastest:.4g} rpm" + (f", {' and '.join(phase.hold)} held" if phase.hold else "")
 

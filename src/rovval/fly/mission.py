@@ -130,6 +130,17 @@ class Protocol(Strict):
         return 2 * len(self.axes) * (self.move_s + self.rest_s)
 
 
+class Singly(Strict):
+    """Each thruster alone, ahead and then astern, a pause after each: what shows each thruster's own thrust and direction, where movements turn fixed
+    groups in which a turned thruster looks like lost thrust of its neighbours."""
+
+    kind: Literal["singly"]
+    push_s: Positive = 10.0
+    rest_s: NotNegative = 10.0
+    rpm: Positive | None = Field(default=None, description="without it as fast as all thrusters together hold `speed_m_s` ahead")
+    speed_m_s: Positive = 0.5
+
+
 class Hold(Strict):
     """Set-points for the autopilot: each one given is controlled, the rest is left alone."""
 
@@ -161,7 +172,7 @@ class WayPoints(Strict):
     lookahead_m: Positive | None = Field(default=None, description="without it two vehicle lengths, or as far as the loops' bandwidth asks for at that speed")
 
 
-Leg = Annotated[Speeds | Protocol | Hold | WayPoints, Field(discriminator="kind")]
+Leg = Annotated[Speeds | Protocol | Singly | Hold | WayPoints, Field(discriminator="kind")]
 
 
 class Mission(Strict):

@@ -12,8 +12,9 @@ import numpy as np
 from rovval.core.channels import AXES
 from rovval.core.data import RATE_HZ, Array
 from rovval.core.errors import UsageProblem, all_at_once
+from rovval.effects.lanes import reference_speed
 from rovval.fly.loop.allocation import Thrusters
-from rovval.fly.mission import Hold, Leg, Mission, Protocol, Speeds, WayPoints
+from rovval.fly.mission import Hold, Leg, Mission, Protocol, Singly, Speeds, WayPoints
 from rovval.vehicle.model import Vehicle
 
 DT = 1.0 / RATE_HZ
@@ -57,6 +58,8 @@ def lay_out(mission: Mission, vehicle: Vehicle, thrusters: Thrusters) -> tuple[P
                 phases.append(Phase(first, first + len(planned), leg, f"{number} speeds of {Path(leg.file).name}", planned))
             case Protocol():
                 phases += _protocol(number, leg, first, thrusters)
+            case Singly():
+                phases += _singly(number, leg, first, vehicle)
             case Hold() | WayPoints():
                 what = "way points" if isinstance(leg, WayPoints) else "hold"
                 phases.append(Phase(first, first + max(1, round(leg.for_s / DT)), leg, f"{number} {what}"))
@@ -74,6 +77,21 @@ def _protocol(number: int, leg: Protocol, first: int, thrusters: Thrusters) -> l
                 if samples := round(seconds / DT):
                     begin = phases[-1].last if phases else first
                     phases.append(Phase(begin, begin + samples, leg, f"{number} {label}", np.tile(row, (samples, 1)), push, kept))
+    return phases
+
+
+def _singly(number: int, leg: Singly, first: int, vehicle: Vehicle) -> list[Phase]:
+    """Two phases, a push and a pause, for each thruster and way."""
+    top = leg.rpm / 60.0 if leg.rpm is not None else leg.speed_m_s * reference_speed(vehicle)  # drag and thrust both grow with the square
+    phases: list[Phase] = []
+    for j, name in enumerate(vehicle.thrusters):
+        for sign, way in ((1.0, "ahead"), (-1.0, "astern")):
+            row = np.zeros(len(vehicle.thrusters))
+            row[j] = sign * top
+            for seconds, label, speed in ((leg.push_s, f"{name} {way}", row), (leg.rest_s, "rest", 0.0 * row)):
+                if samples := round(seconds / DT):
+                    begin = phases[-1].last if phases else first
+                    phases.append(Phase(begin, begin + samples, leg, f"{number} {label}", np.tile(speed, (samples, 1))))
     return phases
 
 

@@ -13,6 +13,7 @@ from rovval.report.common.drawing import Curve, Dot, Drawing, Line, Shape, Text,
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 560.0, 200.0, 54.0, 10.0, 34.0, 24.0  # pixels
 POINTS = 350  # along the width: of what lies between two, the lowest and the highest are drawn
 LEVELS = 4  # lines across
+LETTER = 7.0  # pixels that a letter of a label takes
 ROUNDING = 1e-9  # m, deg, N, rpm: what moves less lies still
 
 
@@ -45,35 +46,44 @@ def chart(title: str, unit: str, dt: float, curves: Mapping[str, Array]) -> Draw
     place = WIDTH - RIGHT
     for k, (label, values) in reversed(list(enumerate(curves.items()))):
         shapes.append(Text(place, 13, label, f"c{k % 8}", "end"))
-        place -= 7.0 * len(label) + 12.0
+        place -= LETTER * len(label) + 12.0
         shapes += [Curve(piece, f"c{k % 8}") for piece in _pieces(values, dt, x, y)]
     return Drawing(WIDTH, HEIGHT, f"{title}, {unit}, against time", tuple(shapes))
 
 
-def path(title: str, position: Array) -> Drawing:
-    """The way (n, 3) of north, east and down in metres, seen from the south-west and above; its shadow on the level of its deepest point."""
+def path(title: str, position: Array, marks: Array | None = None) -> Drawing:
+    """The way (n, 3) of north, east and down in metres, seen from the south-west and above; its shadow on the level of its deepest point. ``marks`` (m, 3)
+    are numbered from 1."""
     known = position[np.isfinite(position).all(axis=1)]
     shadow = np.column_stack([known[:, :2], np.full(len(known), known[:, 2].max())])
     flat, ground = _seen(known), _seen(shadow)
     every = np.vstack([flat, ground])
     span = float(max(np.ptp(every, axis=0).max(), 1e-6))
     middle, size = (every.max(axis=0) + every.min(axis=0)) / 2.0, 330.0
+    scale = 0.8 * size / span
 
     def place(points: Array) -> tuple[tuple[float, float], ...]:
-        sheet = 0.5 * WIDTH + (points[:, 0] - middle[0]) * 0.8 * size / span, 0.5 * size + 20.0 + (points[:, 1] - middle[1]) * 0.8 * size / span
+        sheet = 0.5 * WIDTH + (points[:, 0] - middle[0]) * scale, 0.5 * size + 20.0 + (points[:, 1] - middle[1]) * scale
         return tuple(zip(sheet[0].tolist(), sheet[1].tolist(), strict=True))
 
-    unit = round_up(0.2 * span)
-    corner = known[0] if len(known) else np.zeros(3)
     thin = slice(None, None, max(1, len(known) // 600))
     shapes: list[Shape] = [Text(0, 13, title, "b"), Curve(place(ground[thin]), "base"), Curve(place(flat[thin]), "c0")]
-    for k, name in enumerate(("north", "east", "down")):
-        (x1, y1), (x2, y2) = place(_seen(np.stack([corner, corner + unit * np.eye(3)[k]])))
-        shapes += [Line(x1, y1, x2, y2, "grid"), Text(x2, y2, f"{name} {unit:g} m", "m")]
+    shapes += _axes(scale, round_up(0.2 * span), size)
     start, end = place(flat[[0, -1]])
-    for (px, py), name in ((start, "start"), (end, "end")):
-        shapes += [Dot(px, py, 3, "growth-mark"), Text(px + 7, py - 5, name, "m")]
+    apart = np.hypot(end[0] - start[0], end[1] - start[1]) > 4 * LETTER
+    for (px, py), name in ((start, "start"), (end, "end")) if apart else ((end, "start and end"),):
+        shapes += [Dot(px, py, 3, "growth-mark"), Text(px - 7, py - 5, name, "m", "end")]
+    for k, (px, py) in enumerate(place(_seen(marks)) if marks is not None else ()):
+        shapes += [Dot(px, py, 3, "growth-mark"), Text(px + 7, py + 4, f"{k + 1}", "m")]
     return Drawing(WIDTH, size + 40.0, title, tuple(shapes))
+
+
+def _axes(scale: float, unit: float, size: float) -> list[Shape]:
+    """Which way is north, east and down, each ``unit`` m long, in the lower left corner, where no path is drawn."""
+    x, y, shapes = 8.0, size - 40.0, list[Shape]()
+    for (east, south), name in zip(scale * unit * _seen(np.eye(3)), ("north", "east", "down"), strict=True):
+        shapes += [Line(x, y, x + east, y + south, "axis"), Text(x + east + 3, y + south + 4, f"{name} {unit:g} m", "m")]
+    return shapes
 
 
 def _seen(points: Array) -> Array:

@@ -153,7 +153,7 @@ def _table_6_2(outcome: Outcome) -> Table:
 
 def markdown(outcomes: Outcomes, vehicle: Vehicle) -> str:
     """The checks and tables, and where to find the figures."""
-    parts = [f"# The thesis's scenarios, {vehicle.name}"]
+    parts = [f"# The thesis's scenarios, {vehicle.name}", f"Platforms: {_platforms(outcomes)}."]
     for (scenario, model), outcome in outcomes.items():
         parts += [f"## Scenario {scenario}: {outcome.title}{f', {model}' if model else ''}", EXPECTED[scenario]]
         parts.append(grid(("", "expected", "seen"), [(SIGNS[c.holds], c.expected, c.seen) for c in outcome.checks], 3))
@@ -164,6 +164,14 @@ def markdown(outcomes: Outcomes, vehicle: Vehicle) -> str:
     return "\n\n".join(parts) + "\n"
 
 
+def _platforms(outcomes: Outcomes) -> str:
+    """Which platform stands for which of the thesis's two; where one was asked for, it stands for both."""
+    asked = {model for _, model in outcomes if model}
+    if len(asked) == 1:
+        return f"{asked.pop()} alone, for both of the thesis's (without --model: {SIMULINK} for its Simulink model, {ROS} for its ROS simulator)"
+    return f"{SIMULINK} for the thesis's Simulink model, {ROS} for its ROS simulator"
+
+
 def html(outcomes: Outcomes, vehicle: Vehicle) -> str:
     """One page: what was checked, then figure by figure and table by table."""
     failed = [f"{o.title} ({model})" for (_, model), o in outcomes.items() if not o.passed]
@@ -172,7 +180,7 @@ def html(outcomes: Outcomes, vehicle: Vehicle) -> str:
     return render(
         "scenarios.html", title=f"{vehicle.name} · the thesis's scenarios", eyebrow="The thesis's test scenarios", name=vehicle.name, banner="",
         said=[*said, "Figures and tables have the thesis's order and numbers, each from our own simulation, with the reason where it must differ."],
-        facts={"platforms": f"{SIMULINK} for the thesis's Simulink model, {ROS} for its ROS simulator"}, outcomes=[
+        facts={"platforms": _platforms(outcomes)}, outcomes=[
             {"number": n, "model": model, "title": o.title, "expected": EXPECTED[n], "checks": [(SIGNS[c.holds], c.expected, c.seen) for c in o.checks]}
             for (n, model), o in outcomes.items()
         ], figures=figures(outcomes, vehicle), tables=tables(outcomes, vehicle), footer=" · ".join(f"{k} {v}" for k, v in versions().items()),

@@ -10,7 +10,9 @@ import numpy as np
 from rovval.core.channels import AXES, VELOCITIES, members
 from rovval.core.data import Array, Comparison, Run, SimResult
 from rovval.core.units import DEGREES
+from rovval.fly.mission import WayPoints
 from rovval.fly.scenarios import Outcome
+from rovval.fly.scenarios.way_points import square
 from rovval.report.common.chart import chart, path
 from rovval.report.common.drawing import Drawing
 from rovval.vehicle.model import Vehicle, allocation
@@ -99,15 +101,18 @@ def position(outcome: Outcome, vehicle: Vehicle) -> list[Drawing]:
     """Place and attitude in the world."""
     sim = _sim(outcome)
     eta = sim.free.eta
+    turned = np.column_stack([eta[:, 3:5], np.unwrap(eta[:, 5])]) * DEGREES  # a heading that passes south is no leap
     return [
         chart("position", "m", sim.dt, {name: eta[:, j] for j, name in enumerate(("north", "east", "down"))}),
-        chart("attitude", "deg", sim.dt, {name: eta[:, 3 + j] * DEGREES for j, name in enumerate(("roll", "pitch", "heading"))}),
+        chart("attitude", "deg", sim.dt, {name: turned[:, j] for j, name in enumerate(("roll", "pitch", "heading"))}),
     ]
 
 
 def way(outcome: Outcome, vehicle: Vehicle) -> list[Drawing]:
-    """The path in three dimensions."""
-    return [path("path", _sim(outcome).free.eta[:, :3])]
+    """The path in three dimensions, and the way points."""
+    [leg] = square(vehicle).leg
+    assert isinstance(leg, WayPoints)
+    return [path("path", _sim(outcome).free.eta[:, :3], np.array(leg.points))]
 
 
 def closed(draw: Drawn) -> Drawn:
