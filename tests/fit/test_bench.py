@@ -33,6 +33,13 @@ def test_the_time_constant_that_made_a_record_is_found_in_it():
     assert (up.at, down.at) == pytest.approx((4.0, 12.0), abs=0.03) and up.after == pytest.approx(100.0, abs=0.5)
 
 
+def test_a_record_that_vibrates_is_no_record_of_steps():
+    """A load cell's column gave four hundred "steps" of milliseconds each."""
+    t = np.arange(0.0, 4.0, 0.001)
+    with pytest.raises(BadInput, match=r"swings between .* every 1\d\.?5? samples"):
+        steps(t, np.sin(2 * np.pi * 40.0 * t))
+
+
 def test_a_record_without_a_step_and_a_table_without_numbers_are_refused(tmp_path):
     with pytest.raises(BadInput, match="no step"):
         steps(np.arange(10.0), np.zeros(10))

@@ -12,6 +12,8 @@ from rovval.comparison import compare
 from rovval.core.channels import POSE, VELOCITIES
 from rovval.core.data import Array, Reason, Run
 from rovval.fit import fit
+from rovval.fly import fly
+from rovval.fly import mission as missions
 from rovval.fly.scenarios.movements import protocol
 from rovval.fly.scenarios.still_water import commanded
 from rovval.simulation import simulate
@@ -48,3 +50,24 @@ def test_planted_loss_factors_are_found_and_shown_on_a_second_log():
     before, after = (compare(two, simulate(two, v)).windowed for v in (MERLIN, fitted))
     assert after["yaw"].rmse < 0.3 * before["yaw"].rmse
     assert all(after[axis].rmse < 0.9 * before[axis].rmse for axis in ("surge", "sway"))
+
+
+@pytest.mark.slow
+def test_loss_factors_and_a_turned_thruster_are_told_apart_where_each_turns_alone():
+    """The same vehicle flies `thrusters_singly`, its navigation filter's state as the log: losses and angle are within their intervals of what was planted,
+    and the second log shows it."""
+    one = fly(missions.load("thrusters_singly"), MERLIN, "fossen", PLANTED, seed=1).run()
+    two = flown(protocol(MERLIN, 90.0)[:2400], "two", 2)
+    done = fit([one], MERLIN, ["thruster_degraded[H*]", "thruster_misaligned[HFS]"])
+    found = done.document["parameters"]
+    assert not done.document["undetermined"]
+    planted = {f"thruster_degraded[{name}].loss": 1 - theta for name, theta in THETA.items()} | {"thruster_misaligned[HFS].yaw": TURNED}
+    for key, value in planted.items():
+        assert found[key]["low"] < value < found[key]["high"] and found[key]["differs"], key
+        assert found[key]["value"] == pytest.approx(value, abs=0.04), key
+    assert {key for key, row in found.items() if row["differs"]} == set(planted)
+    fitted = vehicle.parse(done.vehicle, "fitted")
+    before, after = (compare(two, simulate(two, v)).windowed for v in (MERLIN, fitted))
+    for axis in ("surge", "sway", "yaw"):
+        assert after[axis].rmse < before[axis].rmse, axis
+    assert after["yaw"].rmse < 0.5 * before["yaw"].rmse

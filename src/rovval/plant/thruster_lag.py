@@ -52,6 +52,9 @@ def saturate(speed: Array, limit: float) -> tuple[Array, Flags]:
     return held, np.asarray(held != speed)
 
 
+FEWEST = 40  # samples of a step: ten for each of the four numbers that are fitted to it (chosen)
+
+
 @dataclass(frozen=True, slots=True)
 class Step:
     """A first-order answer found in a record of one step: from ``before`` to ``after`` (the record's unit), beginning ``at`` s, with the time constant
@@ -74,7 +77,7 @@ class Step:
 def steps(t: Array, y: Array) -> tuple[Step, ...]:
     """First-order answers to the steps of a record ``y`` (n,) at ``t`` (n,) s between two levels, in their order.
 
-    Raises BadInput where the record has no step, or ends within it.
+    Raises BadInput where the record has no step, ends within it, or swings between its levels too fast to hold any.
     """
     low, high = (float(np.quantile(y, q)) for q in (LOW, HIGH))
     middle, quarter = 0.5 * (low + high), 0.25 * (high - low)
@@ -84,6 +87,11 @@ def steps(t: Array, y: Array) -> tuple[Step, ...]:
     if not len(turns):
         raise BadInput(f"no step in {len(y)} samples between {low:.4g} and {high:.4g}", "give a record that holds both levels")
     edges = [0, *((a + b) // 2 for a, b in pairwise(turns)), len(t)]
+    if (held := float(np.median(np.diff(edges)))) < FEWEST:
+        raise BadInput(
+            f"{len(turns)} swings between {low:.4g} and {high:.4g} in {len(y)} samples, every {held:g} samples: an oscillation or noise, no steps",
+            "give a record of steps that are held, of the thruster's speed or thrust; --columns says which column it is",
+        )
     return tuple(_step(t[a:b], y[a:b]) for a, b in pairwise(edges))
 
 

@@ -1,8 +1,9 @@
 """An INS-like filter: inertial sensors carry the state forward, everything else corrects it as it arrives (Kalman 1960; Fossen 2011, 11.3 and 11.4).
 
 Attitude: each Euler angle and the bias of its rate, driven by the gyro, corrected by the AHRS. Motion: position, velocity and the bias of the
-acceleration along north, east and down, driven by the accelerometer turned by the attitude, corrected by DVL, depth and position fix. A measurement that
-is late corrects by what the filter said when it was taken (Larsen et al. 1998, without their correction of the gain).
+acceleration along north, east and down, driven by the accelerometer turned by the attitude, corrected by DVL, depth and position fix. That bias, and the
+gravity that leaks through a bias of the attitude, are fixed to the body and turn with it. A measurement that is late corrects by what the filter said when
+it was taken (Larsen et al. 1998, without their correction of the gain).
 """
 
 from __future__ import annotations
@@ -60,8 +61,10 @@ class Navigation:
         f = np.array([[1.0, dt, -0.5 * dt**2], [0.0, 1.0, -dt], [0.0, 0.0, 1.0]])
         motion = np.stack([eta[:, :3], np.einsum("bij,bj->bi", rotation, nu[:, :3]), np.zeros((size, 3))], axis=2)
         tilt = (gravity * (self._variances(sensors.attitude)[0] ** 0.5 + self._variances(sensors.attitude)[1] ** 0.5)) ** 2  # gravity leaks through it
-        q = np.diag([0.0, accelerometer[0] * dt**2, (accelerometer[1] + tilt) * wander])
+        leak = 2.0 * gravity**2 * self._variances(sensors.attitude)[0] * max(1.0, sensors.attitude.period_s / dt)  # through the filtered attitude's noise
+        q = np.diag([0.0, (accelerometer[0] + leak) * dt**2, (accelerometer[1] + tilt) * wander])
         self._motion = Kalman(motion, np.diag([1e-4, 1e-4, accelerometer[1] + tilt]), f, q)
+        self._rotation = rotation
         self._past: deque[tuple[Array, Array]] = deque(maxlen=64)
         self._rate = nu[:, 3:]
         self._sounded: tuple[Array, Array] | None = None  # altitude as last measured, and the depth there
@@ -76,6 +79,8 @@ class Navigation:
         self._attitude.predict(np.stack([euler_rates(euler, self._rate) * self._dt, np.zeros_like(euler)], axis=2))
         self._measured(self._attitude, seen, "attitude", 0, slice(0, 3), angle=True)
         rotation = rotation_from_euler(self._attitude.x[:, :, 0])
+        turn, self._rotation = rotation @ np.swapaxes(self._rotation, 1, 2), rotation
+        self._motion.x[:, :, 2] = np.einsum("bij,bj->bi", turn, self._motion.x[:, :, 2])
         push = np.einsum("bij,bj->bi", rotation, seen["accelerometer"].values) + np.array([0.0, 0.0, self._gravity])
         push = np.where(seen["accelerometer"].there[:, None], push, 0.0)
         self._motion.predict(np.stack([0.5 * push * self._dt**2, push * self._dt, np.zeros_like(push)], axis=2))
