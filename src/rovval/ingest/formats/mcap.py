@@ -139,7 +139,8 @@ def _records(path: Path, findings: list[Finding], progress: Progress = silent) -
 
     count, last, lost, why, good = 0, 0, 0, "", len(MAGIC)
     summary = _summary(path)
-    chunks = [] if summary is None else sorted(c.chunk_start_offset for c in summary.chunk_indexes)
+    size = path.stat().st_size  # a damaged index points anywhere
+    chunks = [] if summary is None else sorted(c.chunk_start_offset for c in summary.chunk_indexes if c.chunk_start_offset < size)
     with path.open("rb") as file:
         at: int | None = 0
         while at is not None:
