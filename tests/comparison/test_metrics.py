@@ -18,7 +18,7 @@ class TestContract:
     def test_declares_itself(self, name: str) -> None:
         m = metrics.get(name)
         assert m.name == name and m.title and m.meaning
-        assert m.unit_of("m/s") == {"same": "m/s", "times_s": "m", "1": "1"}[m.unit]
+        assert m.unit_of("m/s") == {"same": "m/s", "times_s": "m", "s": "s", "1": "1"}[m.unit]
 
     def test_perfect_for_identical_input(self, name: str) -> None:
         m = metrics.get(name)
@@ -40,7 +40,9 @@ class TestContract:
         keep[50:90] = False
         spoiled, truth = ERROR.copy(), MEASURED.copy()
         spoiled[~keep], truth[~keep] = np.nan, 1e9
-        assert m.compute(spoiled, keep, 0.1, truth) == m.compute(ERROR[keep], OK[keep], 0.1, MEASURED[keep])
+        assert m.compute(spoiled, keep, 0.1, truth) == m.compute(ERROR, keep, 0.1, MEASURED)
+        if m.unit != "s":  # of all others time is the samples that are there
+            assert m.compute(spoiled, keep, 0.1, truth) == m.compute(ERROR[keep], OK[keep], 0.1, MEASURED[keep])
 
     def test_refuses_when_none_are_left(self, name: str) -> None:
         with pytest.raises(BadInput, match="no sample is left"):
@@ -110,3 +112,22 @@ def test_agreement_of_waves_by_analysis() -> None:
     assert value("vaf") == pytest.approx(100 * (1 - squared))
     assert value("nrmse") == pytest.approx(np.sqrt(squared / 2) / 2)
     assert metrics.get("vaf").compute(error + 5.0, ok, 0.1, measured) == pytest.approx(value("vaf")), "an offset does not count"
+
+
+def test_a_simulation_that_is_late_has_its_delay_for_a_lag() -> None:
+    """Of a smooth motion to a hundredth of a second, whichever way; a mask or a size that is wrong changes nothing."""
+    t = np.arange(0.0, 60.0, 0.1)
+
+    def motion(at: Array) -> Array:
+        return np.asarray(np.sin(at) + 0.5 * np.sin(2.3 * at + 1.0))
+
+    ok = (t < 20.0) | (t > 27.0)
+    for late in (0.34, -0.86, 1.5):
+        assert metrics.get("lag").compute(1.3 * motion(t - late) - motion(t), ok, 0.1, motion(t)) == pytest.approx(late, abs=0.02)
+
+
+def test_a_lag_is_refused_where_nothing_moves_and_where_no_shift_is_best() -> None:
+    t = np.arange(0.0, 60.0, 0.1)
+    for measured in (np.zeros(600), t):
+        with pytest.raises(BadInput, match="lag"):
+            metrics.get("lag").compute(np.full(600, 0.1) + 0.001 * t**2, np.ones(600, bool), 0.1, measured)

@@ -61,7 +61,7 @@ def run(
                 still_ours()
                 if outcome["status"] == "stopped":
                     raise UsageProblem(outcome["record"]["reason"], f"{outcome['record']['next']}; the next run goes on from here")
-                finished.append(brief(outcome["record"])) if outcome["status"] == "done" else aside.append(outcome["record"])
+                finished.append(brief(outcome["record"], pipeline.tolerances)) if outcome["status"] == "done" else aside.append(outcome["record"])
                 progress(f"{number} of {len(todo.todo)} logs, {task.log.name}", number / len(todo.todo))
         except UsageProblem as problem:
             stop = problem

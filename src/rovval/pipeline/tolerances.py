@@ -1,17 +1,23 @@
 """Stated tolerances: ``surge=0.1`` (rmse of the free run), ``surge.iae=12``, ``window.surge.rms=0.05``, all in SI; of a pipeline also
-``trend.surge=3``: so many standard deviations above what the vehicle's dives before it let expect."""
+``trend.surge=3``: so many standard deviations above what the vehicle's dives before it let expect.
+
+Every metric of `rovval list metric` may be one. A limit is the most that is allowed, and the least of a metric that is larger the better the simulation is
+(``surge.vaf=90``).
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rovval.core.errors import UsageProblem, all_at_once
 
+if TYPE_CHECKING:
+    from rovval.comparison.metrics import Metric
+
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
-FREE = ("rmse", "mae", "iae", "mean_error")
-WINDOWED = ("rms", "iae")
+RMS = "rms"  # of restarted windows, as their documents name it
 TREND = "trend."
 
 
@@ -66,7 +72,7 @@ def _one(text: str) -> Tolerance | str:
     windowed = name.startswith("window.")
     axis, _, metric = name.removeprefix("window.").partition(".")
     metric = metric or ("rms" if windowed else "rmse")
-    known = WINDOWED if windowed else FREE
+    known = _known(windowed)
     if axis not in AXES:
         return f"{text!r}: axis {axis!r} is none of {', '.join(AXES)}"
     if metric not in known:
@@ -89,13 +95,29 @@ def exceeded(tolerances: Sequence[Tolerance], comparison: Mapping[str, Any]) -> 
         value = None if row is None else row.get(t.metric)
         if value is None:
             sentences.append(f"{t}: limit {t.limit:g}, but {t.axis} was not measured in this run")
-        elif abs(value) > t.limit:
+        elif _more_is_better(t) and value < t.limit:
+            sentences.append(f"{t}: {value:.4g} {_unit(t, comparison)} is below the limit {t.limit:g}")
+        elif not _more_is_better(t) and abs(value) > t.limit:
             sentences.append(f"{t}: {abs(value):.4g} {_unit(t, comparison)} is above the limit {t.limit:g}")
     return tuple(sentences)
 
 
+def _known(windowed: bool) -> tuple[str, ...]:
+    from rovval.comparison import metrics
+
+    return (*((RMS,) if windowed else ()), *metrics.names())
+
+
+def _metric(tolerance: Tolerance) -> Metric:
+    from rovval.comparison import metrics
+
+    return metrics.get("rmse" if tolerance.metric == RMS else tolerance.metric)
+
+
+def _more_is_better(tolerance: Tolerance) -> bool:
+    return _metric(tolerance).perfect > 0.0
+
+
 def _unit(tolerance: Tolerance, comparison: Mapping[str, Any]) -> str:
-    unit = comparison["axes"].get(tolerance.axis, {}).get("unit", "")
-    if tolerance.metric == "iae":
-        return {"m/s": "m", "rad/s": "rad"}.get(unit, f"{unit} s")
-    return str(unit)
+    unit = str(comparison["axes"].get(tolerance.axis, {}).get("unit", ""))
+    return _metric(tolerance).unit_of(unit)

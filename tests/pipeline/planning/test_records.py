@@ -19,9 +19,9 @@ def test_what_a_batch_holds_of_a_record_says_all_that_the_record_says():
     comparison = document(compare(run, report_cases.make_sim(run)))
     steps = {"simulate": {"stops": [], "outputs": []}, "compare": {"comparison": comparison, "outputs": ["d/report.html"]}}
     record = {"log": "/logs/d.csv", "run": "d-ab", "duration_s": 90.0, "findings": 2, "steps": steps}
-    limits = [f"{axis}.{metric}=0" for axis in comparison["axes"] for metric in ("rmse", "mae", "iae", "mean_error")]
+    limits = [f"{axis}.{metric}=0" for axis in comparison["axes"] for metric in ("rmse", "mae", "iae", "mean_error", "lag", "sprague_geers")]
     limits += [f"window.{axis}.{metric}=0" for axis in comparison["axes"] for metric in ("rms", "iae")]
-    said = [summary.summarise("nightly", [r], [], [], [], limits, 1.0, {}) | {"ended": ""} for r in (record, brief(record))]
+    said = [summary.summarise("nightly", [r], [], [], [], limits, 1.0, {}) | {"ended": ""} for r in (record, brief(record, limits))]
     assert said[0] == said[1] and len(said[0]["tolerances_exceeded"]) == len(limits) > 0
     assert html.text(said[0], [record]) == html.text(said[1], [brief(record)])
     assert len(json.dumps(brief(record))) < len(json.dumps(record)) / 3

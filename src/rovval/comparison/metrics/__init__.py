@@ -1,6 +1,6 @@
 """Metrics, one file each: what a signed error (simulated minus measured) over a run is worth as one number.
 
-A file has ``NAME``, ``TITLE``, ``UNIT`` ("same" as the channel, "times_s", or "1" for a bare ratio), ``SCALES`` (whether twice
+A file has ``NAME``, ``TITLE``, ``UNIT`` ("same" as the channel, "times_s", "s", or "1" for a bare ratio), ``SCALES`` (whether twice
 the error gives twice the number), ``PERFECT`` (the number of an error that is zero) and
 ``compute(error, ok, dt, measured=None)``. Adding a metric is adding a file: `names` finds it and the contract test runs on it.
 """
@@ -23,7 +23,7 @@ from rovval.core.units import integral_unit
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-UnitRule = Literal["same", "times_s", "1"]
+UnitRule = Literal["same", "times_s", "s", "1"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,8 +40,8 @@ class Metric:
 
     def unit_of(self, channel_unit: str) -> str:
         """Unit of the number for a channel in ``channel_unit``: an m/s error has an IAE in m."""
-        if self.unit == "1":
-            return "1"
+        if self.unit in ("1", "s"):
+            return self.unit
         if self.unit == "same":
             return channel_unit
         return integral_unit(channel_unit)

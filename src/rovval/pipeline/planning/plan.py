@@ -112,7 +112,7 @@ class _Sorting:
         if (twin := self.seen.setdefault(task.key, log)) != log:
             self.waiting.append((log, f"same content as {twin}"))
         elif record := _finished(task, self.hashes.afresh):
-            self.done.append(brief(record))
+            self.done.append(brief(record, self.pipeline.tolerances))
         elif (record := read_quarantine(task.quarantine)) and record["key"] == task.key and record["kind"] not in RETRIED and not self.retry:
             self.aside.append(record)
         else:
@@ -123,7 +123,7 @@ class _Sorting:
         for log, sha in self.hashes.below([discover.fixed(pattern, base) for pattern in source.logs]):
             record = None if log.exists() else _finished(_task(self.pipeline, source, log, sha, content), False)
             if record:
-                self.kept.append(brief(record))
+                self.kept.append(brief(record, self.pipeline.tolerances))
         gone = discover.absent(source.logs, base)
         why = f"{gone[0]} does not exist" if gone else "no log is there"
         had = f"; {len(self.kept)} logs were there before: is the volume mounted?" if self.kept else ""
@@ -153,20 +153,21 @@ def plan(pipeline: Pipeline, base: Path, retry: bool = False, verify: bool = Fal
     _refuse_unknown_folders(pipeline, base, sorting)
     with suppress(Unwritable):  # it only saves reading; whoever writes a result on that disk is stopped, and says why
         sorting.hashes.save()
-    todo, postponed = _in_a_night(sorting.todo, pipeline.most_redone)
+    todo, postponed = _in_a_night(sorting.todo, pipeline)
     return Plan(
         tuple(todo), tuple(sorting.done), tuple(sorting.aside), tuple(sorting.waiting), tuple(sorting.missing), tuple(sorting.kept),
         tuple(postponed), sorting.folders,
     )  # fmt: skip
 
 
-def _in_a_night(todo: Sequence[Task], most: int | None) -> tuple[list[Task], list[Mapping[str, Any]]]:
-    """What of ``todo`` is done this night: all that is new, and of the logs that other code of rovval has judged the ``most`` newest; and the records
+def _in_a_night(todo: Sequence[Task], pipeline: Pipeline) -> tuple[list[Task], list[Mapping[str, Any]]]:
+    """What of ``todo`` is done this night: all that is new, and of the logs that other code of rovval has judged the newest (`most_redone`); and the records
     of the rest, which stand as they are until then."""
+    most = pipeline.most_redone
     if most is None:
         return list(todo), []
     records = ((task, read_record(task.folder)) for task in todo)
-    judged = {task: brief(record) for task, record in records if record and "began" in record and _codes(record) - {task.code}}
+    judged = {task: brief(record, pipeline.tolerances) for task, record in records if record and "began" in record and _codes(record) - {task.code}}
     newest = sorted(judged, key=lambda task: str(judged[task]["began"]), reverse=True)
     return [task for task in todo if task not in judged] + newest[:most], [judged[task] for task in newest[most:]]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,8 @@ RECORD = "record.json"
 DIGEST = "digest"
 MARK, NO_DIGEST = f'"{DIGEST}": "', "0" * 64
 CHECKED = ("key", "files")  # facts of a step that only the plan asks for
+FREE = frozenset({"rmse", "mae", "iae", "mean_error", "unit"})  # of a free run, what the page and the catalogue tell of each axis,
+WINDOWED = frozenset({"rms", "iae", "unit"})  # and of windows
 
 
 def read_record(folder: Path) -> dict[str, Any] | None:
@@ -51,24 +53,24 @@ def read_quarantine(path: Path) -> dict[str, Any] | None:
     return record if record and {"log", "key", "kind", "reason", "next"} <= record.keys() else None
 
 
-def brief(record: Mapping[str, Any]) -> Mapping[str, Any]:
+def brief(record: Mapping[str, Any], limits: Sequence[str] = ()) -> Mapping[str, Any]:
     """What of a record the summary, the catalogue and the page of a batch are made of, a tenth of it: a batch holds one of every log at once, and
-    the names that all of them have once."""
+    the names that all of them have once. Metrics that ``limits``, the tolerances of the pipeline file, are about are kept as well."""
     steps = {step: {name: fact for name, fact in facts.items() if name not in CHECKED} for step, facts in record["steps"].items()}
     for facts in steps.values():
         facts["outputs"] = [place for place in facts["outputs"] if place.endswith(".html")]
     if "compare" in steps:
-        steps["compare"] = _compared(steps["compare"])
+        steps["compare"] = _compared(steps["compare"], {limit.metric for limit in tolerances.parse(tolerances.of_one_run(limits))})
     shared: Mapping[str, Any] = _interned({**record, "steps": steps})
     return shared
 
 
-def _compared(compared: Mapping[str, Any]) -> dict[str, Any]:
+def _compared(compared: Mapping[str, Any], asked: Set[str]) -> dict[str, Any]:
     whole = compared["comparison"]
     kept = {name: whole[name] for name in ("vehicle", "stops", "findings") if name in whole}
-    kept["axes"] = _only(whole["axes"], (*tolerances.FREE, "unit"))
+    kept["axes"] = _only(whole["axes"], FREE.union(asked))
     if window := whole.get("window"):
-        kept["window"] = {"seconds": window["seconds"], "axes": _only(window["axes"], (*tolerances.WINDOWED, "unit"))}
+        kept["window"] = {"seconds": window["seconds"], "axes": _only(window["axes"], WINDOWED.union(asked))}
     return {**compared, "comparison": kept}
 
 
@@ -81,8 +83,8 @@ def _interned(fact: Any) -> Any:
     return sys.intern(fact) if type(fact) is str else fact
 
 
-def _only(axes: Mapping[str, Mapping[str, Any]], names: Sequence[str]) -> dict[str, dict[str, Any]]:
-    return {axis: {name: row[name] for name in names if name in row} for axis, row in axes.items()}
+def _only(axes: Mapping[str, Mapping[str, Any]], names: Set[str]) -> dict[str, dict[str, Any]]:
+    return {axis: {name: value for name, value in row.items() if name in names} for axis, row in axes.items()}
 
 
 def outputs_whole(step: Mapping[str, Any], reports: Path, digests: bool = False) -> bool:

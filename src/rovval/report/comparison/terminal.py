@@ -28,6 +28,7 @@ def text(comparison: Comparison) -> str:
         head = ("free run", "unit", f"{c.other_name} MAE", "ours MAE", f"{c.other_name} RMSE", "ours RMSE", "skill", "rows")
         parts += [_grid([head, *_other(c)]), ""]
     last = [f"not measured: {listed(c.not_measured)}"] if c.not_measured else []
+    last += [said] if (said := words.track(c)) else []
     last += [f"stopped: {s}" for s in sim.stops]
     last += ["error = simulated - measured; IAE in unit x s; skill = 1 - MSE / MSE of the trivial predictor; rows: share that was compared"]
     return "\n".join([*parts, *(line for words in last for line in wrap(words, WIDTH))]) + "\n"

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from rovval.comparison.trajectory import track_error
 from rovval.core.data import ChannelError, Comparison
 from rovval.report.common.numbers import duration, listed, number, per_cent, quantity
 
@@ -112,6 +113,16 @@ def _skill(table: Mapping[str, ChannelError]) -> str:
     return ", ".join(does + hidden)
 
 
+def track(comparison: Comparison) -> str:
+    """How far the simulated track leads from the measured one; empty where positions were not logged."""
+    found = track_error(comparison.run, comparison.sim)
+    if found is None:
+        return ""
+    way = "" if found.rpe is None else f"; error of the way made in {found.step_s:g} s {number(found.rpe)} m rms (RPE)"
+    apart = f"{number(found.ate)} m rms from one start, {number(found.ate_aligned)} m once turned and moved onto it (ATE)"
+    return f"track, simulated from its first row on: {apart}{way}; as evo states them"
+
+
 def notes(comparison: Comparison) -> list[str]:
     """What a reader must know beside the numbers: rows that could not be compared, and how they were counted."""
     result = []
@@ -121,6 +132,7 @@ def notes(comparison: Comparison) -> list[str]:
     result.append(
         f"{windows(comparison)}, each restarted from the measured state; RMS over all their rows, the first one included"
     )
+    result += [said] if (said := track(comparison)) else []
     result.append("no motion: the error of predicting zero velocity; skill = 1 - MSE / MSE(no motion)")
     return result
 
