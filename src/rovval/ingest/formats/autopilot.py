@@ -254,4 +254,7 @@ def _opened(path: Path) -> Iterator[tuple[Any, list[Finding]]]:
         raise BadInput(f"{path}: damaged or foreign: {type(error).__name__}: {said}", "is the file whole?") from None
     finally:
         if log is not None and hasattr(log, "close"):
-            log.close()
+            try:
+                log.close()
+            except BufferError:  # of a damaged log: what was raised still looks at the map of the file, which goes with it
+                log.filehandle.close()
