@@ -6,6 +6,7 @@ import pytest
 from command_case import run, write_dive
 
 from rovval import vehicle
+from rovval.fly.scenarios.table_6_1 import refusals, rows
 
 
 @pytest.mark.parametrize("number", ["1", "2", "3"])
@@ -17,8 +18,8 @@ def test_scenarios_meet_the_thesis(number, name):
 
 
 def test_scenario_2_ends_on_the_thrusts_of_table_6_1():
-    rows = json.loads(run("scenario", "2", "--json").stdout)["table_6_1"]
-    assert [round(r["thrust_n"], 1) for r in rows] == [82.7, 31.3, 83.8, 87.0, 35.2, 86.7, 31.4]
+    printed = json.loads(run("scenario", "2", "--json").stdout)["table_6_1"]
+    assert [round(r["thrust_n"], 1) for r in printed] == [82.7, 31.3, 83.8, 87.0, 35.2, 86.7, 31.4]
 
 
 def test_scenario_says_when_it_is_not_met(tmp_path):
@@ -83,3 +84,9 @@ def test_scenarios_4_and_5_of_another_vehicle_have_a_log_of_its_own():
     document = json.loads(run("scenario", "5", "--vehicle", "bluerov2_heavy", "--json").stdout)
     assert document["run"] == "SYNTHETIC_bluerov2_heavy_protocol" and document["vehicle"] == "bluerov2_heavy"
     assert abs(document["table_6_2"]["surge"]["mean_error"]) > 1e-4
+
+
+def test_a_platform_that_cannot_simulate_a_vehicle_is_left_out_of_table_6_1_and_says_why():
+    nominal = vehicle.load("bluerov_2016")  # its added mass is 6.5 times its own
+    assert set(rows(nominal)[0].ours) == {"fossen", "freefloating"}
+    assert list(refusals(nominal)) == ["uuv"] and "unstable" in refusals(nominal)["uuv"]

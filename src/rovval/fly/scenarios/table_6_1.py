@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.data import Array
+from rovval.core.errors import UsageProblem
 from rovval.plant import platforms
 from rovval.plant.inputs import Inputs
 from rovval.plant.model import Plant
@@ -30,7 +31,7 @@ STEP_S = 1e-6  # s, short enough that drag has done nothing yet
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One thruster: our thrust on each platform and the printed figures, N (None for a vehicle that is not the thesis's)."""
+    """One thruster: our thrust on each platform that can simulate the vehicle, and the printed figures, N (None for a vehicle that is not the thesis's)."""
 
     thruster: str
     rpm: float
@@ -41,12 +42,23 @@ class Row:
 
 def rows(vehicle: Vehicle) -> tuple[Row, ...]:
     """The table for a vehicle; the printed columns are Merlin's."""
-    ours = {model: thrusts(vehicle, model) for model in platforms.names()}
+    ours = {model: thrusts(vehicle, model) for model in platforms.names() if model not in refusals(vehicle)}
     printed = {p: (PRINTED[p] if vehicle.name == "merlin" else (None,) * len(vehicle.thruster)) for p in PRINTED}
     return tuple(
         Row(name, RPM, {model: column[i] for model, column in ours.items()}, printed["MATLAB"][i], printed["ROS"][i])
         for i, name in enumerate(vehicle.thrusters)
     )
+
+
+def refusals(vehicle: Vehicle) -> dict[str, str]:
+    """Why a platform cannot simulate this vehicle, by those that cannot."""
+    found = dict[str, str]()
+    for model in platforms.names():
+        try:
+            Plant(vehicle, model)
+        except UsageProblem as refusal:
+            found[model] = refusal.message
+    return found
 
 
 def thrusts(vehicle: Vehicle, model: str, rpm: float = RPM) -> list[float]:
@@ -66,7 +78,7 @@ def thrusts(vehicle: Vehicle, model: str, rpm: float = RPM) -> list[float]:
 
 def text(vehicle: Vehicle) -> str:
     """The table as plain text."""
-    names = platforms.names()
+    names = [name for name in platforms.names() if name not in refusals(vehicle)]
     lines = ["thruster   rpm" + "".join(f"{name:>14}" for name in names) + "   thesis MATLAB   thesis ROS   (N)"]
     for row in rows(vehicle):
         printed = "".join(f"{'-' if v is None else format(v, '.1f'):>14}" for v in (row.matlab, row.ros))

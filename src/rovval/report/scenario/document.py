@@ -11,7 +11,7 @@ from typing import Any
 from rovval.comparison.between import between, of_simulation
 from rovval.core.data import Comparison
 from rovval.fly.scenarios import Outcome
-from rovval.fly.scenarios.table_6_1 import CIRCULAR, rows
+from rovval.fly.scenarios.table_6_1 import CIRCULAR, refusals, rows
 from rovval.plant import platforms
 from rovval.report import between as difference
 from rovval.report.common.drawing import Drawing
@@ -120,15 +120,16 @@ def _table_6_1(vehicle: Vehicle) -> Table:
     lines = []
     for row in rows(vehicle):
         printed = "-" if row.matlab is None or row.ros is None else f"{100 * (row.ros / row.matlab - 1):+.1f} %"
-        ours = [f"{row.ours[name]:.1f}" for name in names]
-        both = f"{100 * (row.ours['uuv'] / row.ours['fossen'] - 1):+.1f} %"
+        ours = [f"{row.ours[name]:.1f}" if name in row.ours else "-" for name in names]
+        both = f"{100 * (row.ours['uuv'] / row.ours['fossen'] - 1):+.1f} %" if {"uuv", "fossen"} <= row.ours.keys() else "-"
         lines.append((row.thruster, *("-" if v is None else f"{v:.1f}" for v in (row.matlab, row.ros)), printed, *ours, both))
     circular = [f"Circular for Merlin: {model}'s gains are the printed {column} column." for model, column in CIRCULAR.items()]
     notes = (
         *circular, "What is not: that thrust read off the motion gives them back (masses, allocation), and how far the columns are apart.",
         "Printed as Nm, read as N.",
     )  # fmt: skip
-    return Table("Table 6.1: thrust at 70 rpm, N", header, lines, notes if vehicle.name == "merlin" else ("The printed columns are Merlin's.",))
+    refused = [f"{model} cannot simulate this vehicle: {why}." for model, why in refusals(vehicle).items()]
+    return Table("Table 6.1: thrust at 70 rpm, N", header, lines, notes if vehicle.name == "merlin" else ("The printed columns are Merlin's.", *refused))
 
 
 def _claim(scenario: int, claim: str, a: Any, b: Any) -> Table:
