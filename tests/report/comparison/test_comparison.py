@@ -17,6 +17,7 @@ from report_cases import make_run, make_sim, motion
 
 from rovval import report, vehicle
 from rovval.comparison import compare
+from rovval.core.channels import AXES
 from rovval.core.data import Array, Comparison
 from rovval.core.errors import Finding, UsageProblem
 from rovval.report.common import curves
@@ -233,3 +234,8 @@ def test_what_lies_within_the_noise_of_a_sensor_is_no_alarm(wobble: float, alarm
     assert ("worse than predicting no motion in pitch" in said) is alarm
     assert ("in pitch motion and error are hardly more than the sensor's noise" in said) is not alarm
     assert ('class="neg"' in html.text(c)) is alarm
+
+
+def test_of_a_simulation_alone_it_is_said_that_nothing_was_measured() -> None:
+    run = make_run(300)
+    assert "Nothing was measured" in words.verdict(Comparison(run, make_sim(run), {}, {}, {}, AXES))

@@ -69,7 +69,9 @@ def _answer(comparison: Comparison) -> list[str]:
 
 
 def _pose_only(comparison: Comparison) -> str:
-    """For a log without velocities: the pose channels that it has."""
+    """For a log without velocities: the pose channels that it has; of a simulation alone, that it is one."""
+    if not comparison.pose:
+        return "Nothing was measured beside this simulation."
     gaps = listed([f"{TITLES[name]} ({quantity(row.rmse, row.unit)} rms)" for name, row in comparison.pose.items()])
     return (
         f"No velocity was measured in this log. In {windows(comparison)}, started from the measured pose, "
