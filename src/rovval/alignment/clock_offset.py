@@ -13,6 +13,7 @@ import numpy as np
 
 from rovval.core.channels import members
 from rovval.core.data import Array
+from rovval.core.peak import peak
 
 LARGEST_OFFSET_S = 2.0
 TREND_S = 5.0  # what is slower than this is trim, not a manoeuvre
@@ -37,12 +38,10 @@ def estimated_offset(values: Mapping[str, Array], dt: float) -> tuple[float | No
     best = int(np.argmax(score))
     if score[best] < LEAST_CORRELATION:
         return None, float(score[best]), f"no offset: best correlation {score[best]:.2f} is below {LEAST_CORRELATION:g}"
-    if best in (0, len(score) - 1):
+    at = peak(score)
+    if at is None:
         return None, float(score[best]), f"no offset: not within {LARGEST_OFFSET_S:g} s"
-    left, top, right = score[best - 1 : best + 2]
-    bend = left - 2 * top + right
-    shift = 0.5 * (left - right) / bend if bend < 0 else 0.0
-    return float((best - reach + shift) * dt), float(top), f"of {family} against acceleration; includes the thrusters' own lag"
+    return float((at - reach) * dt), float(score[best]), f"of {family} against acceleration; includes the thrusters' own lag"
 
 
 def _drive(values: Mapping[str, Array]) -> tuple[Array | None, str]:

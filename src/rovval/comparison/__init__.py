@@ -16,6 +16,7 @@ import numpy as np
 
 from rovval.alignment.noise import channel_noise
 from rovval.comparison import metrics
+from rovval.comparison.trajectory import track_error
 from rovval.core.channels import AXES, DRIVING, POSE, VELOCITIES, channel
 from rovval.core.data import Array, ChannelError, Comparison, Flags, Run, SimResult
 from rovval.core.errors import BadInput, SimulationStopped
@@ -75,6 +76,7 @@ def compare(
         other={} if nu is None else _other(run, sim, nu),
         other_name=other_name or ("other" if nu is not None else ""),
         other_nu=nu,
+        track=track_error(run, sim),
     )
 
 

@@ -6,27 +6,13 @@ Sturm, Engelhard, Endres, Burgard and Cremers 2012 (IROS), "A benchmark for the 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from rovval.core.data import Array, Run, SimResult
+from rovval.core.data import Array, Run, SimResult, TrackError
 from rovval.core.frames import rotation_from_euler
 
 STEP_S = 10.0  # over which the relative error is stated: the windows of a comparison (chosen)
 FEWEST = 3  # poses: fewer fix no alignment
-
-
-@dataclass(frozen=True, slots=True)
-class TrackError:
-    """Errors of position along a track of ``n`` poses, m: rms from one start, after the best rigid alignment, and of the way made in ``step_s``; the last
-    is None for a track that is shorter than that."""
-
-    n: int
-    ate: float
-    ate_aligned: float
-    rpe: float | None
-    step_s: float
 
 
 def track_error(run: Run, sim: SimResult) -> TrackError | None:
@@ -65,12 +51,7 @@ def aligned(measured: Array, simulated: Array) -> Array:
 
 def relative_error(measured: Array, simulated: Array, step: int) -> float:
     """Root mean square error (m) of the way made in ``step`` poses, one after the other, each seen from the body at its start: poses (n, 6), position in
-    m and Euler angles in rad."""
+    m and Euler angles in rad. Seen from the body at its end, as the paper has it, it is as long."""
     first = np.arange(0, len(measured) - step, step)
-    ways = []
-    for pose in (measured, simulated):
-        turn = rotation_from_euler(pose[first, 3:])
-        ways.append(np.einsum("nji,nj->ni", turn, pose[first + step, :3] - pose[first, :3]))
-    turned = [np.swapaxes(rotation_from_euler(p[first, 3:]), 1, 2) @ rotation_from_euler(p[first + step, 3:]) for p in (measured, simulated)]
-    error = np.einsum("nji,nj->ni", turned[0], ways[1] - ways[0])
-    return float(np.sqrt(np.mean(np.sum(error**2, axis=1))))
+    ways = [np.einsum("nji,nj->ni", rotation_from_euler(p[first, 3:]), p[first + step, :3] - p[first, :3]) for p in (measured, simulated)]
+    return absolute_error(*ways)

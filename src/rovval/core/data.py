@@ -272,6 +272,18 @@ class ChannelError:
 
 
 @dataclass(frozen=True, slots=True)
+class TrackError:
+    """Errors of position along a track of ``n`` poses, m: rms from one start, after the best rigid alignment, and of the way made in ``step_s``; the last
+    is None for a track that is shorter than that."""
+
+    n: int
+    ate: float
+    ate_aligned: float
+    rpe: float | None
+    step_s: float
+
+
+@dataclass(frozen=True, slots=True)
 class Comparison:
     """A run beside a simulation of it: per axis the error of the free run and of the restarted windows, and of pose channels.
     An axis that the run does not hold is absent from the tables and named in ``not_measured``."""
@@ -285,3 +297,4 @@ class Comparison:
     other: Mapping[str, ChannelError] = field(default_factory=dict)
     other_name: str = ""
     other_nu: Array | None = None
+    track: TrackError | None = None

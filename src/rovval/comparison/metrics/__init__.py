@@ -60,11 +60,16 @@ def kept(error: Array, ok: Flags, measured: Array | None = None) -> tuple[Array,
     return error[ok], truth
 
 
-def theil(name: str, error: Array, ok: Flags, measured: Array | None) -> tuple[float, Array, Array]:
-    """What Theil's decomposition is made of: mean squared error, simulated and measured values; refuses where none was measured."""
+def beside(name: str, error: Array, ok: Flags, measured: Array | None) -> tuple[Array, Array]:
+    """As `kept`, for a metric that is nothing without the measured values; refuses where there are none."""
     if measured is None:
         raise BadInput(f"{name} needs the measured values beside the error")
-    e, m = kept(error, ok, measured)
+    return kept(error, ok, measured)
+
+
+def theil(name: str, error: Array, ok: Flags, measured: Array | None) -> tuple[float, Array, Array]:
+    """What Theil's decomposition is made of: mean squared error, simulated and measured values; refuses where none was measured."""
+    e, m = beside(name, error, ok, measured)
     return float(np.mean(np.square(e))), m + e, m
 
 

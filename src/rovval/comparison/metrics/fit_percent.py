@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rovval.comparison.metrics import Array, Flags, UnitRule, kept
+from rovval.comparison.metrics import Array, Flags, UnitRule, beside
 from rovval.core.errors import BadInput
 
 NAME = "fit_percent"
@@ -16,9 +16,7 @@ PERFECT = 100.0
 
 def compute(error: Array, ok: Flags, dt: float, measured: Array | None = None) -> float:
     """100 for no error, 0 for an error as large as the motion, negative below that; refuses a channel that never moved."""
-    if measured is None:
-        raise BadInput(f"{NAME} needs the measured values beside the error")
-    e, m = kept(error, ok, measured)
+    e, m = beside(NAME, error, ok, measured)
     motion = float(np.linalg.norm(m - m.mean()))
     if motion == 0.0 or np.ptp(m) == 0.0:
         raise BadInput(f"{NAME} is not defined for a channel that never moved")

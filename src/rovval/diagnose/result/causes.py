@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict
 
 import numpy as np
@@ -22,7 +23,8 @@ def causes(problem: Problem, decision: Decision, before: list[Array], since: flo
 
     ``before`` are the nominal simulator's residuals; ``since`` (s) is when the part of the log begins that was searched, None for all of it.
     """
-    found = [_cause(problem, decision, h, before, since, seed) for h in decision.causes]
+    each = by_run(problem, decision.fit) if decision.fit else {}
+    found = [_cause(problem, decision, h, each, before, since, seed) for h in decision.causes]
     return tuple(sorted(found, key=lambda cause: -cause.shrinkage.total))
 
 
@@ -49,7 +51,9 @@ def settings(problem: Problem, fitted: HypothesisFit | None) -> tuple[str, ...]:
     return tuple(f"{name}:{','.join(values)}" for name, values in by_name.items())
 
 
-def _cause(problem: Problem, decision: Decision, h: Hypothesis, before: list[Array], since: float | None, seed: int) -> Cause:
+def _cause(
+    problem: Problem, decision: Decision, h: Hypothesis, each: Mapping[int, ByRun], before: list[Array], since: float | None, seed: int
+) -> Cause:
     assert decision.fit is not None
     joint = decision.fit
     single = joint if len(decision.causes) == 1 else fit_quickly(problem, alone(problem, joint, h), h.slots, joint.posterior.whitened)
@@ -60,15 +64,15 @@ def _cause(problem: Problem, decision: Decision, h: Hypothesis, before: list[Arr
         group=members(decision, h),
         probability=decision.probability[h.name],
         onset_s=next((float(joint.beta[s]) for s in h.slots if problem.plant.slots[s].parameter.role == "onset"), since),
-        parameters=_parameters(problem, joint, h),
+        parameters=_parameters(problem, joint, h, each),
         evidence=decision.added[h.name],
         shrinkage=Shrinkage(**asdict(shrinkage(problem, single, before, seed))),
     )
 
 
-def _parameters(problem: Problem, fitted: HypothesisFit, h: Hypothesis) -> dict[str, Parameter]:
+def _parameters(problem: Problem, fitted: HypothesisFit, h: Hypothesis, each: Mapping[int, ByRun]) -> dict[str, Parameter]:
     """Values of the joint fit; their intervals add the form error of the equations and stay within the parameters' bounds."""
-    found, error, each = dict[str, Parameter](), standard_errors(problem, fitted), by_run(problem, fitted)
+    found, error = dict[str, Parameter](), standard_errors(problem, fitted)
     for slot in h.slots:
         p, value = problem.plant.slots[slot].parameter, float(fitted.beta[slot])
         form = PARAMETER_FORM_ERROR * abs(value - float(problem.origin[slot]))

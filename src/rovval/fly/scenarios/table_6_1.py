@@ -42,7 +42,8 @@ class Row:
 
 def rows(vehicle: Vehicle) -> tuple[Row, ...]:
     """The table for a vehicle; the printed columns are Merlin's."""
-    ours = {model: thrusts(vehicle, model) for model in platforms.names() if model not in refusals(vehicle)}
+    refused = refusals(vehicle)
+    ours = {model: thrusts(vehicle, model) for model in platforms.names() if model not in refused}
     printed = {p: (PRINTED[p] if vehicle.name == "merlin" else (None,) * len(vehicle.thruster)) for p in PRINTED}
     return tuple(
         Row(name, RPM, {model: column[i] for model, column in ours.items()}, printed["MATLAB"][i], printed["ROS"][i])
@@ -78,9 +79,10 @@ def thrusts(vehicle: Vehicle, model: str, rpm: float = RPM) -> list[float]:
 
 def text(vehicle: Vehicle) -> str:
     """The table as plain text."""
-    names = [name for name in platforms.names() if name not in refusals(vehicle)]
+    table = rows(vehicle)
+    names = list(table[0].ours)
     lines = ["thruster   rpm" + "".join(f"{name:>14}" for name in names) + "   thesis MATLAB   thesis ROS   (N)"]
-    for row in rows(vehicle):
+    for row in table:
         printed = "".join(f"{'-' if v is None else format(v, '.1f'):>14}" for v in (row.matlab, row.ros))
         lines.append(f"{row.thruster:<9}{row.rpm:5.1f}" + "".join(f"{row.ours[name]:14.1f}" for name in names) + printed)
     return "\n".join(lines)

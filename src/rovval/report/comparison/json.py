@@ -9,7 +9,6 @@ from typing import Any
 
 from rovval.comparison import CORE, metrics
 from rovval.comparison.error_growth import HORIZONS_S, error_growth
-from rovval.comparison.trajectory import track_error
 from rovval.core.data import ChannelError, Comparison
 from rovval.core.units import DEGREE_UNITS, DEGREES, integral_unit
 from rovval.report.common.versions import versions
@@ -36,7 +35,7 @@ def document(comparison: Comparison) -> dict[str, Any]:
             "pose": {name: _row(row) for name, row in c.pose.items()},
             "horizon": _horizons(c),
         },
-        "track": asdict(track) if (track := track_error(run, sim)) else None,
+        "track": asdict(c.track) if c.track else None,
         "not_measured": list(c.not_measured),
         "other": {"name": c.other_name, "axes": {a: _row(r) for a, r in c.other.items()}} if c.other else None,
         "effects": list(sim.effects),

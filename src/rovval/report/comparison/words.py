@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from rovval.comparison.trajectory import track_error
 from rovval.core.data import ChannelError, Comparison
 from rovval.report.common.numbers import duration, listed, number, per_cent, quantity
 
@@ -117,7 +116,7 @@ def _skill(table: Mapping[str, ChannelError]) -> str:
 
 def track(comparison: Comparison) -> str:
     """How far the simulated track leads from the measured one; empty where positions were not logged."""
-    found = track_error(comparison.run, comparison.sim)
+    found = comparison.track
     if found is None:
         return ""
     way = "" if found.rpe is None else f"; error of the way made in {found.step_s:g} s {number(found.rpe)} m rms (RPE)"
