@@ -1,6 +1,6 @@
 """A small sealed set, made, answered and scored from nothing: floors that the engine must reach, and tests that chance scores chance.
 
-By default eight logs of 120 s of the Merlin, one or more of each sort; marked slow, the 24 logs of 240 s of `--size small`, and sixteen of plant b.
+By default six logs of 120 s of the Merlin, one or more of each sort; marked slow, the 24 logs of 240 s of `--size small`, and sixteen of plant b.
 The floors stand a good way below what was measured (the numbers are beside them), so that they fall when something breaks and not when a
 number moves. The full set is `rovval blind make sets/a --size full && rovval blind answer sets/a && rovval blind score sets/a` (hours, two cores).
 """
@@ -30,15 +30,13 @@ SEED = 20261
 MERLIN = vehicle.LIBRARY / "merlin.toml"
 FEW = (  # mission, what is planted, taken out of the library: one or more of each sort
     ("rich", (), ()),
-    ("survey", (), ()),
     ("rich", (Planted("buoyancy_error", None, 1.5),), ()),
     ("rich", (Planted("thruster_reversed", "HAS", 1.0),), ("waves",)),
     ("rich", (Planted("dvl_misalignment", "yaw", 2.0),), ()),
     ("rich", (Planted("buoyancy_error", None, -1.5), Planted("thruster_degraded", "HFP", 1.2)), ()),
-    ("rich", (Planted("hidden_trim", None, 2.0),), ()),
     ("rich", (Planted("reverse_asymmetry", None, 2.0),), ("reverse_asymmetry",)),
 )
-LOGS = {"few": (8, 3), "small": (24, 14)}  # of a set: logs, single effects
+LOGS = {"few": (6, 3), "small": (24, 14)}  # of a set: logs, single effects
 
 
 def few() -> list[Question]:

@@ -26,7 +26,7 @@ def trimmed(name: str, times: float) -> Vehicle:
     return rov.model_copy(update={"body": rov.body.model_copy(update={"volume": times * rov.body.mass / rov.water.density})})
 
 
-@pytest.mark.parametrize("name", ["merlin", "bluerov2_heavy", "minerva"])
+@pytest.mark.parametrize("name", ["merlin", "bluerov2_heavy", pytest.param("minerva", marks=pytest.mark.slow)])
 def test_a_light_vehicle_floats_with_its_weight_of_water_displaced(name):
     """Without the surface it rises for ever; with it, it comes to rest where the part under water displaces its mass (Archimedes)."""
     light = trimmed(name, 1.25)
@@ -44,7 +44,7 @@ def test_a_level_of_the_surface_shifts_all_depths():
     np.testing.assert_allclose(there[:, 2] - 30.0, here[:, 2], atol=1e-9)
 
 
-@pytest.mark.parametrize("name", ["merlin", "bluerov2_heavy", "minerva"])
+@pytest.mark.parametrize("name", ["merlin", "bluerov2_heavy", pytest.param("minerva", marks=pytest.mark.slow)])
 def test_a_heavy_vehicle_comes_to_lie_on_the_bottom(name):
     """It sinks in by its net weight over the stiffness, no further, and friction stops it."""
     heavy = trimmed(name, 0.95)

@@ -56,6 +56,7 @@ def test_the_calibrated_vehicle_predicts_a_dive_that_it_has_not_seen():
     assert (error[1][[0, 1, 2, 5]] < 0.5 * error[0][[0, 1, 2, 5]]).all()
 
 
+@pytest.mark.slow
 def test_a_second_calibration_changes_nothing():
     again = calibrate([dive(1)], parse(to_toml(done().vehicle), "calibrated"))
     moved = {row.unknown.key: abs(np.log(row.value) if row.unknown.kind == "factor" else row.value) / row.unknown.sd for row in again.rows}

@@ -50,6 +50,7 @@ def test_a_vehicle_without_a_righting_moment_fails_scenario_1(tmp_path):
     assert document["tilt_left_deg"] == pytest.approx(10.0, abs=0.2)
 
 
+@pytest.mark.slow
 def test_speeds_are_relative_to_the_vehicle_and_can_be_asked_for():
     """70 rpm on Merlin; a vehicle whose propellers turn faster for the same speed gets more; what hardly moves does not pass."""
     assert json.loads(run("scenario", "3", "--json").stdout)["fastest_rpm"] == pytest.approx(70.0)
@@ -79,6 +80,7 @@ def test_scenario_3_closes_the_loop_round_way_points(name, model):
     assert len(closed) == 4 and all(c["holds"] for c in closed)
 
 
+@pytest.mark.slow
 def test_scenarios_4_and_5_of_another_vehicle_have_a_log_of_its_own():
     """Synthetic, with an effect in it that the simulator beside it does not know; its name says what it is."""
     document = json.loads(run("scenario", "5", "--vehicle", "bluerov2_heavy", "--json").stdout)
@@ -86,6 +88,7 @@ def test_scenarios_4_and_5_of_another_vehicle_have_a_log_of_its_own():
     assert abs(document["table_6_2"]["surge"]["mean_error"]) > 1e-4
 
 
+@pytest.mark.slow
 def test_a_platform_that_cannot_simulate_a_vehicle_is_left_out_of_table_6_1_and_says_why():
     nominal = vehicle.load("bluerov_2016")  # its added mass is 6.5 times its own
     assert set(rows(nominal)[0].ours) == {"fossen", "freefloating"}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from diagnose_case import merlin, own, with_values
 
 from rovval.diagnose import diagnose
@@ -13,6 +14,7 @@ from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.report.diagnosis.json import document as written
 
 
+@pytest.mark.slow
 def test_a_rate_that_contradicts_its_angle_is_said_and_no_coefficient_is_blamed():
     """A gyro that reads too little of fast turns, softly, so that no sample stands at a stop: inertia, drag or thrusters would else take the blame."""
     run = own((), 5, 160.0)

@@ -30,6 +30,7 @@ def test_a_loss_that_begins_in_mid_log_varies_as_one_that_was_always_there():
     assert fitted(*posed(("thruster_fault_onset[VAC]:loss=0.9,onset=60",)), "thruster_degraded[VAC]") > 2.0
 
 
+@pytest.mark.slow
 def test_a_thruster_that_drops_out_now_and_then_is_put_down_to_no_other(tmp_path: Path):
     """The library has nothing that comes and goes; its nearest relative is a fault of the same thruster."""
     document = written(diagnose([foreign(tmp_path, (("intermittent_thruster", "VAC", 1.5),), 77)], merlin()))

@@ -20,7 +20,7 @@ RELATIVES = {  # withheld with the effect: the same law, or one that is it at so
 
 
 @pytest.mark.parametrize(
-    ("planted", "axes"), [("current_constant:north=0.15", {"surge", "sway"}), ("thruster_degraded[HFP]:loss=0.5", {"yaw"})]
+    ("planted", "axes"), [pytest.param("current_constant:north=0.15", {"surge", "sway"}, marks=pytest.mark.slow), ("thruster_degraded[HFP]:loss=0.5", {"yaw"})]
 )
 def test_a_withheld_effect_is_unknown_and_said_where(planted: str, axes: set[str]):
     document = written(diagnose([own((planted,), 5, 160.0)], merlin(), without=RELATIVES[planted]))

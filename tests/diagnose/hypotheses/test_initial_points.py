@@ -33,6 +33,7 @@ def test_waves_of_the_independent_plant_are_found(tmp_path: Path):
     assert "waves" in [c["effect"] for c in document["causes"]], document["sentence"]
 
 
+@pytest.mark.slow
 def test_a_pull_may_begin_ahead_or_astern():
     p, library = posed()
     x, reach = slot(p, "tether_tension.x"), LEVER_SHARE * max(float(np.linalg.norm(t.position)) for t in merlin().thruster)
@@ -43,6 +44,7 @@ def test_a_pull_may_begin_ahead_or_astern():
     assert document["causes"][0]["parameters"]["x"]["value"] == pytest.approx(-1.4, abs=0.4)
 
 
+@pytest.mark.slow
 def test_a_long_lag_is_found_though_it_is_no_multiple_of_a_short_one():
     document = diagnose([own(("velocity_filter_lag:tau=0.9",), 5, 200.0)], merlin()).document()
     assert document["causes"][0]["effect"] == "velocity_filter_lag", document["sentence"]

@@ -83,6 +83,7 @@ def test_fewer_columns_hold_the_same_covariance(quiet):
         assert weighed[1] == pytest.approx(weighed[0], rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_healthy_vehicle_on_station_is_not_blamed_and_the_push_is_found(tmp_path):
     """The independent plant's BlueROV2 under its autopilot, in water that pushes it: thrusters answer pushes that no log holds."""
     hull = LIBRARY / "bluerov2_heavy.toml"

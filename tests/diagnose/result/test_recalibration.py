@@ -93,6 +93,7 @@ def test_a_healthy_log_and_one_cause_are_not_a_matter_of_calibration(planted: tu
     assert bool(found.causes) == bool(planted)
 
 
+@pytest.mark.slow
 def test_nor_are_they_of_an_independent_plant(tmp_path_factory: pytest.TempPathFactory):
     folder = tmp_path_factory.mktemp("calibration")
     for seed, planted in ((41, ()), (42, (("thruster_degraded", "HFP", 1.0),))):

@@ -21,6 +21,7 @@ def test_a_cause_that_healthy_coefficients_hide_is_found_beside_them():
     assert document["within_tolerance"]["low"] > 0.0
 
 
+@pytest.mark.slow
 def test_a_coefficient_surely_off_is_named_though_the_gap_is_another_axis():
     """Trim within its tolerance makes nine tenths of the gap, in heave; sway's drag is out of tolerance as no healthy file's is."""
     document = written(diagnose([own(("quadratic_drag[sway]:scale=0.8", "buoyancy_error:force=60"), 5, 240.0)], merlin()))

@@ -15,6 +15,7 @@ from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.vehicle import load
 
 
+@pytest.mark.slow
 def test_a_list_that_an_autopilot_holds_is_found(tmp_path: Path):
     """It makes roll and pitch count little, and other coefficients within tolerance show more than the list itself."""
     document = diagnose([bluerov2(tmp_path, "list.csv", 12, 200.0, 0.03, ("cg_offset", "", -1.6))], load("bluerov2_heavy")).document()
@@ -43,12 +44,14 @@ def test_what_is_large_or_has_its_datum_in_the_log_is_found(tmp_path: Path, plan
     assert name in document["causes"][0]["group"][:2], document["sentence"]
 
 
+@pytest.mark.slow
 def test_propellers_that_are_all_of_one_hand_are_found_where_the_file_has_them_in_pairs(tmp_path: Path):
     document = diagnose([bluerov2(tmp_path, "hand.csv", 12, 160.0, 0.03, ("propeller_torque", "", 1.5))], load("bluerov2_heavy")).document()
     (cause,) = document["causes"]
     assert cause["effect"] == "propeller_torque" and cause["parameters"]["common"]["value"] < -0.02, document["sentence"]
 
 
+@pytest.mark.slow
 def test_a_depth_sensor_that_is_late_is_named_and_has_no_tolerance(tmp_path: Path):
     """Half a sample of delay is nothing that a check of the depth is held to see, so it has no tolerance; a longer one shows in that check alone."""
     run = foreign(tmp_path, (("time_offset", "depth", 1.5),), 12, 200.0, 0.02)
@@ -79,6 +82,7 @@ def test_a_late_sensor_and_a_load_that_is_set_down_are_found_in_their_size(
     assert found["low"] < true < found["high"] if true else found["high"] < 0.0
 
 
+@pytest.mark.slow
 def test_commands_that_come_most_of_a_second_late_are_found_though_no_slope_shows_it():
     """Thrusters that answer as much later are the same thing."""
     document = diagnose([own(("time_offset:tau=0.8",), 5, 160.0)], merlin()).document()

@@ -46,6 +46,7 @@ def logs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Run, Run]:
     return runs[0], runs[1]
 
 
+@pytest.mark.slow
 def test_what_begins_in_mid_log_is_named_from_there_on(logs: tuple[Run, Run]) -> None:
     found = diagnose([logs[0]], merlin())
     document = written(found)
@@ -55,6 +56,7 @@ def test_what_begins_in_mid_log_is_named_from_there_on(logs: tuple[Run, Run]) ->
     assert document["sentence"].startswith(since(found)) and since(found)
 
 
+@pytest.mark.slow
 def test_what_is_always_there_has_no_beginning(logs: tuple[Run, Run]) -> None:
     found = diagnose([logs[1]], merlin())
     document = found.document()
