@@ -66,7 +66,7 @@ ALLOWED = {
     "rerun": {"report"},
     "numba": {"plant", "effects"},
     "llvmlite": {"plant"},
-    "scipy": {"ingest", "plant", "diagnose", "blind", "alignment", "report", "simulation", "trend"},
+    "scipy": {"ingest", "plant", "diagnose", "blind", "alignment", "report", "simulation", "comparison", "trend"},
     "distributed": {"pipeline"},
     "upath": {"storage"},
     "cryptography": {"blind"},

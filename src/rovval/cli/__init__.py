@@ -24,9 +24,11 @@ def main() -> NoReturn:
     import typer
 
     from rovval.cli.app import app
+    from rovval.report.common.versions import made_by
 
     try:
-        code = app(prog_name="rovval", standalone_mode=not as_json())
+        with made_by(sys.argv[1:]):
+            code = app(prog_name="rovval", standalone_mode=not as_json())
     except RovvalError as error:
         leave(error.message, error.exit_code, error.hint, type(error).__name__)
     except OSError as error:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,6 +12,7 @@ from rovval.cli import complete, logs, options, output
 from rovval.core.errors import UsageProblem
 
 if TYPE_CHECKING:
+    from rovval.comparison.tolerance import Tolerance
     from rovval.core.data import Comparison
     from rovval.vehicle.model import Vehicle
 
@@ -104,7 +106,7 @@ def command(
     comparison = compare(run, sim, other, with_.name if with_ else "")
     show("report", 0.7)
     folder = Path("reports") / run.id if out is None and not json_ else out
-    document = _report(comparison, nominal, folder, json_)
+    document = _report(comparison, nominal, folder, json_, limits)
     show("report", 1.0)
     if beyond := tolerances.exceeded(limits, document):
         output.say("\n".join(output.styled(f"rovval: tolerance exceeded: {line}", err=True, fg="red") for line in beyond))
@@ -113,14 +115,14 @@ def command(
         raise typer.Exit(1)
 
 
-def _report(comparison: Comparison, vehicle: Vehicle, folder: Path | None, as_json: bool) -> dict[str, Any]:
+def _report(comparison: Comparison, vehicle: Vehicle, folder: Path | None, as_json: bool, limits: Sequence[Tolerance]) -> dict[str, Any]:
     """The report into its folder, if it has one, and the result on stdout; what `--json` prints."""
     from rovval import report
     from rovval.report.comparison.json import document as comparison_json
     from rovval.report.comparison.terminal import text
 
     document = comparison_json(comparison)
-    files = {} if folder is None else report.write(comparison, folder, vehicle)
+    files = {} if folder is None else report.write(comparison, folder, vehicle, limits=limits)
     if as_json:
         output.result_json(document)
     else:

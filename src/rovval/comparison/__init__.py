@@ -16,6 +16,7 @@ import numpy as np
 
 from rovval.alignment.noise import channel_noise
 from rovval.comparison import metrics
+from rovval.comparison.block_bootstrap import intervals
 from rovval.comparison.trajectory import track_error
 from rovval.core.channels import AXES, DRIVING, POSE, VELOCITIES, channel
 from rovval.core.data import Array, ChannelError, Comparison, Flags, Run, SimResult
@@ -53,8 +54,8 @@ def compare(
     windowed: dict[str, ChannelError] = {}
     for j, (axis, name) in enumerate(zip(AXES, VELOCITIES, strict=True)):
         measured, ok = run.get(name), run.ok(name)
-        for table, traj in ((free, sim.free), (windowed, sim.windowed)):
-            row = _error(name, traj.nu[:, j], measured, ok & traj.ok, np.zeros(len(run)), run.dt)
+        for table, traj, block in ((free, sim.free, 1), (windowed, sim.windowed, _window_rows(sim))):
+            row = _error(name, traj.nu[:, j], measured, ok & traj.ok, np.zeros(len(run)), run.dt, block)
             if row is not None:
                 table[axis] = replace(row, noise=channel_noise(run, name))
     absent = tuple(a for a, n in zip(AXES, VELOCITIES, strict=True) if not run.measured(n))
@@ -109,8 +110,13 @@ def _first_kept(stretch: NDArray[np.int64], keep: Flags) -> NDArray[np.int64]:
     return np.where((stretch >= 0) & (found < len(stretch)), found, rows)
 
 
-def _error(name: str, simulated: Array, measured: Array, keep: Flags, baseline: Array, dt: float) -> ChannelError | None:
-    """One row of a table, or None where the channel has no row to compare."""
+def _window_rows(sim: SimResult) -> int:
+    """Rows of a whole window."""
+    return round(sim.window_s / sim.dt)
+
+
+def _error(name: str, simulated: Array, measured: Array, keep: Flags, baseline: Array, dt: float, block: int = 1) -> ChannelError | None:
+    """One row of a table, or None where the channel has no row to compare; rows that hang together as the ``block`` of a window does."""
     keep = keep & np.isfinite(simulated) & np.isfinite(measured) & np.isfinite(baseline)
     if not keep.any():
         return None
@@ -128,6 +134,7 @@ def _error(name: str, simulated: Array, measured: Array, keep: Flags, baseline: 
         baseline_rmse=base["rmse"],
         skill=1.0 - (core["rmse"] / base["rmse"]) ** 2 if base["rmse"] > 0.0 else None,
         extra=_extra(error, keep, dt, measured),
+        intervals=intervals(error[keep], trivial[keep], dt, block),
         **core,
     )
 
@@ -164,7 +171,7 @@ def _pose(run: Run, sim: SimResult) -> Mapping[str, ChannelError]:
         if tumbling and name in ATTITUDE:
             euler, axis = run.stack(ATTITUDE), ATTITUDE.index(name)
             simulated, still = (measured + _turn(run, x, euler)[:, axis] for x in (sim.windowed.eta[:, 3:], euler[first]))
-        row = _error(name, simulated, measured, keep, still, run.dt)
+        row = _error(name, simulated, measured, keep, still, run.dt, _window_rows(sim))
         if row is not None:
             result[name] = replace(row, noise=channel_noise(run, name))
     return result

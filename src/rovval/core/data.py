@@ -248,7 +248,8 @@ class ChannelError:
 
     Errors are simulated minus measured, in ``unit``; ``iae`` in unit * s. ``baseline_rmse`` is the error of the predictor that
     says "no motion" (velocities) or "stays where the stretch began" (pose), ``skill`` is 1 - mse / mse(baseline). ``noise`` is the standard deviation of
-    the sensor's white noise, in ``unit``: errors of that size say nothing of a simulator.
+    the sensor's white noise, in ``unit``: errors of that size say nothing of a simulator. ``intervals`` are (low, high) of 90 % of the errors and the
+    skill, by name; none where the log is too short to tell.
     """
 
     channel: str
@@ -264,6 +265,7 @@ class ChannelError:
     skill: float | None
     extra: Mapping[str, float] = field(default_factory=dict)
     noise: float = 0.0
+    intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     @property
     def misleads(self) -> bool:

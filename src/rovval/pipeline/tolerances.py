@@ -8,38 +8,23 @@ Every metric of `rovval list metric` may be one. A limit is the most that is all
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rovval.core.errors import UsageProblem, all_at_once
 
 if TYPE_CHECKING:
-    from rovval.comparison.metrics import Metric
+    from rovval.comparison.tolerance import Tolerance
 
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
-RMS = "rms"  # of restarted windows, as their documents name it
 TREND = "trend."
-
-
-@dataclass(frozen=True, slots=True)
-class Tolerance:
-    """One limit: where (free run or restarted windows), which axis, which number of the comparison, and its limit in SI."""
-
-    windowed: bool
-    axis: str
-    metric: str
-    limit: float
-
-    def __str__(self) -> str:
-        return f"{'window.' if self.windowed else ''}{self.axis}.{self.metric}"
 
 
 def parse(texts: Sequence[str]) -> tuple[Tolerance, ...]:
     """Limits of one run, of the command line or of a pipeline file; every wrong one is named at once."""
-    found, problems = [], []
+    found, problems = list["Tolerance"](), list[str]()
     for text in texts:
         tolerance = _one(text)
-        found.append(tolerance) if isinstance(tolerance, Tolerance) else problems.append(tolerance)
+        problems.append(tolerance) if isinstance(tolerance, str) else found.append(tolerance)
     if problems:
         raise UsageProblem(
             all_at_once(problems, "tolerance"), "write AXIS=VALUE, AXIS.METRIC=VALUE or window.AXIS.METRIC=VALUE"
@@ -68,10 +53,12 @@ def _positive(value: str) -> bool:
 
 
 def _one(text: str) -> Tolerance | str:
+    from rovval.comparison.tolerance import RMS, Tolerance
+
     name, equals, value = text.partition("=")
     windowed = name.startswith("window.")
     axis, _, metric = name.removeprefix("window.").partition(".")
-    metric = metric or ("rms" if windowed else "rmse")
+    metric = metric or (RMS if windowed else "rmse")
     known = _known(windowed)
     if axis not in AXES:
         return f"{text!r}: axis {axis!r} is none of {', '.join(AXES)}"
@@ -95,29 +82,15 @@ def exceeded(tolerances: Sequence[Tolerance], comparison: Mapping[str, Any]) -> 
         value = None if row is None else row.get(t.metric)
         if value is None:
             sentences.append(f"{t}: limit {t.limit:g}, but {t.axis} was not measured in this run")
-        elif _more_is_better(t) and value < t.limit:
-            sentences.append(f"{t}: {value:.4g} {_unit(t, comparison)} is below the limit {t.limit:g}")
-        elif not _more_is_better(t) and abs(value) > t.limit:
-            sentences.append(f"{t}: {abs(value):.4g} {_unit(t, comparison)} is above the limit {t.limit:g}")
+        elif not t.keeps(value):
+            size, side = (value, "below") if t.more_is_better else (abs(value), "above")
+            unit = t.of.unit_of(str(comparison["axes"].get(t.axis, {}).get("unit", "")))
+            sentences.append(f"{t}: {size:.4g} {unit} is {side} the limit {t.limit:g}")
     return tuple(sentences)
 
 
 def _known(windowed: bool) -> tuple[str, ...]:
     from rovval.comparison import metrics
+    from rovval.comparison.tolerance import RMS
 
     return (*((RMS,) if windowed else ()), *metrics.names())
-
-
-def _metric(tolerance: Tolerance) -> Metric:
-    from rovval.comparison import metrics
-
-    return metrics.get("rmse" if tolerance.metric == RMS else tolerance.metric)
-
-
-def _more_is_better(tolerance: Tolerance) -> bool:
-    return _metric(tolerance).perfect > 0.0
-
-
-def _unit(tolerance: Tolerance, comparison: Mapping[str, Any]) -> str:
-    unit = str(comparison["axes"].get(tolerance.axis, {}).get("unit", ""))
-    return _metric(tolerance).unit_of(unit)

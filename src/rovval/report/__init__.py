@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from rovval.comparison.tolerance import Tolerance
     from rovval.core.data import Comparison, SimResult
     from rovval.diagnose.result.diagnosis import Diagnosis
     from rovval.fly.flight import Flight
     from rovval.vehicle.model import Vehicle
 
 
-def write(comparison: Comparison, folder: Path, vehicle: Vehicle, corrected: SimResult | None = None, recorded: bool = True) -> Mapping[str, Path]:
+def write(
+    comparison: Comparison, folder: Path, vehicle: Vehicle, corrected: SimResult | None = None, recorded: bool = True, limits: Sequence[Tolerance] = ()
+) -> Mapping[str, Path]:  # fmt: skip
     """Write report.json, report.md, report.html and, where it is to be ``recorded``, run.rrd into ``folder``, whole or not at all; name -> path.
 
-    ``corrected`` is a simulation of the same run with the effects of a diagnosis in it: the recording's third trace.
+    ``corrected`` is a simulation of the same run with the effects of a diagnosis in it, whose report has or will have the recording in the same
+    ``folder``: the recording's third trace. ``limits`` are the tolerances that were stated.
     """
     from rovval.report.common.files import Writer, write_all
     from rovval.report.comparison import html, json, markdown
@@ -25,7 +29,7 @@ def write(comparison: Comparison, folder: Path, vehicle: Vehicle, corrected: Sim
     files: dict[str, str | Writer] = {
         "report.json": json.text(json.document(comparison)),
         "report.md": markdown.text(comparison),
-        "report.html": html.text(comparison),
+        "report.html": html.text(comparison, recorded or corrected is not None, limits),
     }
     if recorded:
         files["run.rrd"] = lambda path: recording.write(comparison, path, vehicle, corrected)

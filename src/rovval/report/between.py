@@ -13,7 +13,7 @@ from rovval.report.common.drawing import Drawing
 from rovval.report.common.markdown import grid
 from rovval.report.common.numbers import MISSING, listed, number, per_cent
 from rovval.report.common.page import render
-from rovval.report.common.versions import versions
+from rovval.report.common.versions import foot
 
 CLAIM = 0.10  # thesis 6.1: "a 10% variation in ROV dynamics across the platforms"
 PLATFORMS = ("fossen", "uuv")  # the thesis's two: its Simulink and its ROS model
@@ -44,7 +44,7 @@ def html(difference: Difference, what: str) -> str:
     return render(
         "difference.html", title=f"{b.name} minus {a.name} · rovval", eyebrow="Simulator against simulator", name=f"{b.name} minus {a.name}", banner="",
         said=[said(difference)], facts={"driven by": what, "A": a.name, "B": b.name, "length": f"{(len(a.nu) - 1) * a.dt:g} s"},
-        header=HEAD, rows=lines(difference), foot=FOOT, figures=figures(difference), footer=" · ".join(f"{k} {v}" for k, v in versions().items()),
+        header=HEAD, rows=lines(difference), foot=FOOT, figures=figures(difference), footer=foot(),
     )  # fmt: skip
 
 

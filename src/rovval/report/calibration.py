@@ -10,7 +10,7 @@ from rovval.core.units import in_degrees
 from rovval.report.common.drawing import Box, Dot, Drawing, Line, Shape, Text
 from rovval.report.common.numbers import MISSING, interval, listed, number, per_cent, quantity
 from rovval.report.common.page import render
-from rovval.report.common.versions import versions
+from rovval.report.common.versions import foot
 
 MOST_CELLS = 14  # unknowns of the first picture of correlations: more do not fit a phone's width
 TOLD = 0.3  # correlation from which a cell has its number: below it a tenth of the variance is shared
@@ -43,7 +43,7 @@ def html(document: Mapping[str, Any]) -> str:
         further=[further(one) for one in document["extrapolated"]],
         options=document["options"],
         commands=commands(document["commands"]),
-        footer=" · ".join(f"{k} {v}" for k, v in versions().items()),
+        footer=foot(),
     )
 
 

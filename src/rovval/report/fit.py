@@ -9,7 +9,7 @@ from rovval.core.units import in_degrees
 from rovval.report import calibration as calibration_page
 from rovval.report.common.numbers import interval, number, per_cent, share
 from rovval.report.common.page import render
-from rovval.report.common.versions import versions
+from rovval.report.common.versions import foot
 
 MOST_PAIRS = 5  # correlated pairs that are named
 FAR = 2.0  # standard deviations of the prior from which a departure is told
@@ -27,7 +27,7 @@ def html(document: Mapping[str, Any]) -> str:
     return render(
         "fit.html", title=f"{document['run']} · rovval fit", eyebrow="Fit", name=document["run"], banner="",
         said=[f"{len(document['parameters'])} parameters tuned."], facts={key: document[key] for key in ("vehicle", "model", "windows")},
-        parameters=document["parameters"], text=text(document), footer=" · ".join(f"{k} {v}" for k, v in versions().items()),
+        parameters=document["parameters"], text=text(document), footer=foot(),
     )  # fmt: skip
 
 

@@ -19,7 +19,7 @@ from rovval.report.common.files import write_all
 from rovval.report.common.hues import hues
 from rovval.report.common.numbers import duration, number
 from rovval.report.common.page import render
-from rovval.report.common.versions import versions
+from rovval.report.common.versions import foot
 
 HEIGHT_PX = 720  # of the page in a notebook's cell; it scrolls
 
@@ -111,14 +111,10 @@ def _curves(
         facts=facts,
         places=places,
         notes=notes,
-        footer=_footer(),
+        footer=foot(),
     )
 
 
 def _drawn(values: Array, unit: str) -> Array:
     """Angles and rates in degrees, as every page shows them."""
     return np.asarray(values * in_degrees(1.0, unit)[0])
-
-
-def _footer() -> str:
-    return " · ".join(f"{k} {v}" for k, v in versions().items())

@@ -17,12 +17,14 @@ from report_cases import make_run, make_sim, motion
 
 from rovval import report, vehicle
 from rovval.comparison import compare
+from rovval.comparison.tolerance import Tolerance
 from rovval.core.channels import AXES
 from rovval.core.data import Array, Comparison
 from rovval.core.errors import Finding, UsageProblem
 from rovval.report.common import curves
+from rovval.report.common.drawing import Text
 from rovval.report.common.files import write_all
-from rovval.report.comparison import html, markdown, terminal, words
+from rovval.report.comparison import html, markdown, residuals, terminal, tolerances, track, uncertainty, words
 from rovval.report.comparison import json as report_json
 
 MERLIN = vehicle.load("merlin")
@@ -239,3 +241,59 @@ def test_what_lies_within_the_noise_of_a_sensor_is_no_alarm(wobble: float, alarm
 def test_of_a_simulation_alone_it_is_said_that_nothing_was_measured() -> None:
     run = make_run(300)
     assert "Nothing was measured" in words.verdict(Comparison(run, make_sim(run), {}, {}, {}, AXES))
+
+
+def test_the_page_says_how_sure_the_errors_are_and_what_is_seen_of_them() -> None:
+    c = case(1200)
+    page, document = html.text(c), report_json.document(c)
+    assert "How sure these errors are" in page and "ASME V&amp;V 20" in page
+    row = document["window"]["axes"]["surge"]
+    low, high = row["intervals"]["rmse"].values()
+    assert low < row["rmse"] < high and set(row["intervals"]) == {"mean_error", "mae", "iae", "rmse", "skill"}
+    found = document["validation"]["axes"]["surge"]
+    assert found["verdict"] == "seen" and found["low"] == pytest.approx(found["error"] - 2 * found["u_validation"])
+    assert len(document["validation"]["left_out"]) == 2
+    few = case(300)
+    assert not few.windowed["surge"].intervals and [form for _, form, _ in uncertainty.interval_rows(few)] == ["free run"] * 6
+
+
+def test_tolerances_are_judged_on_the_page_and_drawn_as_a_tube() -> None:
+    c = case()
+    rmse, vaf = c.windowed["surge"].rmse, c.free["surge"].extra["vaf"]
+    limits = [Tolerance(True, "surge", "rms", 2 * rmse), Tolerance(False, "surge", "vaf", vaf - 1), Tolerance(False, "yaw", "mae", 1e-6)]
+    judged = tolerances.rows(c, limits)
+    assert [j.kept for j in judged] == [True, True, False] and judged[0].inside != judged[2].inside and judged[1].inside == "-"
+    page = html.text(c, limits=limits)
+    check_html(page)
+    assert "Tolerance exceeded: yaw.mae." in page and page.count(">kept<") == 2 and page.count(">exceeded<") == 1
+    [data] = re.findall(r'id="data">(.*?)</script>', page, re.DOTALL)
+    plots = {p["id"]: p for p in json.loads(data.replace("<\\/", "</"))["plots"]}
+    assert plots["v-surge"]["tube"] == pytest.approx(2 * rmse) and plots["v-yaw"]["tube"] == pytest.approx(math.degrees(1e-6))
+    assert "tube" not in plots["v-sway"] and 'class="tube"' in page
+    assert ">Tolerances<" not in html.text(c)
+
+
+def test_a_tolerance_of_what_was_not_measured_is_not_kept() -> None:
+    [judged] = tolerances.rows(case(absent=("q",)), [Tolerance(False, "pitch", "rmse", 1.0)])
+    assert not judged.kept and judged.value == "-"
+
+
+def test_the_track_is_drawn_from_above_where_positions_were_measured() -> None:
+    c = case()
+    plan = track.plan(c)
+    assert plan is not None and "Track from above" in html.text(c)
+    ends = {s.words: (s.x, s.y) for s in plan.shapes if isinstance(s, Text)}
+    north, east = (c.run.get(n)[-1] - c.run.get(n)[0] for n in ("x", "y"))
+    assert np.sign(ends["end"][0] - ends["start"][0]) == np.sign(east) and np.sign(ends["end"][1] - ends["start"][1]) == -np.sign(north)
+    [picture], _ = track.error(c)
+    free = decoded(picture["series"][0]["d"])
+    assert free[0] < 0.1 and free[-1] == pytest.approx(0.02 * 60 * math.sqrt(2), rel=0.05), "it goes off by 0.02 m/s north and east"
+    bare = case(absent=("x", "y"))
+    assert track.plan(bare) is None and "Track from above" not in html.text(bare)
+
+
+def test_the_error_s_autocorrelation_and_spectrum_are_on_the_page() -> None:
+    axes, pictures, places = residuals.drawn(case(1200, absent=("q",)))
+    assert {p.identity for p in places} == {p["id"] for p in pictures} == {f"{kind}-{a}" for kind in "rf" for a in AXES if a != "pitch"}
+    assert (axes["lag"]["unit"], axes["frequency"]["unit"], axes["frequency"]["log"]) == ("s", "Hz", True)
+    assert all(p.note.endswith("of the lags outside the band") for p in places if p.identity.startswith("r-"))

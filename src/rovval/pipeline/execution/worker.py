@@ -173,15 +173,18 @@ class _Bench:
         from rovval import report
         from rovval.comparison import compare
         from rovval.pipeline.steps import checked_against
+        from rovval.report.common.versions import made_by
         from rovval.report.comparison.json import document
 
         comparison = compare(checked_against(self.run, self.vehicle), self.sim)
-        files = report.write(comparison, self.task.folder / "comparison", self.vehicle, recorded=self.task.recordings)
+        with made_by(self._typed("compare")):
+            files = report.write(comparison, self.task.folder / "comparison", self.vehicle, recorded=self.task.recordings)
         return {"comparison": document(comparison)}, list(files.values())
 
     def diagnose(self) -> tuple[dict[str, Any], list[Path]]:
         from rovval import report
         from rovval.diagnose import diagnose
+        from rovval.report.common.versions import made_by
         from rovval.report.diagnosis import json as diagnosis_json
         from rovval.report.diagnosis.sentence import verdict
 
@@ -190,8 +193,16 @@ class _Bench:
             [self.run], self.vehicle, model=task.model, window_s=task.window_s, calibration_slop=task.calibration_slop
         )
         document = diagnosis_json.document(found)
-        files = report.write_diagnosis(found, folder)
+        with made_by(self._typed("diagnose", "--calibration-slop", f"{task.calibration_slop:g}")):
+            files = report.write_diagnosis(found, folder)
         if found.vehicle_fixed:
             write_text(folder / "vehicle_fixed.toml", found.vehicle_fixed)
         facts = {key: document[key] for key in ("vehicle", "verdict", "causes")}
         return {**facts, "said": verdict(found), "gap": document["gap"]["axes"]}, list(files.values())
+
+    def _typed(self, command: str, *more: str) -> list[str]:
+        """The command that makes one of its reports by hand."""
+        task = self.task
+        options = {"--profile": task.profile, "--vehicle": task.vehicle, "--model": task.model, "--window": f"{task.window_s:g}"}
+        effects = [word for effect in task.effects for word in ("--effect", effect)] if command == "compare" else []
+        return [command, str(task.log), *(word for name, value in options.items() if value for word in (name, value)), *effects, *more]

@@ -13,14 +13,25 @@
   const times = (x) => (x.b ? decode(x) : Array.from({ length: x.n }, (_, i) => x.t0 + i * x.dt));
   const X = {}, hidden = new Set(D.hidden || []);
   for (const key in D.x) X[key] = times(D.x[key]);
-  const plots = D.plots.map((p) => ({ ...p, data: [X[p.x], ...p.series.map((s) => decode(s.d))] }));
-  const colour = (s, i, n) => (s.hue === undefined ? css("--" + s.key) : `hsl(${s.hue} 55% ${css("--bg") === "#fff" ? 42 : 66}%)`);
+  // A tube is what lies within a tolerance of the first curve: its two edges are curves without a line.
+  const edges = (p) => (p.tube ? [1, -1].map((k) => p.data[1].map((v) => (v === null ? null : v + k * p.tube))) : []);
+  const less = (a, b) => a.map((v, i) => (v === null || b[i] === null ? null : v - b[i]));
+  const other = (s) => D.plots.find((p) => p.id === s.of).series, values = (s) => (s.d ? decode(s.d) : less(values(other(s)[s.index]), values(other(s)[0])));
+  const plots = D.plots.map((p) => ({ ...p, data: [X[p.x], ...p.series.map(values)] }));
+  const colour = (s) => (s.hue === undefined ? css("--" + s.key) : `hsl(${s.hue} 55% ${css("--bg") === "#fff" ? 42 : 66}%)`);
   const short = (v) => (v === null || v === undefined ? "–" : v.toPrecision(3));
   // An error strip is low: zero, and the largest round number that fits in on both sides.
   const ticks = (u) => {
     const { min, max } = u.scales.y, far = Math.max(Math.abs(min), Math.abs(max)), power = 10 ** Math.floor(Math.log10(far || 1));
     const round = [5, 4, 3, 2, 1.5, 1].map((k) => k * power).find((v) => v <= far) || far;
     return [-round, 0, round].filter((v) => v >= min && v <= max);
+  };
+  const shade = (u, bands) => {
+    const { left, top, width, height } = u.bbox, place = (v) => Math.min(Math.max(u.valToPos(v, "x", true), left), left + width);
+    for (const [from, to, key] of bands) {
+      u.ctx.fillStyle = css("--" + key);
+      u.ctx.fillRect(place(from), top, Math.max(place(to) - place(from), from === to ? 2 * devicePixelRatio : 0), height);
+    }
   };
   let charts = [], moving = false;
 
@@ -30,23 +41,26 @@
     const axis = { stroke: fg, font: "11px system-ui, sans-serif", grid: { stroke: grid, width: 1 }, ticks: { show: false } };
     charts = plots.map((p) => {
       const host = document.getElementById(p.id), read = p.error ? null : host.parentNode.querySelector(".read");
-      const series = p.series.map((s, i) => ({
-        label: s.label, stroke: colour(s, i), width: s.key === "measured" ? 2.2 : s.key === "free" ? 1 : 1.3, dash: s.dash, points: { show: false }, show: !hidden.has(s.key),
+      const { unit = "s", log = false } = D.x[p.x], tube = edges(p), first = p.series.length + 1;
+      const series = p.series.map((s) => ({
+        label: s.label, stroke: colour(s), width: s.key === "measured" ? 2.2 : s.key === "free" ? 1 : 1.3, dash: s.dash, points: { show: false }, show: !hidden.has(s.key),
         spanGaps: false,
       }));
       return new uPlot({
         width: host.clientWidth, height: host.clientHeight, legend: { show: false }, padding: [8, 6, p.bare ? 8 : 0, 0],
         cursor: { sync: { key: p.x, setSeries: false }, drag: { x: true, y: false }, points: { size: 5 }, y: false },
-        scales: { x: { time: false } },
-        axes: [{ ...axis, show: !p.bare, size: 26, values: (u, v) => v.map((t, i) => (i === v.length - 1 ? t + " s" : t)) },
+        scales: { x: { time: false, distr: log ? 3 : 1, ...(log ? { range: (u, min, max) => [min, max] } : {}) } },
+        axes: [{ ...axis, show: !p.bare, size: 26, values: (u, v) => v.map((t, i) => (t === null ? "" : i === v.length - 1 || (log && t === 1) ? `${t} ${unit}` : t)) },
           { ...axis, size: 50, space: 30, ...(p.error ? { splits: ticks } : {}) }],
-        series: [{}, ...series],
+        series: [{}, ...series, ...tube.map(() => ({ points: { show: false } }))],
+        bands: tube.length ? [{ series: [first, first + 1], fill: css("--tube") }] : [],
         hooks: {
+          drawClear: [(u) => shade(u, p.bands || [])],
           setCursor: [(u) => {
             const k = u.cursor.idx;
             if (!read) return;
             read.textContent = k === null || k === undefined ? "" :
-              `${u.data[0][k].toFixed(1)} s  ` + p.series.map((s, i) => (u.series[i + 1].show && p.series.length < 5 ? `${s.short || s.label} ${short(u.data[i + 1][k])}` : "")).filter(Boolean).join("  ");
+              `${log ? short(u.data[0][k]) : u.data[0][k].toFixed(1)} ${unit}  ` + p.series.map((s, i) => (u.series[i + 1].show && p.series.length < 5 ? `${s.short || s.label} ${short(u.data[i + 1][k])}` : "")).filter(Boolean).join("  ");
           }],
           setScale: [(u, k) => {
             if (k !== "x" || moving) return;
@@ -55,9 +69,42 @@
             moving = false;
           }],
         },
-      }, p.data, host);
+      }, [...p.data, ...tube], host);
     });
   };
+
+  // Every picture as a file: PNG as it is seen, with its heading, and CSV with all of its values.
+  const save = (name, url) => Object.assign(document.createElement("a"), { download: name, href: url }).click();
+  const named = (host, kind) => `${document.querySelector("h1").textContent} ${host.id}.${kind}`.replace(/[^\w.-]+/g, "_");
+  const parts = (box) => [...box.querySelectorAll(".canvas")].map((host) => plots.findIndex((p) => p.id === host.id));
+  const png = (box) => {
+    const pictures = parts(box).map((k) => charts[k].ctx.canvas), scale = devicePixelRatio, head = 24 * scale;
+    const sheet = Object.assign(document.createElement("canvas"), { width: pictures[0].width, height: head + pictures.reduce((sum, c) => sum + c.height, 0) });
+    const pen = sheet.getContext("2d");
+    pen.fillStyle = css("--bg");
+    pen.fillRect(0, 0, sheet.width, sheet.height);
+    pen.fillStyle = css("--ink");
+    pen.font = `${12 * scale}px system-ui, sans-serif`;
+    pen.fillText([...box.querySelectorAll("header b, header span:not(.read):not(.save)")].map((e) => e.textContent).filter(Boolean).join("   "), 6 * scale, 16 * scale);
+    pictures.reduce((top, c) => { pen.drawImage(c, 0, top); return top + c.height; }, head);
+    save(named(box.querySelector(".canvas"), "png"), sheet.toDataURL("image/png"));
+  };
+  const csv = (box) => {
+    const shown = parts(box).map((k) => plots[k]), quote = (s) => (/[",\n]/.test(s) ? `"${s.replaceAll('"', '""')}"` : s);
+    const heads = shown.flatMap((p) => p.series.map((s) => quote(s.label + (p.error ? ", error" : ""))));
+    const columns = shown.flatMap((p) => p.data.slice(1)), { unit = "s" } = D.x[shown[0].x];
+    const lines = X[shown[0].x].map((t, i) => [+t.toPrecision(9), ...columns.map((c) => (c[i] === null ? "" : +c[i].toPrecision(6)))].join(","));
+    save(named(box.querySelector(".canvas"), "csv"), URL.createObjectURL(new Blob([[[unit === "s" ? "time_s" : unit, ...heads].join(","), ...lines, ""].join("\n")], { type: "text/csv" })));
+  };
+  document.querySelectorAll(".plot").forEach((box) => {
+    const bar = Object.assign(document.createElement("span"), { className: "save" });
+    [["PNG", png], ["CSV", csv]].forEach(([label, write]) => {
+      const button = Object.assign(document.createElement("button"), { type: "button", textContent: label, title: `Save this picture as ${label}` });
+      button.addEventListener("click", () => write(box));
+      bar.append(button);
+    });
+    box.querySelector(".read").before(bar);
+  });
 
   document.querySelectorAll(".keys button").forEach((b) => {
     const key = b.dataset.key, set = () => b.setAttribute("aria-pressed", String(!hidden.has(key)));

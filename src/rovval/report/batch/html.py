@@ -10,7 +10,7 @@ from rovval.report.batch import nights, sparklines, table
 from rovval.report.batch.row import Record, Row, row
 from rovval.report.common.numbers import duration, listed
 from rovval.report.common.page import render
-from rovval.report.common.versions import versions
+from rovval.report.common.versions import foot
 from rovval.trend import Trend
 
 MOST_LISTED = 200  # rows of a list above the table; summary.json has all
@@ -51,7 +51,7 @@ def text(summary: Mapping[str, Any], records: Sequence[Record], trends: Sequence
         lead=table.lead(rows),
         columns=columns,
         left=[j for j, column in enumerate(columns) if column.words],
-        footer=" · ".join(f"{k} {v}" for k, v in versions().items()) + " · the same for programs: summary.json",
+        footer=foot("the same for programs: summary.json"),
     )
 
 

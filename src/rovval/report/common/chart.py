@@ -47,7 +47,7 @@ def chart(title: str, unit: str, dt: float, curves: Mapping[str, Array]) -> Draw
     for k, (label, values) in reversed(list(enumerate(curves.items()))):
         shapes.append(Text(place, 13, label, f"c{k % 8}", "end"))
         place -= LETTER * len(label) + 12.0
-        shapes += [Curve(piece, f"c{k % 8}") for piece in _pieces(values, dt, x, y)]
+        shapes += [Curve(piece, f"c{k % 8}") for piece in pieces(np.arange(0.0, len(values)) * dt, values, x, y)]
     return Drawing(WIDTH, HEIGHT, f"{title}, {unit}, against time", tuple(shapes))
 
 
@@ -103,15 +103,16 @@ def _grid(x: Scale, y: Scale, step: float) -> list[Shape]:
     return shapes
 
 
-def _pieces(values: Array, dt: float, x: Scale, y: Scale) -> list[tuple[tuple[float, float], ...]]:
-    """Unbroken pieces of a curve, thinned so that every peak stays."""
+def pieces(times: Array, values: Array, x: Scale, y: Scale, points: int = POINTS) -> list[tuple[tuple[float, float], ...]]:
+    """Unbroken pieces of a curve on the sheet, thinned to ``points`` along the width so that every peak stays."""
     known = np.isfinite(values)
     edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(int)))
+    bucket = max(1, -(-len(values) // points))
     found = []
     for begin, end in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
         rows = np.arange(begin, end)
-        if len(rows) > 2 * POINTS:
-            parts = np.array_split(rows, POINTS)
+        if bucket > 2:
+            parts = np.array_split(rows, -(-len(rows) // bucket))
             rows = np.array(sorted({int(p[f(values[p])]) for p in parts for f in (np.argmin, np.argmax)} | {begin, end - 1}))
-        found.append(tuple((round(x(r * dt), 1), round(y(float(values[r])), 1)) for r in rows.tolist()))
+        found.append(tuple((round(x(float(times[r])), 1), round(y(float(values[r])), 1)) for r in rows.tolist()))
     return found

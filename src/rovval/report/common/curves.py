@@ -50,19 +50,38 @@ def times(n: int, dt: float) -> dict[str, Any]:
     return {"n": n, "t0": 0.0, "dt": dt} if k == 1 else {"n": 2 * -(-n // k), "t0": 0.0, "dt": dt * k / 2.0}
 
 
-def series(key: str, label: str, values: Array, short: str = "", hue: int | None = None) -> dict[str, Any]:
-    """One curve; ``key`` is its colour and its switch, or ``hue`` its colour where there are many."""
+def steps(n: int, step: float, unit: str, first: float = 0.0, log: bool = False) -> dict[str, Any]:
+    """An axis of something else than time: ``n`` values from ``first`` on, in ``unit``; drawn to a logarithmic scale where ``log``."""
+    return {"n": n, "t0": first, "dt": step, "unit": unit, "log": log}
+
+
+def series(key: str, label: str, values: Array, short: str = "", hue: int | None = None, dash: Sequence[int] = ()) -> dict[str, Any]:
+    """One curve; ``key`` is its colour and its switch, or ``hue`` its colour where there are many; ``dash`` are pixels drawn and left out in turn."""
     curve: dict[str, Any] = {"key": key, "label": label, "d": encode(thin(values))}
     if short:
         curve["short"] = short
+    if dash:
+        curve["dash"] = list(dash)
     if hue is not None:
         curve["hue"] = hue
     return curve
 
 
-def plot(identity: str, curves: Sequence[dict[str, Any]], x: str = "run", **more: bool) -> dict[str, Any]:
-    """One picture; its place on the page is the element of that id. ``bare`` leaves out the time axis, ``error`` is a strip."""
-    return {"id": identity, "x": x, "series": list(curves), **more}
+def difference(key: str, label: str, values: Array, of: str, index: int) -> dict[str, Any]:
+    """The curve ``index`` of the picture ``of`` less its first one, which the script takes itself; of a run that is thinned, the ``values`` of it."""
+    return {"key": key, "label": label, "of": of, "index": index} if bucket(len(values)) == 1 else series(key, label, values)
+
+
+Band = tuple[float, float, str]  # from, to, and what it shades: the name of its colour
+
+
+def plot(
+    identity: str, curves: Sequence[dict[str, Any]], x: str = "run", bands: Sequence[Band] = (), tube: float | None = None, **more: bool
+) -> dict[str, Any]:  # fmt: skip
+    """One picture; its place on the page is the element of that id. ``bands`` are shaded, ``tube`` is what lies within a tolerance of the first curve.
+    ``bare`` leaves out the time axis, ``error`` is a strip."""
+    drawn: dict[str, Any] = {"id": identity, "x": x, "series": list(curves), **more}
+    return drawn | ({"bands": [list(b) for b in bands]} if bands else {}) | ({"tube": tube} if tube else {})
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -19,6 +19,7 @@ from markupsafe import Markup, escape
 from rovval.core.units import DEGREE_UNITS, DEGREES, integral_unit
 from rovval.report.common import numbers
 from rovval.report.common.glossary import TERMS, linked
+from rovval.report.common.still import still
 
 ROOM = Path(__file__).parent.parent
 EXPLAINED = ("comparison.html", "diagnosis.html")  # pages that end with the meaning of their words
@@ -30,7 +31,8 @@ def render(template: str, curves: Mapping[str, Any] | None = None, **data: Any) 
     """The whole document of ``templates/<template>`` filled with ``data``. ``curves`` is what the script draws (see `curves.plot`); a page without
     any has no script. A name that the template uses and ``data`` lacks is an error."""
     words = TERMS if template in EXPLAINED else {}
-    page = _environment().get_template(template).render(curves=None if curves is None else _json(curves), glossary=words, **data)
+    drawn = {"curves": None} if curves is None else {"curves": _json(curves), "picture": partial(still, plots=curves["plots"], axes=curves["x"])}
+    page = _environment().get_template(template).render(glossary=words, **drawn, **data)
     return linked(page) if words else page
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from rovval.comparison.error_growth import HORIZONS_S, ErrorGrowth, error_growth
+from rovval.comparison.tolerance import Tolerance
 from rovval.core.channels import AXES, POSE, VELOCITIES
 from rovval.core.data import Array, Comparison
 from rovval.core.frames import wrap
@@ -18,14 +19,15 @@ from rovval.report.common import curves
 from rovval.report.common.curves import Place
 from rovval.report.common.drawing import Curve, Dot, Drawing, Line, Shape, Text, round_up
 from rovval.report.common.hues import hues
-from rovval.report.common.numbers import number, quantity
+from rovval.report.common.numbers import number, per_cent, quantity
+from rovval.report.comparison import tolerances
 from rovval.report.comparison.words import TITLES
 
 Pictures = tuple[list[dict[str, Any]], list[Place]]  # what the script draws, and where
 
 
-def velocities(c: Comparison) -> Pictures:
-    """Measured and simulated velocity of each measured axis, its error in a strip below."""
+def velocities(c: Comparison, limits: Sequence[Tolerance] = ()) -> Pictures:
+    """Measured and simulated velocity of each measured axis, in the tube of its tolerance, its error in a strip below."""
     pictures, places = [], []
     for j, (axis, name) in enumerate(zip(AXES, VELOCITIES, strict=True)):
         if axis in c.not_measured:
@@ -36,10 +38,14 @@ def velocities(c: Comparison) -> Pictures:
         if c.other_nu is not None:
             drawn.append(curves.series("other", c.other_name, c.other_nu[:, j] * factor))
         drawn += [curves.series("free", "free run", free), curves.series("windowed", "windows", windowed)]
-        errors = [curves.series("free", "free run", free - real), curves.series("windowed", "windows", windowed - real)]
-        pictures += [curves.plot(f"v-{axis}", drawn, bare=True), curves.plot(f"v-{axis}-error", errors, error=True)]
+        both = (("free", "free run", free - real), ("windowed", "windows", windowed - real))
+        errors = [curves.difference(key, label, error, f"v-{axis}", len(drawn) - 2 + k) for k, (key, label, error) in enumerate(both)]
+        tube = tolerances.tube(limits, axis)
+        width = None if tube is None else tube.limit * factor
+        pictures += [curves.plot(f"v-{axis}", drawn, tube=width, bare=True), curves.plot(f"v-{axis}-error", errors, error=True)]
         row = c.windowed.get(axis)
         note = "" if row is None else f"{quantity(row.rmse, row.unit)} rms in windows"
+        note += "" if tube is None else f"; {per_cent(tolerances.inside(c, tube))} in the tube of {tube}"
         places.append(Place(f"v-{axis}", axis, unit, note, error=True))
     return pictures, places
 

@@ -3,31 +3,39 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from typing import Any
 
+from rovval.comparison.tolerance import Tolerance
 from rovval.core.channels import AXES
 from rovval.core.data import Comparison
 from rovval.report.common import curves
 from rovval.report.common.numbers import number
 from rovval.report.common.page import render
-from rovval.report.common.versions import versions
-from rovval.report.comparison import figures, words
+from rovval.report.common.versions import foot
+from rovval.report.comparison import figures, residuals, tolerances, track, uncertainty, words
 
 
-def text(comparison: Comparison, recording: bool = True) -> str:
-    """The page; ``recording`` says that run.rrd lies beside it."""
+def text(comparison: Comparison, recording: bool = True, limits: Sequence[Tolerance] = ()) -> str:
+    """The page; ``recording`` says that run.rrd lies beside it, ``limits`` are the tolerances that were stated."""
     c, run = comparison, comparison.run
-    velocity_curves, velocity_places = figures.velocities(c)
+    velocity_curves, velocity_places = figures.velocities(c, limits)
     pose_curves, pose_places = figures.pose(c)
     thruster_curves, thruster_places, hues = figures.thrusters(c)
+    track_curves, track_places = track.error(c)
+    residual_axes, residual_curves, residual_places = residuals.drawn(c)
+    judged = tolerances.rows(c, limits)
     return render(
         "comparison.html",
-        {"x": {"run": curves.times(len(run), run.dt)}, "plots": [*velocity_curves, *pose_curves, *thruster_curves]},
+        {
+            "x": {"run": curves.times(len(run), run.dt), **residual_axes},
+            "plots": [*velocity_curves, *track_curves, *pose_curves, *thruster_curves, *residual_curves],
+        },
         title=f"{run.id} · rovval comparison",
         eyebrow="Simulated against measured",
         name=run.id,
         banner=words.synthetic(c),
-        said=words.sentences(c),
+        said=[*words.sentences(c), *filter(None, [tolerances.sentence(judged)])],
         facts=words.facts(c),
         found=_counted(c),
         windows=words.windows(c),
@@ -35,11 +43,21 @@ def text(comparison: Comparison, recording: bool = True) -> str:
         not_measured=c.not_measured,
         no_velocity=words.NO_VELOCITY,
         notes=words.notes(c),
+        unsure=uncertainty,
+        intervals=uncertainty.interval_rows(c),
+        validated=uncertainty.validation_rows(c),
         other=c.other,
         other_name=c.other_name,
         keys=_keys(c),
         drawn=_drawn(c),
+        tolerated=judged,
+        about_tolerances=tolerances.LEAD,
         velocities=velocity_places,
+        plan=track.plan(c),
+        about_track=track.LEAD,
+        tracks=track_places,
+        about_residuals=residuals.LEAD,
+        residuals=residual_places,
         growth=figures.growth_panels(c),
         pose={words.TITLES[name]: row for name, row in c.pose.items()},
         poses=pose_places,
@@ -49,7 +67,7 @@ def text(comparison: Comparison, recording: bool = True) -> str:
         findings=run.findings,
         recording=recording,
         assumed=[*c.sim.assumptions, *c.sim.stops],
-        footer=" · ".join(f"{k} {v}" for k, v in versions().items()) + f" · sha256 {run.sha256[:16]}",
+        footer=foot(f"sha256 {run.sha256[:16]}"),
     )
 
 

@@ -12,7 +12,7 @@ from rovval.comparison.error_growth import HORIZONS_S, error_growth
 from rovval.core.data import ChannelError, Comparison
 from rovval.core.units import DEGREE_UNITS, DEGREES, integral_unit
 from rovval.report.common.versions import versions
-from rovval.report.comparison import words
+from rovval.report.comparison import uncertainty, words
 
 SCHEMA = "rovval.comparison/1"
 
@@ -36,6 +36,7 @@ def document(comparison: Comparison) -> dict[str, Any]:
             "horizon": _horizons(c),
         },
         "track": asdict(c.track) if c.track else None,
+        "validation": uncertainty.document(c),
         "not_measured": list(c.not_measured),
         "other": {"name": c.other_name, "axes": {a: _row(r) for a, r in c.other.items()}} if c.other else None,
         "effects": list(sim.effects),
@@ -72,6 +73,7 @@ def _row(row: ChannelError) -> dict[str, Any]:
         "baseline_rmse": row.baseline_rmse,
         "skill": row.skill,
         "noise": row.noise,
+        "intervals": {name: {"low": low, "high": high} for name, (low, high) in row.intervals.items()},
         **row.extra,
     }
     if row.unit in DEGREE_UNITS:

@@ -9,7 +9,7 @@ from rovval.diagnose.result.diagnosis import AxisGap, Cause, Diagnosis, Interval
 from rovval.report.common.drawing import Drawing
 from rovval.report.common.numbers import MISSING, number, per_cents, probability
 from rovval.report.common.page import render
-from rovval.report.common.versions import versions
+from rovval.report.common.versions import foot
 from rovval.report.diagnosis import figures, recalibration, tables, words
 from rovval.report.diagnosis.first_screen import first_screen
 from rovval.report.diagnosis.no_cause import unexplained
@@ -65,7 +65,7 @@ def text(d: Diagnosis, recording: bool = False) -> str:
         title_of=title,
         remaining=remaining,
         recording=recording,
-        footer=" · ".join([words.SCOPE, words.SQUARED, *(f"{k} {v}" for k, v in versions().items())]),
+        footer=foot(words.SCOPE, words.SQUARED),
     )
 
 

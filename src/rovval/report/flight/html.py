@@ -16,7 +16,7 @@ from rovval.report.common import curves
 from rovval.report.common.curves import Place
 from rovval.report.common.drawing import Curve, Dot, Drawing, Shape, Text
 from rovval.report.common.page import render
-from rovval.report.common.versions import versions
+from rovval.report.common.versions import foot
 from rovval.report.flight.json import document
 from rovval.report.flight.terminal import sentences
 
@@ -49,7 +49,7 @@ def text(flight: Flight) -> str:
         thruster_places=[Place("thrusters", "thruster speed", "rpm", css="short")],
         legs=flight.phases,
         notes=[*flight.notes, *flight.stops],
-        footer=" · ".join(f"{k} {v}" for k, v in versions().items()),
+        footer=foot(),
     )  # fmt: skip
 
 

@@ -19,7 +19,7 @@ from rovval.report.common.files import Writer, write_all
 from rovval.report.common.markdown import bullets, grid
 from rovval.report.common.numbers import number
 from rovval.report.common.page import render
-from rovval.report.common.versions import versions
+from rovval.report.common.versions import foot
 from rovval.report.scenario.figures import FIGURES, ROS, SIMULINK
 from rovval.report.scenario.terminal import SIGNS
 from rovval.vehicle.model import Vehicle
@@ -184,5 +184,5 @@ def html(outcomes: Outcomes, vehicle: Vehicle) -> str:
         facts={"platforms": _platforms(outcomes)}, outcomes=[
             {"number": n, "model": model, "title": o.title, "expected": EXPECTED[n], "checks": [(SIGNS[c.holds], c.expected, c.seen) for c in o.checks]}
             for (n, model), o in outcomes.items()
-        ], figures=figures(outcomes, vehicle), tables=tables(outcomes, vehicle), footer=" · ".join(f"{k} {v}" for k, v in versions().items()),
+        ], figures=figures(outcomes, vehicle), tables=tables(outcomes, vehicle), footer=foot(),
     )  # fmt: skip
