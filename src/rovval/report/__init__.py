@@ -60,7 +60,7 @@ def write_diagnosis(
     files: dict[str, str | Writer] = {
         "diagnosis.json": json.text(diagnosis.document()),
         "diagnosis.md": diagnosis_markdown.text(diagnosis),
-        "diagnosis.html": diagnosis_html.text(diagnosis, comparison is not None and vehicle is not None),
+        "diagnosis.html": diagnosis_html.text(diagnosis, comparison, corrected, comparison is not None and vehicle is not None),
     }
     if comparison is not None and vehicle is not None:
         files["run.rrd"] = lambda path: recording.write(comparison, path, vehicle, corrected, diagnosis)

@@ -16,8 +16,8 @@ from rovval import vehicle
 from rovval.comparison import compare
 from rovval.core.channels import AXES
 from rovval.core.data import Array, Comparison
+from rovval.report.diagnosis.plain import holds
 from rovval.report.recording import write as recording
-from rovval.report.recording.diagnosed import holds
 
 MERLIN = vehicle.load("merlin")
 

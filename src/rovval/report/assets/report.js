@@ -103,7 +103,7 @@
       button.addEventListener("click", () => write(box));
       bar.append(button);
     });
-    box.querySelector(".read").before(bar);
+    box.querySelector(".read").after(bar);
   });
 
   document.querySelectorAll(".keys button").forEach((b) => {

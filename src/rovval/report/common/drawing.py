@@ -60,10 +60,11 @@ class Dot:
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """A line through ``points`` (x, y)."""
+    """A line through ``points`` (x, y); ``hue`` is its colour (degrees) where its class has none."""
 
     points: tuple[tuple[float, float], ...]
     css: str
+    hue: int | None = None
     kind: ClassVar[str] = "curve"
 
 

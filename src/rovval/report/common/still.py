@@ -33,9 +33,8 @@ def still(identity: str, plots: Sequence[Mapping[str, Any]], axes: Mapping[str, 
     shapes: list[Shape] = [_shade(across, height, *band) for band in plot.get("bands", ())]
     shapes += [*_levels(up, step), *([] if plot.get("bare") else _ticks(across, height, x))]
     shapes += [Curve(piece, "tube") for edge in tube for piece in pieces(place, edge, across, up, points)]
-    for k, (series, values) in enumerate(zip(plot["series"], curves, strict=True)):
-        css = f"c{k % 8}" if "hue" in series else f"k-{series['key']}"
-        shapes += [Curve(piece, css) for piece in pieces(place, values, across, up, points)]
+    for series, values in zip(plot["series"], curves, strict=True):
+        shapes += [Curve(piece, f"k-{series['key']}", series.get("hue")) for piece in pieces(place, values, across, up, points)]
     return Drawing(WIDTH, height, ", ".join(s["label"] for s in plot["series"]), tuple(shapes))
 
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from rovval.core.data import Comparison, SimResult
 from rovval.diagnose.result.diagnosis import AxisGap, Cause, Diagnosis, Interval
 from rovval.report.common.drawing import Drawing
 from rovval.report.common.numbers import MISSING, number, per_cents, probability
 from rovval.report.common.page import render
 from rovval.report.common.versions import foot
-from rovval.report.diagnosis import figures, recalibration, tables, words
+from rovval.report.diagnosis import figures, recalibration, tables, whole_run, words
 from rovval.report.diagnosis.first_screen import first_screen
 from rovval.report.diagnosis.no_cause import unexplained
 from rovval.report.diagnosis.plain import remaining, title
@@ -26,13 +27,15 @@ class Gain(NamedTuple):
     rms: str
 
 
-def text(d: Diagnosis, recording: bool = False) -> str:
-    """The page; ``recording`` says that run.rrd lies beside it."""
+def text(d: Diagnosis, comparison: Comparison | None = None, corrected: SimResult | None = None, recording: bool = False) -> str:
+    """The page; with a ``comparison`` of the run it shows all of it, beside its simulation ``corrected`` by the causes. ``recording`` says that run.rrd
+    lies beside it."""
     axes, drawn, places = figures.traces(d)
+    whole_axes, whole_drawn, whole_places = whole_run.drawn(d, comparison, corrected) if comparison else ({}, [], [])
     main = figures.main_regimes(d, d.heatmap) if d.heatmap else None
     return render(
         "diagnosis.html",
-        {"x": axes, "plots": drawn},
+        {"x": axes | whole_axes, "plots": [*drawn, *whole_drawn]},
         title=f"{d.run} · rovval diagnosis",
         eyebrow="Diagnosis",
         name=d.run,
@@ -49,6 +52,8 @@ def text(d: Diagnosis, recording: bool = False) -> str:
         disturbances=words.disturbances(d),
         keys={"measured": "measured", "nominal": "nominal simulator"} | ({"corrected": "with the effects found"} if d.causes else {}),
         traces=places,
+        whole=whole_places,
+        whole_of=comparison.run.id if comparison else "",
         causes=[_cause(c, d.gap.axes) for c in d.causes],
         calibration=_calibration(d),
         steps=_steps(d),

@@ -5,7 +5,11 @@ from __future__ import annotations
 import re
 from math import sqrt
 
+import numpy as np
+
 from rovval import effects
+from rovval.core.data import Flags, Run
+from rovval.core.units import DEGREES
 from rovval.diagnose.result.diagnosis import Reduction
 from rovval.report.common.numbers import MISSING, per_cent, per_cents
 
@@ -16,6 +20,9 @@ MOVING = {
     "w": ("moving down faster than", "moving up faster than", "moving up or down faster than", "moving up or down slower than"),
     "r": ("turning to starboard faster than", "turning to port faster than", "turning faster than", "turning slower than"),
 }
+CHANNELS = {"depth": "z", "altitude": "altitude"}  # of a regime, where it is not named by the channel itself
+_LIMIT = re.compile(r"(\|?)(\w+)\|? ([<>]) (-?[\d.e-]+)(?: \S+)?")
+_TIMES = re.compile(r"time (\S+) to (\S+) s")
 _LEVEL = re.compile(r"(\|?)([uvwr])\|? ([<>]) -?([\d.e-]+ \S+)")
 
 
@@ -39,6 +46,19 @@ def regime(name: str) -> str:
     either, channel, sign, level = found.groups()
     kind = (3 if sign == "<" else 2) if either else 0 if sign == ">" else 1
     return f"{MOVING[channel][kind]} {level}"
+
+
+def holds(run: Run, name: str) -> Flags | None:
+    """When a regime holds (n,), from the run's own channels; None for one that cannot be told from them."""
+    if found := _TIMES.fullmatch(name):
+        return np.asarray((run.t >= float(found[1])) & (run.t < float(found[2])))
+    found = _LIMIT.fullmatch(name)
+    channel = CHANNELS.get(found[2], found[2]) if found else ""
+    if not found or not run.measured(channel):
+        return None
+    value = run.get(channel) * (DEGREES if channel == "r" else 1.0)
+    value = np.abs(value) if found[1] else value
+    return np.asarray(value > float(found[4]) if found[3] == ">" else value < float(found[4]))
 
 
 def remaining(share: float) -> float:

@@ -9,10 +9,9 @@ import numpy as np
 
 from rovval.comparison.missing_force import WINDOW_S, missing_force
 from rovval.core.channels import AXES, VELOCITIES
-from rovval.core.data import Comparison, Flags, Reason, Run
-from rovval.core.units import DEGREES
+from rovval.core.data import Comparison, Reason, Run
 from rovval.report.diagnosis.first_screen import first_screen
-from rovval.report.diagnosis.plain import regime, titled
+from rovval.report.diagnosis.plain import holds, regime, titled
 from rovval.report.diagnosis.sentence import also
 from rovval.report.recording.world import COLOURS
 
@@ -22,9 +21,6 @@ if TYPE_CHECKING:
 
 LOG, LANES, FORCE = "/log", "/state", "/force"
 NOTHING = "-"  # the state of a lane on which nothing holds
-CHANNELS = {"depth": "z", "altitude": "altitude"}
-_LIMIT = re.compile(r"(\|?)(\w+)\|? ([<>]) (-?[\d.e-]+)(?: \S+)?")
-_TIMES = re.compile(r"time (\S+) to (\S+) s")
 
 
 def draw(stream: Any, c: Comparison, d: Diagnosis, vehicle: Vehicle) -> None:
@@ -32,19 +28,6 @@ def draw(stream: Any, c: Comparison, d: Diagnosis, vehicle: Vehicle) -> None:
     _log(stream, c.run, d)
     _lanes(stream, c.run, d)
     _forces(stream, c, d, vehicle)
-
-
-def holds(run: Run, name: str) -> Flags | None:
-    """When a regime holds (n,), from the run's own channels; None for one that cannot be told from them."""
-    if found := _TIMES.fullmatch(name):
-        return np.asarray((run.t >= float(found[1])) & (run.t < float(found[2])))
-    found = _LIMIT.fullmatch(name)
-    channel = CHANNELS.get(found[2], found[2]) if found else ""
-    if not found or not run.measured(channel):
-        return None
-    value = run.get(channel) * (DEGREES if channel == "r" else 1.0)
-    value = np.abs(value) if found[1] else value
-    return np.asarray(value > float(found[4]) if found[3] == ">" else value < float(found[4]))
 
 
 def _log(stream: Any, run: Run, d: Diagnosis) -> None:
