@@ -26,14 +26,19 @@ def test_the_first_of_a_section_is_a_link_and_words_that_are_part_of_others_are_
     assert linked(page) == f"<body><th>The {link}, gaps, a gapless {group}</th><section><dt>{link}</dt></section>{FOOT}"
 
 
-@pytest.mark.parametrize("element", ["p", "td", "h2", "script"])
-def test_what_is_no_heading_stays(element):
-    page = f"<body><{element}>gap <b>rms</b></{element}>{FOOT}"
-    assert linked(page) == page
-    assert linked(f"<body><th><code>gap</code></th>{FOOT}") == f"<body><th><code>gap</code></th>{FOOT}"
+def test_a_sentence_is_linked_beside_what_is_typed_and_what_is_a_link_already():
+    page = f'<body><p>The <code>gap</code> of <a href="x">rms</a>, a gap.</p><ul><li>held-out</li></ul>{FOOT}'
+    found = linked(page)
+    assert re.findall(r'<a class="term" href="#word-([^"]+)">', found) == ["gap", "held-out"]
+    assert '<code>gap</code> of <a href="x">rms</a>, a <a class="term"' in found
 
 
-def test_a_link_of_the_template_counts():
+@pytest.mark.parametrize("page", ["<td>gap <b>rms</b></td>", "<h2>gap</h2>", '<dd class="value">gap.csv</dd>', '<th scope="row">gap</th>'])
+def test_names_and_values_stay(page):
+    assert linked(f"<body>{page}{FOOT}") == f"<body>{page}{FOOT}"
+
+
+def test_a_link_that_is_there_counts():
     page = f'<body><a class="term" href="#word-free-run">free run</a><th>free run</th>{FOOT}'
     assert linked(page) == page
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from page_case import check_html
+from page_case import check_html, read
 from report_cases import make_run, make_sim, motion
 
 from rovval import report, vehicle
@@ -186,7 +186,7 @@ def test_findings_are_counted_in_the_head_with_the_way_to_them() -> None:
     found = (Finding("repeated_row", "t", "twice"), Finding("gap", "u", "1 s"), Finding("gap", "v", "2 s"))
     page = html.text(replace(c, run=replace(c.run, findings=found)))
     check_html(page)
-    assert '<a href="#findings">3 findings in this log</a>: repeated row, gap (2).' in page.partition("<section")[0]
+    assert '<a href="#findings">3 findings in this log</a>: repeated row, gap (2).' in read(page).partition("<section")[0]
     assert '<section id="findings">' in page
     assert 'href="#findings"' not in html.text(replace(c, run=replace(c.run, findings=())))
 
@@ -202,7 +202,7 @@ def windowed(n: int, window_s: float, **more: Any) -> Comparison:
 def test_a_log_shorter_than_its_window_says_what_was_done() -> None:
     """It said "Over windows of 10 s" of a log of five."""
     c = windowed(50, 10.0)
-    for said in (terminal.text(c), markdown.text(c), html.text(c)):
+    for said in (terminal.text(c), markdown.text(c), read(html.text(c))):
         flat = " ".join(said.split())
         assert "ver one window of 4.9 s" in flat and "shorter than a window of 10 s" in flat and "indows of 10 s," not in flat
     assert report_json.document(c)["window"]["longest_s"] == pytest.approx(4.9)
@@ -254,7 +254,7 @@ def test_the_page_says_how_sure_the_errors_are_and_what_is_seen_of_them() -> Non
     assert found["verdict"] == "seen" and found["low"] == pytest.approx(found["error"] - 2 * found["u_validation"])
     assert len(document["validation"]["left_out"]) == 2
     few = case(300)
-    assert not few.windowed["surge"].intervals and [form for _, form, _ in uncertainty.interval_rows(few)] == ["free run"] * 6
+    assert not few.windowed["surge"].intervals and [form for _, _, form, _ in uncertainty.interval_rows(few)] == ["free run"] * 6
 
 
 def test_tolerances_are_judged_on_the_page_and_drawn_as_a_tube() -> None:
@@ -265,7 +265,7 @@ def test_tolerances_are_judged_on_the_page_and_drawn_as_a_tube() -> None:
     assert [j.kept for j in judged] == [True, True, False] and judged[0].inside != judged[2].inside and judged[1].inside == "-"
     page = html.text(c, limits=limits)
     check_html(page)
-    assert "Tolerance exceeded: yaw.mae." in page and page.count(">kept<") == 2 and page.count(">exceeded<") == 1
+    assert "Tolerance exceeded: yaw.mae." in read(page) and page.count(">kept<") == 2 and page.count(">exceeded<") == 1
     [data] = re.findall(r'id="data">(.*?)</script>', page, re.DOTALL)
     plots = {p["id"]: p for p in json.loads(data.replace("<\\/", "</"))["plots"]}
     assert plots["v-surge"]["tube"] == pytest.approx(2 * rmse) and plots["v-yaw"]["tube"] == pytest.approx(math.degrees(1e-6))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from page_case import check_html
+from page_case import check_html, read
 from report_cases import diagnosis, make_diagnosis, make_run, make_sim
 
 from rovval.comparison import compare
@@ -60,5 +60,5 @@ def test_an_onset_is_a_line_on_every_axis():
 def test_the_page_has_it_where_there_is_a_run():
     page = html.text(diagnosis(), COMPARISON, MENDED)
     check_html(page)
-    assert "The whole run, before and after" in page and f"Run {RUN.id}, in windows" in page
+    assert "The whole run, before and after" in page and f"Run {RUN.id}, in windows" in read(page)
     assert "The whole run" not in html.text(diagnosis())

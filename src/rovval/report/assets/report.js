@@ -26,6 +26,7 @@
     const round = [5, 4, 3, 2, 1.5, 1].map((k) => k * power).find((v) => v <= far) || far;
     return [-round, 0, round].filter((v) => v >= min && v <= max);
   };
+  const decades = (v, unit) => v.map((t) => (t === null || Math.abs(Math.log10(t) % 1) > 1e-9 ? "" : t === 1 ? `${t} ${unit}` : t));
   const shade = (u, bands) => {
     const { left, top, width, height } = u.bbox, place = (v) => Math.min(Math.max(u.valToPos(v, "x", true), left), left + width);
     for (const [from, to, key] of bands) {
@@ -50,8 +51,8 @@
         width: host.clientWidth, height: host.clientHeight, legend: { show: false }, padding: [8, 6, p.bare ? 8 : 0, 0],
         cursor: { sync: { key: p.x, setSeries: false }, drag: { x: true, y: false }, points: { size: 5 }, y: false },
         scales: { x: { time: false, distr: log ? 3 : 1, ...(log ? { range: (u, min, max) => [min, max] } : {}) } },
-        axes: [{ ...axis, show: !p.bare, size: 26, values: (u, v) => v.map((t, i) => (t === null ? "" : i === v.length - 1 || (log && t === 1) ? `${t} ${unit}` : t)) },
-          { ...axis, size: 50, space: 30, ...(p.error ? { splits: ticks } : {}) }],
+        axes: [{ ...axis, show: !p.bare, size: 26, values: (u, v) => (log ? decades(v, unit) : v.map((t, i) => (i === v.length - 1 ? `${t} ${unit}` : t))) },
+          { ...axis, size: 50, space: host.clientHeight < 150 ? 20 : 30, ...(p.error ? { splits: ticks } : {}) }],
         series: [{}, ...series, ...tube.map(() => ({ points: { show: false } }))],
         bands: tube.length ? [{ series: [first, first + 1], fill: css("--tube") }] : [],
         hooks: {
@@ -97,13 +98,15 @@
     save(named(box.querySelector(".canvas"), "csv"), URL.createObjectURL(new Blob([[[unit === "s" ? "time_s" : unit, ...heads].join(","), ...lines, ""].join("\n")], { type: "text/csv" })));
   };
   document.querySelectorAll(".plot").forEach((box) => {
+    const read = box.querySelector(".read"), line = Object.assign(document.createElement("div"), { className: "line" });
     const bar = Object.assign(document.createElement("span"), { className: "save" });
     [["PNG", png], ["CSV", csv]].forEach(([label, write]) => {
       const button = Object.assign(document.createElement("button"), { type: "button", textContent: label, title: `Save this picture as ${label}` });
       button.addEventListener("click", () => write(box));
       bar.append(button);
     });
-    box.querySelector(".read").after(bar);
+    read.replaceWith(line);
+    line.append(read, bar);
   });
 
   document.querySelectorAll(".keys button").forEach((b) => {

@@ -12,7 +12,7 @@ TERMS = {
     "held-out": "of data that the values under judgement were not fitted to",
     "interval": "the true value lies in it with a probability of 90 %, if the equations are right",
     "probability": "of one answer among all that were compared: a healthy vehicle, effects of the library, a file that is off, something else",
-    "tolerance": "how far off a healthy simulator's coefficient may be, as one standard deviation; --calibration-slop sets it",
+    "tolerance": "how far off a number may be: a healthy simulator's coefficient, as a standard deviation (--calibration-slop); an error (--fail-above)",
     "regime": "a part of the log with something in common: a range of speed, of turn rate, of depth, of a thruster's activity",
     "effect": "something that the simulator leaves out or has wrong",
     "evidence": "how much more likely the log is with an effect than without it: twice the natural logarithm of the ratio",
@@ -21,7 +21,9 @@ TERMS = {
     "skill": "1 - MSE / MSE of predicting no motion: 1 is perfect, 0 no better than predicting none, below 0 worse",
     "free run": "one simulation from the log's first state to its end, in which errors add up",
 }
-HEADINGS = ("th", "dt")  # elements whose words are names of what stands below or beside them; a row's own name is none of these words
+SAID = ("th", "dt", "p", "li", "dd")  # elements whose words are ours
+NOT_SAID = re.compile(r'scope="row"|class="(eyebrow|banner|log|value)"')  # of these, names and what a log says of itself
+UNTOUCHED = ("a", "code")  # inside them: links already, and what is typed
 _TAG = re.compile(r"(<[^>]*>)")
 _NAME = re.compile(r"<(/?)(\w+)")
 _LINKED = re.compile(r'<a class="term" href="#word-([^"]+)"')
@@ -30,11 +32,11 @@ _NAMED = {term.lower(): term for term in TERMS}
 
 
 def linked(html: str) -> str:
-    """A page of which each section links every term that heads a column or a value, where it first does, to its meaning at the page's foot
-    (`#word-TERM`); terms in sentences are linked by their templates."""
+    """A page of which each section links every term, where it first stands in a sentence or heads a column or a value, to its meaning at the page's foot
+    (`#word-TERM`)."""
     head, body, rest = html.partition("<body>")
     text, foot, words = rest.partition('<section id="words">')
-    inside = False
+    inside, untouched = False, 0
     known: set[str] = set()
 
     def link(found: re.Match[str]) -> str:
@@ -47,8 +49,10 @@ def linked(html: str) -> str:
     parts = []
     for part in _TAG.split(text):
         if tag := _NAME.match(part):
+            opens, name = not tag[1], tag[2]
             known = set() if part.startswith("<section") else known
             known |= {already[1].replace("-", " ") for already in [_LINKED.match(part)] if already}
-            inside = not tag[1] and 'scope="row"' not in part if tag[2] in HEADINGS else inside and tag[2] != "code"
-        parts.append(_WORD.sub(link, part) if inside and not part.startswith("<") else part)
+            untouched += (1 if opens else -1) if name in UNTOUCHED else 0
+            inside = opens and not NOT_SAID.search(part) if name in SAID else inside
+        parts.append(_WORD.sub(link, part) if inside and not untouched and not part.startswith("<") else part)
     return "".join((head, body, *parts, foot, words))

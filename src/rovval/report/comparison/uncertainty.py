@@ -7,7 +7,8 @@ from typing import Any
 from rovval.comparison.block_bootstrap import CONFIDENCE, FEWEST_BLOCKS
 from rovval.comparison.validation import COVERAGE_FACTOR, DOUBTFUL, HIDDEN, LEFT_OUT, SEEN, validation
 from rovval.core.data import ChannelError, Comparison
-from rovval.report.common.numbers import estimate, interval, per_cent, quantity
+from rovval.core.units import in_degrees
+from rovval.report.common.numbers import interval, number, per_cent, quantity
 
 ERRORS = ("mean_error", "mae", "rmse", "skill")
 INTERVALS = (
@@ -22,10 +23,11 @@ VALIDATION = (
 )
 
 
-def interval_rows(c: Comparison) -> list[tuple[str, str, list[str]]]:
-    """Of every axis that has intervals: its name, the form of the simulation, and `ERRORS` with their intervals; none where no axis has any."""
+def interval_rows(c: Comparison) -> list[tuple[str, str, str, list[str]]]:
+    """Of every axis that has intervals: its name and unit, the form of the simulation, and `ERRORS` with their intervals; none where no axis has any."""
     tables = (("free run", c.free), ("windows", c.windowed))
-    return [(axis, form, _estimates(row)) for axis in c.windowed for form, table in tables if (row := table.get(axis)) and row.intervals]
+    known = ((axis, form, table[axis]) for axis in c.windowed for form, table in tables if axis in table)
+    return [(axis, in_degrees(1.0, row.unit)[1], form, _estimates(row)) for axis, form, row in known if row.intervals]
 
 
 def validation_rows(c: Comparison) -> list[tuple[str, list[str], str]]:
@@ -50,9 +52,10 @@ def document(c: Comparison) -> dict[str, Any]:
 
 
 def _estimates(row: ChannelError) -> list[str]:
-    """0.0467 [0.0431, 0.0502] m/s of each of `ERRORS`; the skill without a unit."""
+    """0.0467 [0.043, 0.050] of each of `ERRORS`, angles in degrees."""
     found = []
     for name in ERRORS:
-        low, high = row.intervals.get(name, (None, None))
-        found.append(estimate(getattr(row, name), low, high, "1" if name == "skill" else row.unit))
+        factor = 1.0 if name == "skill" else in_degrees(1.0, row.unit)[0]
+        value, low, high = (None if v is None else v * factor for v in (getattr(row, name), *row.intervals.get(name, (None, None))))
+        found.append(f"{number(value)} {interval(low, high, digits=2)}")
     return found

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from rovval.core.data import Comparison, SimResult
-from rovval.diagnose.result.diagnosis import AxisGap, Cause, Diagnosis, Interval
+from rovval.diagnose.result.diagnosis import AxisGap, Cause, Diagnosis, Interval, SensorFault
 from rovval.report.common.drawing import Drawing
 from rovval.report.common.numbers import MISSING, number, per_cents, probability
 from rovval.report.common.page import render
@@ -61,7 +61,7 @@ def text(d: Diagnosis, comparison: Comparison | None = None, corrected: SimResul
         first_look=tables.screen(d),
         ranking=figures.ranking(d),
         coherence=figures.matrix(d.coherence) if d.coherence else None,
-        whiskers=[figures.whisker(f.value, f.low, f.high, unit=f.unit) for f in d.parity],
+        parity=_parity(d),
         models=tables.models(d),
         harm=tables.harm(d),
         left=unexplained(d),
@@ -90,6 +90,14 @@ def _gains(axes: Mapping[str, float], spans: Mapping[str, Interval], gap: Mappin
     """Axis by axis, what becomes of the squared error."""
     intervals = {axis: per_cents(spans[axis].low, spans[axis].high) if axis in spans else MISSING for axis in axes}
     return [Gain(axis, share, intervals[axis], words.rms_change(gap.get(axis), share)) for axis, share in axes.items()]
+
+
+def _parity(d: Diagnosis) -> list[tuple[str, list[tuple[SensorFault, Drawing]]]]:
+    """What kinematics say of the sensors: each check with its note, and under it the faults that it looked for."""
+    groups: dict[str, list[tuple[SensorFault, Drawing]]] = {}
+    for f in d.parity:
+        groups.setdefault(": ".join(filter(None, (f.check, f.note))), []).append((f, figures.whisker(f.value, f.low, f.high, unit=f.unit)))
+    return list(groups.items())
 
 
 def _calibration(d: Diagnosis) -> dict[str, Any] | None:
