@@ -19,6 +19,7 @@ import pytest
 HERE = Path(__file__).parent
 MINUTES = (2.5, 5.0, 10.0, 20.0)
 LIMIT_CPU_S = 20.0  # target for a log of 10 minutes against the whole library
+HOUR_MB = 1000.0  # target: own memory of the process while it diagnoses an hour
 MOST_GROWTH = 1.2  # chosen: exponent of the cost in the length; 1 is linear, 2 would say that some step compares all windows
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 
@@ -48,11 +49,49 @@ def measured(folder: str, minutes: list[float]) -> list[dict[str, Any]]:
     return rows
 
 
-def test_ten_minutes_against_the_whole_library(tmp_path):
-    code = f"import json, bench_diagnose as b; print(json.dumps(b.measured({str(tmp_path)!r}, {list(MINUTES)})))"
-    environment = {**os.environ, **ONE_THREAD, "PYTHONPATH": f"{HERE}{os.pathsep}{HERE.parent / 'cases'}"}
+def own_memory(seconds: float) -> dict[str, Any]:
+    """The most memory (MB) that is the process's own, not a file's that the system may put away, while a log is diagnosed; and what that named."""
+    from threading import Event, Thread
+
+    from diagnose_case import merlin, own
+
+    from rovval.diagnose import diagnose
+
+    log, most, done = own(("inflow_loss:loss=0.3",), 5, seconds), [0], Event()
+
+    def watch() -> None:
+        while not done.wait(0.05):
+            status = Path("/proc/self/status").read_text(encoding="utf-8")
+            most.append(int(next(line.split()[1] for line in status.splitlines() if line.startswith("RssAnon"))))
+
+    watching = Thread(target=watch)
+    watching.start()
+    try:
+        document = diagnose([log], merlin()).document()
+    finally:
+        done.set()
+        watching.join()
+    return {"windows": document["windows"], "named": [c["effect"] for c in document["causes"]], "mb": max(most) / 1e3}
+
+
+def in_a_process(call: str) -> Any:
+    """What a function of this file returns in a process of its own."""
+    code = f"import json, bench_diagnose as b; print(json.dumps(b.{call}))"
+    environment = {**os.environ, **ONE_THREAD, "PYTHONPATH": os.pathsep.join([str(HERE), str(HERE.parent / "cases"), os.environ.get("PYTHONPATH", "")])}
     done = subprocess.run([sys.executable, "-c", code], env=environment, check=True, capture_output=True, text=True)
-    rows = json.loads(done.stdout.splitlines()[-1])
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def test_memory_of_an_hour():
+    """Sensitivities and normal equations of a long log lie in files: what the process holds by itself grows with the motion that was measured alone."""
+    short, hour = in_a_process("own_memory(600.0)"), in_a_process("own_memory(3600.0)")
+    print(f"\nten minutes take {short['mb']:.0f} MB, an hour {hour['mb']:.0f} MB (at most {HOUR_MB:g}); named: {hour['named']}")
+    assert hour["named"] == short["named"] == ["inflow_loss"]
+    assert hour["mb"] < HOUR_MB
+
+
+def test_ten_minutes_against_the_whole_library(tmp_path):
+    rows = in_a_process(f"measured({str(tmp_path)!r}, {list(MINUTES)})")
     print(f"\n{'log':>8}{'windows':>9}{'hypotheses':>12}{'rounds':>8}{'CPU s':>8}{'wall s':>8}  named")
     for r in rows:
         print(f"{r['minutes']:>4g} min{r['windows']:>9}{r['hypotheses']:>12}{r['rounds']:>8}{r['cpu_s']:>8.1f}{r['wall_s']:>8.1f}  {', '.join(r['named'])}")

@@ -13,6 +13,7 @@ from typing import TypeVar
 import numpy as np
 
 from rovval.core.data import Array
+from rovval.core.large_arrays import taken
 from rovval.diagnose.criteria import HARMED_AXIS, MOST_REFITS
 from rovval.diagnose.inference.bootstrap import shrinkage_interval
 from rovval.diagnose.inference.gap import noise_floor_loss, squared_errors
@@ -137,7 +138,7 @@ def _without(problem: Problem, fitted: HypothesisFit, fold: Fold, tolerance: flo
     """Parameters (k,) with the fitted slots as the windows outside ``fold.test`` give them; the fit begins at the fit of all windows, whose sensitivities to
     coefficients within tolerance it keeps."""
     runs = [_some(windows, which) for windows, which in _by_run(problem, problem.runs, fold.train) if which.any()]
-    slopes = [(one.S[which], one.columns) for one, which in _by_run(problem, fitted.posterior.linear, fold.train) if which.any()]
+    slopes = [(taken(one.S, which), one.columns) for one, which in _by_run(problem, fitted.posterior.linear, fold.train) if which.any()]
     less = pose(tuple(runs), Columns(), tolerance)
     near = [replace(one, S=S, columns=columns) for one, (S, columns) in zip(less.nominal, slopes, strict=True)]
     point = map_fit(less, fitted.posterior.beta, fitted.slots, whitened(less, near))

@@ -58,7 +58,7 @@ class FoldSums:
         """Sum the normal equations over each fold's held-out windows."""
         return cls(
             data,
-            np.stack([data.A[f.test].sum(axis=0) for f in folds]),
+            np.stack([sum((data.A[w] for w in np.flatnonzero(f.test)), np.zeros(data.A.shape[1:])) for f in folds]),
             np.stack([data.b[f.test].sum(axis=0) for f in folds]),
             np.array([data.c[f.test].sum() for f in folds]),
         )

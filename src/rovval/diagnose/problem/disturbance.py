@@ -18,6 +18,7 @@ from scipy.linalg import block_diag
 
 from rovval.core.channels import AXES
 from rovval.core.data import Array
+from rovval.core.large_arrays import zeros
 from rovval.diagnose.criteria import (
     COVERED_BY_NOISE,
     DISTURBANCE_ROUNDS,
@@ -102,8 +103,8 @@ def estimate_disturbance(
     segment_s = (runs[0].steps + 1) * runs[0].run.dt / DISTURBANCE_SEGMENTS
     share, correlation = before.rms / responses.wrench, np.exp(-segment_s / before.memory_s)
     share, correlation = _expectation_maximisation(_equations(runs, less, responses.segments, variance), share, correlation)
-    root = np.linalg.cholesky(_covariance(share, correlation))
-    return Disturbance(share * responses.wrench, -segment_s / np.log(correlation), tuple(one @ root for one in responses.segments))
+    root = np.asarray(np.linalg.cholesky(_covariance(share, correlation)), dtype=float)
+    return Disturbance(share * responses.wrench, -segment_s / np.log(correlation), tuple(_times(one, root) for one in responses.segments))
 
 
 def unit_forces(windows: Windows) -> list[tuple[str, Array]]:
@@ -160,3 +161,8 @@ def _covariance(share: Array, correlation: Array) -> Array:
     """Covariance (6 s, 6 s) of the forces in the s segments of a window: correlation falls geometrically with the number of segments between."""
     apart = np.abs(np.subtract.outer(np.arange(DISTURBANCE_SEGMENTS), np.arange(DISTURBANCE_SEGMENTS)))
     return np.asarray(block_diag(*[max(s, LEAST) ** 2 * m**apart for s, m in zip(share, correlation, strict=True)]))
+
+
+def _times(response: Array, root: Array) -> Array:
+    """Responses (m, n, c, d) to forces that are ``root`` (d, d) times independent ones, to those."""
+    return np.matmul(response, root, out=zeros(*response.shape))

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rovval.core.data import Array
+from rovval.core.large_arrays import columns_first
 from rovval.diagnose.criteria import (
     DISTURBANCE_WINDOWS,
     FORM_ERROR_SMOOTHING,
@@ -122,7 +123,14 @@ def _with_disturbances(
 ) -> tuple[tuple[Windows, ...], tuple[Linearisation, ...]]:
     """Windows and linearisations with disturbances as nuisances, of ``response`` (m, n, c, d) each."""
     known = tuple(replace(windows, disturbance_response=one) for windows, one in zip(runs, response, strict=True))
-    return known, tuple(replace(one, J=np.concatenate([one.J, more], axis=-1)) for one, more in zip(linear, response, strict=True))
+    return known, tuple(replace(one, J=_beside(one.J, more)) for one, more in zip(linear, response, strict=True))
+
+
+def _beside(a: Array, b: Array) -> Array:
+    """The columns of two arrays (m, n, c, ...) side by side."""
+    both = columns_first(*a.shape[:-1], columns=a.shape[-1] + b.shape[-1])
+    both[..., : a.shape[-1]], both[..., a.shape[-1] :] = a, b
+    return both
 
 
 def _expected_variance(runs: Sequence[Windows], linear: Sequence[Linearisation], tolerance: Prior) -> Array:
@@ -134,7 +142,8 @@ def _expected_variance(runs: Sequence[Windows], linear: Sequence[Linearisation],
     for one in linear:
         place = [one.columns.index(c) for c in tolerance.sd]
         sd = np.array(list(tolerance.sd.values()))
-        total = total + np.einsum("wtck,k->tc", one.S[..., place] ** 2, sd**2) / count
+        for S in one.S:
+            total = total + S[..., place] ** 2 @ sd**2 / count
     return total
 
 

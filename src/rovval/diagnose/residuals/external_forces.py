@@ -9,6 +9,7 @@ import numpy as np
 
 from rovval.core.channels import AXES
 from rovval.core.data import Array
+from rovval.core.large_arrays import columns_first
 from rovval.diagnose.criteria import LEAST_AXIS_FORCE, SIGN_SMOOTHING
 from rovval.diagnose.residuals.sensitivities import LANES, simulate_windows
 from rovval.diagnose.windows.windows import Windows, channel_difference, predicted_channels
@@ -60,28 +61,21 @@ def force_features(windows: Windows) -> dict[str, Array]:
 
 def force_sensitivities(windows: Windows, beta: Array, forces: Sequence[tuple[str, Array]]) -> Array:
     """Sensitivity (m, n, c, f) to f additional forces about ``beta`` (k,), each given as its axis and a series (run,) on the run's grid, N or N m."""
-    bank = np.zeros((len(forces), len(windows.run), 6))
-    for i, (axis, sequence) in enumerate(forces):
-        bank[i, :, AXES.index(axis)] = sequence
-    return wrench_sensitivities(windows, beta, bank)
-
-
-def wrench_sensitivities(windows: Windows, beta: Array, bank: Array) -> Array:
-    """Sensitivity (m, n, c, f) to f additional series of body forces and moments ``bank`` (f, run, 6), N and N m, about ``beta`` (k,)."""
-    pushed = replace(windows, actuation=replace(windows.actuation, inputs=replace(windows.actuation.inputs, extra=bank)))
     m, which = windows.count, np.arange(windows.count)
     base, _ = simulate_windows(windows, np.tile(beta, (m, 1)), windows.nu0, windows.eta0, which)
-    S = np.zeros((*base.shape, len(bank)))
+    S = columns_first(*base.shape, columns=len(forces))
     each = max(1, LANES // m)
-    for begin in range(0, len(bank), each):
-        chosen = np.arange(begin, min(begin + each, len(bank)))
-        lanes = len(chosen) * m
-        motion = pushed.plant.simulate(
-            pushed.actuation.inputs, np.tile(windows.start, len(chosen)), windows.steps, np.tile(windows.nu0, (len(chosen), 1)),
-            np.tile(windows.eta0, (len(chosen), 1)), np.tile(beta, (lanes, 1)), np.repeat(chosen, m), np.full(lanes, STEP),
+    for begin in range(0, len(forces), each):
+        chosen = forces[begin : begin + each]
+        bank, lanes = np.zeros((len(chosen), len(windows.run), 6)), len(chosen) * m
+        for series, (axis, sequence) in zip(bank, chosen, strict=True):
+            series[:, AXES.index(axis)] = sequence
+        motion = windows.plant.simulate(
+            replace(windows.actuation.inputs, extra=bank), np.tile(windows.start, len(chosen)), windows.steps, np.tile(windows.nu0, (len(chosen), 1)),
+            np.tile(windows.eta0, (len(chosen), 1)), np.tile(beta, (lanes, 1)), np.repeat(np.arange(len(chosen)), m), np.full(lanes, STEP),
         )  # fmt: skip
         out = predicted_channels(windows, np.tile(which, len(chosen)), motion.nu, motion.eta).reshape(len(chosen), *base.shape)
-        S[..., chosen] = np.moveaxis(channel_difference(windows, out, base[None]) / STEP, 0, -1)
+        S[..., begin : begin + each] = np.moveaxis(channel_difference(windows, out, base[None]) / STEP, 0, -1)
     return S
 
 

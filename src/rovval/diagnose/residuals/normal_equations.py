@@ -13,6 +13,7 @@ import numpy as np
 from scipy.linalg import solve_triangular
 
 from rovval.core.data import Array
+from rovval.core.large_arrays import columns_first, joined, zeros
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +40,8 @@ class NormalEquations:
         return np.array([where[s] for s in slots], dtype=int)
 
     def __add__(self, other: NormalEquations) -> NormalEquations:
-        return NormalEquations(self.A + other.A, self.b + other.b, self.c + other.c, self.columns, self.offset)
+        A = np.add(self.A, other.A, out=zeros(*self.A.shape))
+        return NormalEquations(A, self.b + other.b, self.c + other.c, self.columns, self.offset)
 
 
 def concatenated(parts: list[NormalEquations]) -> NormalEquations:
@@ -47,7 +49,7 @@ def concatenated(parts: list[NormalEquations]) -> NormalEquations:
     if len(parts) == 1:
         return replace(parts[0], offset=None)
     return NormalEquations(
-        np.concatenate([p.A for p in parts]),
+        joined(*(p.A for p in parts)),
         np.concatenate([p.b for p in parts]),
         np.concatenate([p.c for p in parts]),
         parts[0].columns,
@@ -80,8 +82,11 @@ class Whitened:
     @property
     def linear(self) -> Linearisation:
         """The linearisation itself; sensitivities are 0 where nothing was measured."""
-        S = self.x / np.where(self.root > 0, self.root, 1.0)[..., None]
-        return Linearisation(self.r, S.reshape(*self.r.shape, len(self.columns)), self.J, self.columns, self.valid)
+        m, n, c = self.r.shape
+        S = columns_first(m, n, c, columns=len(self.columns))
+        for to, x, root in zip(S, self.x, self.root, strict=True):
+            to[:] = (x / np.where(root > 0, root, 1.0)[:, None]).reshape(to.shape)
+        return Linearisation(self.r, S, self.J, self.columns, self.valid)
 
     def normal_equations(self, r: Array) -> NormalEquations:
         """Normal equations of other residuals ``r`` (m, n, c) with these sensitivities."""
@@ -100,7 +105,7 @@ def normal_equations(linear: Linearisation, ok: np.ndarray, variance: Array, spr
         spread: prior standard deviation (s,) of the first s nuisances, which are marginalised; the others are left out.
     """
     m, k = len(linear.r), linear.S.shape[-1]
-    A, b, c = np.zeros((m, k, k)), np.zeros((m, k)), np.zeros(m)
+    A, b, c = zeros(m, k, k), np.zeros((m, k)), np.zeros(m)
     for w in range(m):
         root, q, x, y = _window(linear, w, ok, variance, spread)
         r = linear.r[w].reshape(-1) * root
@@ -112,20 +117,22 @@ def normal_equations(linear: Linearisation, ok: np.ndarray, variance: Array, spr
 def whiten(linear: Linearisation, ok: np.ndarray, variance: Array, spread: Array) -> Whitened:
     """A linearisation in the metric, kept for normal equations with further residuals; arguments as of `normal_equations`."""
     m, n, k = len(linear.r), linear.r[0].size, linear.S.shape[-1]
-    root, q, x, y = np.empty((m, n)), np.empty((m, n, len(spread))), _columns_first(m, n, k), np.empty((m, len(spread), k))
+    root, q, x, y, A = np.empty((m, n)), zeros(m, n, len(spread)), columns_first(m, n, columns=k), np.empty((m, len(spread), k)), zeros(m, k, k)
     for w in range(m):
         root[w], q[w], x[w], y[w] = _window(linear, w, ok, variance, spread)
-    return Whitened(linear.r, linear.J, linear.columns, linear.valid, root, q, x, y, _gram(x, x) - _gram(y, y))
+        A[w] = x[w].T @ x[w] - y[w].T @ y[w]
+    return Whitened(linear.r, linear.J, linear.columns, linear.valid, root, q, x, y, A)
 
 
 def with_frozen_columns(own: Linearisation, other: Whitened, columns: tuple[int, ...]) -> Whitened:
     """A linearisation with further ``columns`` whose sensitivities, and those to the nuisances, are taken from another one at a point nearby."""
     place, k, m = [other.columns.index(c) for c in columns], len(own.columns), len(own.r)
-    x = _columns_first(m, other.root.shape[1], k + len(place))
+    x = columns_first(m, other.root.shape[1], columns=k + len(place))
     mine = x[..., :k] = own.S.reshape(*other.root.shape, k) * other.root[..., None]
-    x[..., k:] = other.x[..., place]
+    for to, there in zip(x, other.x, strict=True):
+        to[:, k:] = there[:, place]
     y = np.concatenate([_gram(other.q, mine), other.y[..., place]], axis=-1)
-    A = np.empty((m, k + len(place), k + len(place)))
+    A = zeros(m, k + len(place), k + len(place))
     A[:, k:, k:] = other.A[:, place][..., place]
     A[:, :k] = _gram(mine, x) - _gram(y[..., :k], y)
     A[:, k:, :k] = np.swapaxes(A[:, :k, k:], 1, 2)
@@ -152,11 +159,6 @@ def _onto(a: Array, b: Array) -> Array:
 def _gram(a: Array, b: Array) -> Array:
     """a^T b of every window: (m, n, k), (m, n, l) -> (m, k, l)."""
     return np.asarray(np.swapaxes(a, 1, 2) @ b)
-
-
-def _columns_first(m: int, n: int, k: int) -> Array:
-    """Empty array (m, n, k) in which each column of k is contiguous, since columns are written and read one by one."""
-    return np.empty((m, k, n)).swapaxes(1, 2)
 
 
 def nuisance_corrected(linear: Linearisation, ok: np.ndarray, variance: Array, spread: Array) -> Array:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.data import Array, Flags
+from rovval.core.large_arrays import zeros
 from rovval.diagnose.criteria import DEAD_RECKONED_SHARE, OUTLIER_SIGMA, PARITY_LEAST_SD
 from rovval.diagnose.residuals.dead_reckoning import (
     RELATIONS,
@@ -96,7 +97,7 @@ class ParityResiduals:
         to = [i for i, column in enumerate(columns) if column in place]
         of = [place[columns[i]] for i in to]
         scale = design_effect / self.design_effect
-        out = NormalEquations(np.zeros((m, k, k)), np.zeros((m, k)), scale * c, columns)
+        out = NormalEquations(zeros(m, k, k), np.zeros((m, k)), scale * c, columns)
         out.A[np.ix_(range(m), to, to)] = scale * null.A[np.ix_(range(m), of, of)] * np.outer(slope[of], slope[of])
         out.b[:, to] = scale * b[:, of] * slope[of]
         return out

@@ -10,13 +10,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from rovval.core.data import Array
+from rovval.core.large_arrays import columns_first
 from rovval.diagnose.residuals.normal_equations import Linearisation
 from rovval.diagnose.residuals.nuisances import drifting_channels, initial_states
 from rovval.diagnose.residuals.perturbations import DisplacedColumn, Perturbation, forward_differences, perturbations
 from rovval.diagnose.windows.attitude import tilted, tumbling
 from rovval.diagnose.windows.windows import Windows, channel_difference, predicted_channels
 
-AT_ONCE = 60  # windows that are simulated before their differences are taken: ten minutes of log, some 0.3 GB
+AT_ONCE = 16_000  # lanes that are simulated before their differences are taken: some 0.15 GB
 LANES = 2_000  # lanes a call: 20 MB, which stay with the process; larger arrays go back to the system each time (measured: a tenth slower)
 
 
@@ -55,13 +56,18 @@ def linearise(
     lanes = perturbations(windows, beta, states, columns, directions) + forward_differences(windows, beta, coarse)
     ids = (*columns, *(d.id for d in directions), *coarse)
     shape = (m, windows.steps + 1, len(windows.channels))
-    r, J, valid = np.zeros(shape), np.zeros((*shape, len(states) + len(drifting))), np.zeros(m, dtype=bool)
-    S = np.moveaxis(np.zeros((len(ids), *shape)), 0, -1)  # a column in one piece, as it is made
+    pushed = 0 if windows.disturbance_response is None else windows.disturbance_response.shape[-1]
+    r, J, valid = np.zeros(shape), columns_first(*shape, columns=len(states) + len(drifting) + pushed), np.zeros(m, dtype=bool)
+    S = columns_first(*shape, columns=len(ids))
     for i, channel in enumerate(drifting):
         J[..., channel, len(states) + i] = 1.0
     place = {column: i for i, column in enumerate(ids)}
-    for begin in range(0, m, AT_ONCE):
-        which = np.arange(begin, min(begin + AT_ONCE, m))
+    if windows.disturbance_response is not None:
+        J[..., len(states) + len(drifting) :] = windows.disturbance_response
+    each = max(1, AT_ONCE // len(lanes))
+    for begin in range(0, m, each):
+        which = np.arange(begin, min(begin + each, m))
+        here = slice(begin, begin + each)
         out, ran = _simulated(windows, lanes, which)
         valid[which] = ran[0]
         for i, lane in enumerate(lanes):
@@ -69,12 +75,10 @@ def linearise(
                 derivative = channel_difference(windows, out[i], out[lane.against]) / lane.step
                 derivative[~(ran[0] & ran[i] & ran[lane.against])] = 0.0
                 if lane.state >= 0:
-                    J[which, ..., lane.state] = derivative
+                    J[here, ..., lane.state] = derivative
                 else:
-                    S[which, ..., place[lane.column]] = derivative
+                    S[here, ..., place[lane.column]] = derivative
         r[which] = np.where(windows.ok[which], channel_difference(windows, windows.y[which], out[0]), 0.0)
-    if windows.disturbance_response is not None:
-        J = np.concatenate([J, windows.disturbance_response], axis=-1)
     J[~valid] = 0.0
     return Linearisation(r, S, J, ids, valid)
 

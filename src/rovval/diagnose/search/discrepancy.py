@@ -15,6 +15,7 @@ import numpy as np
 
 from rovval.core.channels import AXES
 from rovval.core.data import Array
+from rovval.core.large_arrays import columns_first
 from rovval.diagnose.criteria import GENERIC_SIZES, MOST_FORCES, OWN_FORCE
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.cross_validation import Fold, held_out_losses
@@ -114,6 +115,8 @@ def _beside(problem: Problem, beta: Array, linear: Sequence[Linearisation], prec
     ids = tuple(range(len(beta), len(beta) + len(names)))
     parts = []
     for part, one, answer in zip(problem.runs, linear, answers, strict=True):
-        both = Linearisation(one.r, np.concatenate([one.S, answer], axis=-1), one.J, (*one.columns, *ids), one.valid)
+        S = columns_first(*one.r.shape, columns=len(one.columns) + len(ids))
+        S[..., : len(one.columns)], S[..., len(one.columns) :] = one.S, answer
+        both = Linearisation(one.r, S, one.J, (*one.columns, *ids), one.valid)
         parts.append(normal_equations(both, part.ok, problem.likelihood.variance, nuisance_sd(part)))
     return GenericForces(names, concatenated(parts), precision, pull, problem.tempering)
