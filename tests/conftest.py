@@ -1,6 +1,9 @@
 """Shared by all tests."""
 
 import os
+import resource
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 
 import pytest
@@ -16,3 +19,19 @@ def _plain_terminal() -> None:
     """Help texts have one width and no colour, whatever terminal runs the tests."""
     os.environ.update({"COLUMNS": "100", "NO_COLOR": "1", "TERM": "dumb"})
     os.environ.pop("ROVVAL_DEBUG", None)
+
+
+@pytest.fixture
+def no_more_than() -> Callable[[int], AbstractContextManager[None]]:
+    """While the block lasts no file can grow beyond so many bytes: the system refuses as it does on a disk that is full."""
+
+    @contextmanager
+    def limited(size: int) -> Iterator[None]:
+        before = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+        try:
+            yield
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+    return limited

@@ -86,11 +86,13 @@ def remove(key: str) -> None:
 
 
 def write_site(folder: Path, prefix: str, logs: int = 3, *lines: str, steps: str = '["ingest"]') -> Path:
-    """A pipeline file on this machine over s3://BUCKET/prefix: so many logs, archive, reports."""
+    """A pipeline file on this machine over s3://BUCKET/prefix: so many logs, archive, reports. Logs that are there are not put again: when they were
+    put is the date of their dives."""
     root = f"s3://{BUCKET}/{prefix}"
     for number in range(logs):
-        local = batch_case.write_log(folder / "made" / f"{number}.csv", seed=number)
-        (place(root) / "logs" / local.name).write_bytes(local.read_bytes())
+        local, there = batch_case.write_log(folder / "made" / f"{number}.csv", seed=number), place(root) / "logs" / f"{number}.csv"
+        if not there.exists():
+            there.write_bytes(local.read_bytes())
     path = batch_case.write_pipeline(folder, *lines, steps=steps)
     text = path.read_text().replace('"archive"', f'"{root}/archive"').replace('"reports"', f'"{root}/reports"').replace('"logs/', f'"{root}/logs/')
     path.write_text(text)

@@ -33,7 +33,7 @@ def test_a_bar_is_drawn_on_a_terminal_alone(monkeypatch, capsys):
     assert terminal.getvalue() == before
 
 
-@pytest.mark.parametrize("name", ["csv", "csv.gz", "bag", "db3", "mcap ros2", "json lines", "nmea", "xlsx", "mat v5", "mat v7.3", "hdf5", "ulg"])
+@pytest.mark.parametrize("name", ["csv", "csv.gz", "bag", "db3", "mcap ros2", "json lines", "nmea", "xlsx", "mat v5", "mat v7.3", "hdf5", "parquet", "ulg"])
 def test_a_reader_tells_how_much_of_the_file_it_has_read(tmp_path, name):
     write, profile_of = CASES[name]
     path, heard = write(tmp_path), list[float]()

@@ -43,6 +43,13 @@ def test_formats_are_the_files_of_the_room():
         suffix("xls")
 
 
+@pytest.mark.parametrize("name", formats())
+def test_a_disk_that_takes_no_more_is_one_refusal_and_leaves_nothing(name, run, tmp_path, no_more_than):
+    with no_more_than(4096), pytest.raises(UsageProblem, match="cannot be written"):
+        write(run, name, tmp_path / f"a{suffix(name)}")
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.parametrize("name", ["bag", "mcap"])
 def test_a_bag_comes_back_as_the_run(name, run, sim, tmp_path):
     (path,) = write(run, name, tmp_path / f"a.{name}", sim)

@@ -111,3 +111,11 @@ def test_ten_thousand_runs_are_answered_in_under_a_second(tmp_path):
     began = time.process_time()
     found = catalogue.find(tmp_path, "vehicle = 'v3' and surge > 0.1", datetime(2030, 1, 1))
     assert len(found) == 1000 and time.process_time() - began < 1.0
+
+
+def test_a_disk_that_takes_no_more_is_a_refusal_and_the_table_of_before_stays(tmp_path, no_more_than):
+    catalogue.update(tmp_path, [row(1)], NOW)
+    before = files(tmp_path)
+    with no_more_than(4096), pytest.raises(UsageProblem, match=r"runs\.parquet: cannot be written"):
+        catalogue.update(tmp_path, [row(n) for n in range(400)], NOW)
+    assert files(tmp_path) == before

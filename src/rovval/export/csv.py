@@ -13,6 +13,7 @@ SUFFIX = ".csv"
 
 def write(content: Content, path: Path) -> tuple[Path, ...]:
     """One file, its stamps with all their digits. Raises as `drafts` does."""
+    text = table(content).write_csv(datetime_format="%Y-%m-%dT%H:%M:%S%.9fZ")
     with drafts(path) as [draft]:
-        table(content).write_csv(draft, datetime_format="%Y-%m-%dT%H:%M:%S%.9fZ")
+        draft.write_text(text, encoding="utf-8", newline="\n")
     return (path,)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 
 import numpy as np
@@ -17,8 +18,9 @@ SUFFIX = ".parquet"
 def write(content: Content, path: Path) -> tuple[Path, ...]:
     """One file; what the axes are stands in its metadata. Raises as `drafts` does."""
     about = {"run": content.run.id, "source": content.run.source, "sha256": content.run.sha256, "axes": AXES}
+    table(content).write_parquet(made := io.BytesIO(), compression="zstd", metadata=about)
     with drafts(path) as [draft]:
-        table(content).write_parquet(draft, compression="zstd", metadata=about)
+        draft.write_bytes(made.getbuffer())  # not by polars, whose own error tells of a full disk as of a damaged file
     return (path,)
 
 

@@ -141,8 +141,9 @@ def _place(archive: Path, vehicle: str, year: int) -> Path:
 
 
 def _write(place: Path, rows: pl.DataFrame) -> None:
+    rows.drop(PARTITIONS).write_parquet(table := io.BytesIO(), compression="zstd")
     with drafts(place) as [draft]:
-        rows.drop(PARTITIONS).write_parquet(draft, compression="zstd")
+        draft.write_bytes(table.getbuffer())  # not by polars, whose own error tells of a full disk as of a damaged file
 
 
 def _empty() -> pl.DataFrame:

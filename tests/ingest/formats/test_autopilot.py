@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 import struct
 import sys
+import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -83,6 +86,19 @@ def test_cut_and_flipped_logs_never_give_a_traceback(name, tmp_path, capsys):
         except BadInput as refused:
             assert refused.hint and str(path) in refused.message
     assert capsys.readouterr().out == ""
+
+
+def test_a_log_that_fails_while_it_is_opened_is_refused_and_closed(tmp_path):
+    """The units of a message's fields name more fields than it has: pymavlink fails while it still looks at the map of the file."""
+    formats = [(128, 89, b"FMT", b"BBnNZ", b"Type,Length,Name,Format,Columns"), (201, 44, b"FMTU", b"QBNN", b"TimeUS,FmtType,UnitIds,MultIds")]
+    packets = [b"\xa3\x95\x80" + struct.pack("<BB4s16s64s", *one) for one in formats]
+    path = tmp_path / "a.bin"
+    path.write_bytes(b"".join(packets) + b"\xa3\x95\xc9" + struct.pack("<QB16s16s", 0, 128, b"-" * 15 + b"#", b""))
+    with pytest.raises(BadInput, match=r"a\.bin: damaged or foreign"), warnings.catch_warnings():
+        warnings.simplefilter("error")
+        read(path, "ardusub")
+    gc.collect()
+    assert not [name for name in Path("/proc/self/fd").iterdir() if str(name.resolve()).endswith("a.bin")]
 
 
 def test_without_pymavlink_it_says_how_to_get_it(tmp_path, monkeypatch):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import struct
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from google.protobuf import descriptor_pb2, descriptor_pool, message_factory, timestamp_pb2
+from mcap.reader import make_reader
 from mcap.writer import CompressionType, Writer
 from mcap_protobuf.writer import Writer as ProtobufWriter
 from rosbags.typesys import Stores, get_typestore
@@ -151,6 +153,23 @@ def test_a_flipped_bit_is_found_by_the_checksum(tmp_path):
     log = read(tmp_path / "dive.mcap", own)
     assert [f.code for f in log.findings] == ["damaged_file"] and "left out" in log.findings[0].detail
     assert 0.9 * N < len(log.channels["u"].t) < N, "its chunk alone is lost"
+
+
+def test_an_index_that_points_beyond_the_file_is_passed_over(tmp_path):
+    """A chunk is damaged, and where the next one begins is damaged, too: the one after it is found."""
+    write_json(tmp_path / "dive.mcap")
+    with (tmp_path / "dive.mcap").open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    chunks = sorted(chunk.chunk_start_offset for chunk in summary.chunk_indexes)
+    own, raw = profile(tmp_path, "velocity.u"), bytearray((tmp_path / "dive.mcap").read_bytes())
+    raw[chunks[3] + 200] ^= 0x10
+    at = raw.rindex(struct.pack("<Q", chunks[4]))
+    raw[at : at + 8] = b"\xff" * 8
+    (tmp_path / "dive.mcap").write_bytes(raw)
+    log = read(tmp_path / "dive.mcap", own)
+    assert [f.code for f in log.findings] == ["damaged_file"] and "left out" in log.findings[0].detail
+    assert N * (1 - 3 / len(chunks)) < len(log.channels["u"].t) < N, "two chunks are lost"
 
 
 def test_a_spoiled_stream_of_a_chunk_is_a_refusal_or_a_finding(tmp_path):

@@ -22,6 +22,7 @@ from rovval.ingest.bags.damage import Damage
 MAGIC = b"\x89MCAP0\r\n"
 SCHEMA, CHANNEL, MESSAGE, CHUNK, DATA_END = 3, 4, 5, 6, 15  # opcodes
 HEAD = struct.Struct("<BQ")  # opcode and length of every record
+_length = struct.Struct("<Q").unpack_from
 MESSAGE_HEAD = 22  # bytes of a message's record before its data: channel, sequence, two stamps
 TOGETHER = 1 << 24  # bytes of messages outside chunks that are taken at a time
 LANGUAGES: dict[str, Literal["msg", "idl"]] = {"ros1msg": "msg", "ros2msg": "msg", "ros2idl": "idl"}
@@ -198,23 +199,19 @@ def _refuse_other_size(data: bytes, size: int) -> None:
 
 def _messages(content: bytes, topics: frozenset[str], known: _Known, damage: Damage) -> Iterator[Block]:
     """The messages of a chunk, by channel; its schemas and channels go to ``known``."""
-    places, after = [], []
-    at, end = 0, len(content)
-    while at + HEAD.size <= end:
-        op, length = HEAD.unpack_from(content, at)
-        to = at + HEAD.size + length
-        if to > end:
-            break
-        if op == MESSAGE and length >= MESSAGE_HEAD:
-            places.append(at + HEAD.size)
-            after.append(to)
-        elif op in (SCHEMA, CHANNEL):
-            known.note(op, content[at + HEAD.size : to], damage)
-        at = to
-    if at < end and not damage.cut:
+    places, at, last = [], 0, len(content) - HEAD.size
+    while at <= last:
+        places.append(at)
+        at += HEAD.size + _length(content, at + 1)[0]
+    if at != len(content) and not damage.cut:
         damage.lost["a record that cannot be read"] += 1
-    data, body = np.frombuffer(content, dtype=np.uint8), np.array(places, dtype=np.int64)
-    size = np.array(after, dtype=np.int64) - body - MESSAGE_HEAD
+    bounds = np.array([*places, at] if at <= len(content) else places, dtype=np.int64)
+    data, starts, ends = np.frombuffer(content, dtype=np.uint8), bounds[:-1], bounds[1:]
+    ops, body = data[starts], starts + HEAD.size
+    for place in np.flatnonzero((ops == SCHEMA) | (ops == CHANNEL)):
+        known.note(int(ops[place]), content[body[place] : ends[place]], damage)
+    of_message = (ops == MESSAGE) & (ends - body >= MESSAGE_HEAD)
+    body, size = body[of_message], (ends - body)[of_message] - MESSAGE_HEAD
     channels = numbers_at(data, "<u2", body)
     ns = numbers_at(data, "<i8", body + 6).astype(np.int64)
     for channel in np.unique(channels):

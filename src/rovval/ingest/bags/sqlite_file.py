@@ -7,21 +7,21 @@ from __future__ import annotations
 
 import sqlite3
 import struct
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rovval.core.errors import BadInput, Finding
 from rovval.ingest.bags.block import Block, Connection
 from rovval.ingest.bags.damage import Damage
+from rovval.ingest.bags.sqlite_pages import Pages, Rows
 
 MAGIC = b"SQLite format 3\0"
 ROWS = 20_000  # rows fetched at a time
+COLUMNS = [("id", 1), ("topic_id", 0), ("timestamp", 0), ("data", 0)]  # of the table of messages, and which one is the row's number
 Row = tuple[int, int, int, bytes]
-Rows = tuple[Sequence[int], NDArray[np.int64], NDArray[np.int64], Sequence[bytes]]  # number, topic, stamp (ns), message
 
 
 class Sqlite:
@@ -69,15 +69,22 @@ class Sqlite:
         wanted = [number for number, connection in self._topics.items() if connection.topic in topics]
         with closing(self._open()) as base:
             top = max(_last_number(base), 1)
-            for numbers, ids, ns, messages in _rows(base, None if self.cut else wanted, damage, pages(self.path)[1]):
-                size = np.fromiter(map(len, messages), dtype=np.int64, count=len(messages))
-                start, data = np.concatenate(([0], np.cumsum(size)[:-1])), np.frombuffer(b"".join(messages), dtype=np.uint8)
-                damage.found(ns)
-                self.share = min(numbers[-1] / top, 1.0)
+            for rows in self._rows(base, wanted, damage):
+                damage.found(rows.record_ns)
+                self.share = min(int(rows.number[-1]) / top, 1.0)
                 for number in wanted:
-                    if (of := ids == number).any():
-                        yield Block(self._topics[number], ns[of], data, start[of], size[of])
+                    if (of := rows.topic == number).any():
+                        yield Block(self._topics[number], rows.record_ns[of], rows.data, rows.start[of], rows.size[of])
         self.findings += damage.findings(self.path.name)
+
+    def _rows(self, base: sqlite3.Connection, wanted: list[int], damage: Damage) -> Iterator[Rows]:
+        """By the page as long as pages are as nearly all are, then by SQLite, which finds nothing more in a whole file."""
+        last, (page, count) = 0, pages(self.path)
+        if not self.cut and (root := _root(base)):
+            for rows in Pages(self.path, page).rows(root, wanted):
+                last = int(rows.number[-1])
+                yield rows
+        yield from _rows_after(last, base, None if self.cut else wanted, damage, count)
 
     def _open(self) -> sqlite3.Connection:
         base = sqlite3.connect(f"{self.path.absolute().as_uri()}?immutable=1", uri=True)
@@ -86,26 +93,36 @@ class Sqlite:
         return base
 
 
-def _rows(base: sqlite3.Connection, wanted: list[int] | None, damage: Damage, most: int) -> Iterator[Rows]:
+def _root(base: sqlite3.Connection) -> int | None:
+    """The first page of the table of messages; None where it has other columns than ROS 2 gives it."""
+    try:
+        columns = base.execute("SELECT name, pk FROM pragma_table_info('messages')").fetchall()
+        (root,) = base.execute("SELECT rootpage FROM sqlite_master WHERE type = 'table' AND name = 'messages'").fetchone()
+    except (sqlite3.DatabaseError, TypeError):
+        return None
+    return int(root) if columns == COLUMNS else None
+
+
+def _rows_after(last: int, base: sqlite3.Connection, wanted: list[int] | None, damage: Damage, most: int) -> Iterator[Rows]:
     """Whole rows, by the column, in the order of their numbers; where SQLite cannot go on, from the next number at which it can, ``most`` (pages) times."""
     which = "" if wanted is None else f" AND topic_id IN ({', '.join(map(str, wanted))})"
     query = f"SELECT id, topic_id, timestamp, data FROM messages WHERE id > ?{which} ORDER BY id"
-    last, top = 0, None
+    top = None
     while True:
         try:
             cursor = base.execute(query, (last,))
             while rows := cursor.fetchmany(ROWS):
                 last = max(last, int(rows[-1][0]))
                 good = _columns(rows)
-                if len(good[0]):
+                if len(good.number):
                     yield good
-                if len(good[0]) < len(rows):
-                    damage.lost["a row that holds no message"] += len(rows) - len(good[0])
+                if len(good.number) < len(rows):
+                    damage.lost["a row that holds no message"] += len(rows) - len(good.number)
             return
         except sqlite3.DatabaseError:
             rows = _singly(base, query, last)
             last = max(last, rows[-1][0]) if rows else last
-            if rows and len((good := _columns(rows))[0]):
+            if rows and len((good := _columns(rows)).number):
                 yield good
             top = _last_number(base) if top is None else top
             most -= 1
@@ -130,14 +147,11 @@ def _singly(base: sqlite3.Connection, query: str, last: int) -> list[Row]:
 
 
 def _columns(rows: list[Row]) -> Rows:
-    """The rows that are messages, by the column: taken as such at once, since nearly always all of them are."""
-    numbers, ids, stamps, messages = zip(*rows, strict=True)
-    columns = np.array(ids), np.array(stamps)
-    if [c.dtype.kind for c in columns] == ["i", "i"] and set(map(type, messages)) == {bytes}:
-        return numbers, columns[0], columns[1], messages
+    """The rows that are messages, by the column."""
     good = [row for row in rows if isinstance(row[1], int) and isinstance(row[2], int) and isinstance(row[3], bytes)]
-    topics, times = (np.array([row[k] for row in good], dtype=np.int64) for k in (1, 2))
-    return [row[0] for row in good], topics, times, [row[3] for row in good]
+    number, topic, ns = (np.array([row[k] for row in good], dtype=np.int64) for k in (0, 1, 2))
+    size = np.array([len(row[3]) for row in good], dtype=np.int64)
+    return Rows(number, topic, ns, np.frombuffer(b"".join(row[3] for row in good), dtype=np.uint8), np.cumsum(size) - size, size)
 
 
 def _last_number(base: sqlite3.Connection) -> int:

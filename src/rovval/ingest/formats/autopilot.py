@@ -245,7 +245,9 @@ def _opened(path: Path) -> Iterator[tuple[Any, list[Finding]]]:
         with whole_packets(path) as (whole, lost), contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
             with whole.open("rb") as file:
                 dataflash = file.read(2) == DATAFLASH
-            log = DFReader.DFReader_binary(str(whole)) if dataflash else mavutil.mavlogfile(str(whole))
+            kind = DFReader.DFReader_binary if dataflash else mavutil.mavlogfile
+            log = kind.__new__(kind)  # in two steps: what fails in the second has a file open, and is closed below
+            log.__init__(str(whole))
             yield log, lost
     except (RovvalError, KeyboardInterrupt):
         raise
@@ -253,8 +255,7 @@ def _opened(path: Path) -> Iterator[tuple[Any, list[Finding]]]:
         said = str(error).splitlines()[0] if str(error) else ""
         raise BadInput(f"{path}: damaged or foreign: {type(error).__name__}: {said}", "is the file whole?") from None
     finally:
-        if log is not None and hasattr(log, "close"):
-            try:
-                log.close()
-            except BufferError:  # of a damaged log: what was raised still looks at the map of the file, which goes with it
-                log.filehandle.close()
+        for held in (getattr(log, name, None) for name in ("data_map", "filehandle", "f")):  # what the two kinds of reader have open
+            if held is not None:
+                with contextlib.suppress(BufferError):  # what a damaged log raised still looks at the map of the file, which goes with it
+                    held.close()

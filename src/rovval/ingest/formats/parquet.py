@@ -42,17 +42,22 @@ def read(path: Path, profile: Profile, progress: Progress = silent) -> RawLog:
 
 def contents(path: Path, progress: Progress = silent) -> Iterator[Block]:
     """The table's columns; nested ones by address. Raises `BadInput` for a damaged file."""
-    return _blocks(path)
+    return _blocks(path, progress)
 
 
-def _blocks(path: Path, rows: int | None = None) -> Iterator[Block]:
+def _blocks(path: Path, progress: Progress = silent, rows: int | None = None) -> Iterator[Block]:
     import polars as pl
 
     from rovval.ingest.contents.frame_block import block_of
 
     try:
         with _panics_unprinted():
-            frame = pl.read_parquet(path, n_rows=rows, use_pyarrow=False, glob=False)
+            names = list(pl.read_parquet_schema(path))
+            columns = []
+            for number in range(len(names)):  # one after the other, as they lie in the file, to tell how far it is
+                progress("reading columns", number / len(names))
+                columns += pl.read_parquet(path, columns=[number], n_rows=rows, use_pyarrow=False, glob=False).get_columns()
+            frame = pl.DataFrame(columns)
     except (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError) as error:  # its decoder panics at some damage
         raise BadInput(f"{path}: damaged: {str(error).splitlines()[0]}", "Parquet keeps its index at the end: is the file whole?") from None
     yield block_of("", frame)
