@@ -157,3 +157,19 @@ def test_when_a_regime_holds_is_read_off_the_log(name: str, when: str) -> None:
     }  # fmt: skip
     found = holds(run, name)
     assert (found is None) if not when else (found is not None and (found == known[when]).all())
+
+
+def test_current_and_tether_are_arrows_on_the_vehicle(tmp_path: Path) -> None:
+    from rerun.chunk import RrdReader
+
+    run = make_run(300)
+    mended = replace(make_sim(run), effects=("current_constant:north=0.2", "tether_tension:east=10"))
+    _, entities, notes, _ = read(compare(run, make_sim(run)), tmp_path / "run.rrd", corrected=mended)
+    assert {"/world/current", "/world/measured/force/tether_tension"} <= entities
+    assert "Arrow of the current, as the simulation with effects has it: 0.2 m/s at most" in notes and "10 N at most" in notes
+    vectors = [b.column("Arrows3D:vectors") for c in RrdReader(str(tmp_path / "run.rrd")).stream()
+               if c.entity_path == "/world/current" and "Arrows3D:vectors" in (b := c.to_record_batch()).schema.names]  # fmt: skip
+    drawn = np.array(vectors[0].to_pylist(), dtype=float).reshape(-1, 3)
+    np.testing.assert_allclose(drawn / drawn[0, 0], np.tile([1.0, 0.0, 0.0], (300, 1)), atol=1e-6)
+    _, plain, notes, _ = read(compare(run, make_sim(run)), tmp_path / "plain.rrd")
+    assert not any("current" in e or "force/" in e for e in plain) and "Arrow" not in notes

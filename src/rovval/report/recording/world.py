@@ -12,6 +12,8 @@ from rovval.core.frames import quaternion_from_euler
 from rovval.report.common.hues import hues, rgb
 from rovval.report.common.numbers import listed
 from rovval.report.comparison import words
+from rovval.report.diagnosis.plain import title, titled
+from rovval.simulation.surroundings import Surroundings, surroundings
 
 if TYPE_CHECKING:
     from rovval.vehicle.model import Vehicle
@@ -62,7 +64,15 @@ def draw(stream: Any, clock: list[Any], c: Comparison, vehicle: Vehicle, correct
         stream.log(f"/world/track/{_slug(name)}", rr.LineStrips3D(strips, colors=[COLOURS[name]], radii=-1.5), static=True)
     for name, eta in bodies.items():
         _body(stream, clock, f"/world/{_slug(name)}", eta, vehicle, COLOURS[name], solid=name == next(iter(bodies)))
-    _thrusts(stream, clock, f"/world/{_slug(next(iter(bodies)))}/thrust", c.sim, vehicle)
+    shown, eta = next(iter(bodies.items()))
+    _thrusts(stream, clock, f"/world/{_slug(shown)}/thrust", c.sim, vehicle)
+    around = surroundings(run, corrected or c.sim, vehicle) if (corrected or c.sim).effects else Surroundings(None, {})
+    if around.current is not None:
+        largest = _arrow(stream, clock, "/world/current", around.current, "current", vehicle, eta[:, :3])
+        notes.append(f"Arrow of the current, as the simulation with effects has it: {largest:.3g} m/s at most.")
+    for effect, force in around.forces.items():
+        largest = _arrow(stream, clock, f"/world/{_slug(shown)}/force/{effect}", force, title(effect), vehicle)
+        notes.append(f"Arrow of {titled(effect)}, drawn from the vehicle's origin: {largest:.3g} N at most.")
     return notes
 
 
@@ -108,6 +118,21 @@ def _body(
         scale=np.repeat(there.astype(float)[:, None], 3, axis=1),
     )
     stream.send_columns(path, clock, columns)
+
+
+def _arrow(stream: Any, clock: list[Any], path: str, vectors: Array, label: str, vehicle: Vehicle, origins: Array | None = None) -> float:
+    """An arrow along the run, the longest `ARROW_SHARE` vehicle lengths long, from ``origins`` (n, 3) or the origin of the entity above; the largest size,
+    in the vectors' unit. Gone where the vector or its origin is missing."""
+    import rerun as rr
+
+    at = np.zeros_like(vectors) if origins is None else origins
+    largest = float(np.nanmax(np.linalg.norm(vectors, axis=1)))
+    there = np.asarray(np.isfinite(vectors).all(axis=1) & np.isfinite(at).all(axis=1))
+    drawn = np.where(there[:, None], vectors, 0.0) * (ARROW_SHARE * max(vehicle.body.size) / largest)
+    stream.log(path, rr.Arrows3D.from_fields(colors=[COLOURS["corrected"]], radii=[0.02], labels=[label]), static=True)
+    columns = rr.Arrows3D.columns(vectors=drawn, origins=np.where(there[:, None], at, 0.0))
+    stream.send_columns(path, clock, columns)
+    return largest
 
 
 def _thrusts(stream: Any, clock: list[Any], path: str, sim: SimResult, vehicle: Vehicle) -> None:
