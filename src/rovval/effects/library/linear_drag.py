@@ -9,8 +9,8 @@ import numpy as np
 
 from rovval.core.channels import AXES
 from rovval.effects.effect import TOGETHER, Effect, Parameter, Tolerance
-from rovval.effects.lanes import Array, Lanes, drag_tolerances, reference_drag
-from rovval.vehicle.model import Vehicle
+from rovval.effects.lanes import Array, Lanes, drag_departure, drag_tolerances, reference_drag
+from rovval.vehicle.model import Vehicle, as_matrix
 
 
 def _tolerance(parameter: Parameter, vehicle: Vehicle, axis: str) -> float:
@@ -22,7 +22,8 @@ EFFECT = Effect(
     name="linear_drag",
     title="Linear drag differs",
     place="vehicle",
-    equation="tau_i = -(1 + scale) d_i nu_r,i; where the file has none, scale refers to the quadratic force at 0.1 m/s (rad/s).",
+    equation="tau_i = -(1 + scale) d_i nu_r,i; where the file has none, scale refers to the quadratic force at 0.1 m/s (rad/s); "
+    "where it has less than a third of the median of its kind of axes, more of it refers to that third.",
     symbols={
         "tau_i": "drag on axis i, body axes; N, N m",
         "d_i": "linear drag coefficient of the vehicle's file; N s/m, N m s/rad",
@@ -54,5 +55,6 @@ EFFECT = Effect(
 
 def lower(lanes: Lanes, p: Mapping[str, Array]) -> Lanes:
     """Add the departure to the diagonal."""
-    departure = p["scale"] * reference_drag(lanes.vehicle)[0]
+    own = np.diag(as_matrix(lanes.vehicle.body.linear_drag))
+    departure = drag_departure(p["scale"], own, reference_drag(lanes.vehicle)[0])
     return replace(lanes, linear_drag=lanes.linear_drag + departure[:, :, None] * np.eye(6))

@@ -9,8 +9,8 @@ import numpy as np
 
 from rovval.core.channels import AXES
 from rovval.effects.effect import TOGETHER, Effect, Parameter, Tolerance
-from rovval.effects.lanes import Array, Lanes, drag_tolerances, reference_drag
-from rovval.vehicle.model import Vehicle
+from rovval.effects.lanes import Array, Lanes, drag_departure, drag_tolerances, reference_drag
+from rovval.vehicle.model import Vehicle, as_matrix
 
 
 def _tolerance(parameter: Parameter, vehicle: Vehicle, axis: str) -> float:
@@ -22,7 +22,8 @@ EFFECT = Effect(
     name="quadratic_drag",
     title="Quadratic drag differs",
     place="vehicle",
-    equation="tau_i = -(1 + scale) q_i |nu_r,i| nu_r,i; where the file has none, scale refers to the linear force at 1 m/s (rad/s).",
+    equation="tau_i = -(1 + scale) q_i |nu_r,i| nu_r,i; where the file has none, scale refers to the linear force at 1 m/s (rad/s); "
+    "where it has less than a third of the median of its kind of axes, more of it refers to that third.",
     symbols={
         "tau_i": "drag on axis i, body axes; N, N m",
         "q_i": "quadratic drag coefficient of the vehicle's file; N s2/m2, N m s2/rad2",
@@ -54,5 +55,6 @@ EFFECT = Effect(
 
 def lower(lanes: Lanes, p: Mapping[str, Array]) -> Lanes:
     """Add the departure to the diagonal."""
-    departure = p["scale"] * reference_drag(lanes.vehicle)[1]
+    own = np.diag(as_matrix(lanes.vehicle.body.quadratic_drag))
+    departure = drag_departure(p["scale"], own, reference_drag(lanes.vehicle)[1])
     return replace(lanes, quadratic_drag=lanes.quadratic_drag + departure[:, :, None] * np.eye(6))
