@@ -19,7 +19,7 @@ def test_a_gap_that_grows_is_said_to_grow() -> None:
 
 def test_a_parameter_has_a_line_with_its_interval() -> None:
     said = text(document())
-    assert "The squared gap shrinks by 34 % [10, 50] on held-out windows with 1 parameter tuned." in said
+    assert "The squared gap shrinks by 34 % [10, 50] on held-out windows with 1 parameter tuned." in " ".join(said.split())
     line = next(row for row in said.splitlines() if row.startswith("quadratic_drag[surge].scale"))
     assert line.split() == ["quadratic_drag[surge].scale", "0", "0.310", "[0.260,", "0.360]", "N", "s2/m2"]
 

@@ -9,6 +9,7 @@ from rovval.core.units import in_degrees
 from rovval.report import calibration as calibration_page
 from rovval.report.common.numbers import interval, number, per_cent, share
 from rovval.report.common.page import render
+from rovval.report.common.terminal import fitted
 from rovval.report.common.versions import foot
 
 MOST_PAIRS = 5  # correlated pairs that are named
@@ -17,7 +18,7 @@ FAR = 2.0  # standard deviations of the prior from which a departure is told
 
 def text(document: Mapping[str, Any]) -> str:
     """A fit of chosen parameters (rovval.fit/1) or a calibration (rovval.calibration/1)."""
-    return calibration(document) if is_calibration(document) else tuned(document)
+    return fitted(calibration(document) if is_calibration(document) else tuned(document))
 
 
 def html(document: Mapping[str, Any]) -> str:

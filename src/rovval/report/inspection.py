@@ -9,6 +9,7 @@ from rovval.ingest.inspection.inspect import Inspection
 from rovval.ingest.inspection.matches import Match
 from rovval.ingest.inspection.stamps_of_table import Stamps
 from rovval.ingest.inspection.summary import FieldSummary, Rhythm, TopicSummary
+from rovval.report.common.terminal import fitted
 
 SCHEMA = "rovval.inspection/1"
 WIDEST = 44  # characters of a column's name that the page shows
@@ -21,7 +22,7 @@ def page(found: Inspection, fields: bool = True) -> str:
     lines += [f"  {finding}" for finding in found.findings]
     for topic in found.contents.topics.values():
         lines += ["", *_topic(topic, found.stamps.get(topic.name), fields)]
-    return "\n".join([*lines, "", *_profiles(found)])
+    return fitted("\n".join([*lines, "", *_profiles(found)]))
 
 
 def document(found: Inspection) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from typing import Any
 from rovval.core.channels import AXES
 from rovval.core.units import in_degrees
 from rovval.report.common.numbers import listed, number
+from rovval.report.common.terminal import WIDTH, fitted
 
 UNITS = dict(zip(AXES, ("m/s",) * 3 + ("rad/s",) * 3, strict=True))
 CAUSES_SHOWN = 2
@@ -20,21 +21,38 @@ def documents(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
 
 
 def table(rows: Sequence[Mapping[str, Any]]) -> str:
-    """The rows as text: run, date, vehicle, gap on each axis (rms of the windows), verdict and causes. ``*`` marks a run whose log has other
-    content by now, ``~`` a date that is the file's."""
+    """The rows as text: run, date, vehicle, gap on each axis (rms of the windows), verdict and causes; below each other where a line of them is too long
+    for a terminal. ``*`` marks a run whose log has other content by now, ``~`` a date that is the file's."""
     axes = [axis for axis in AXES if any(row[axis] is not None for row in rows)]
-    shown = {axis: in_degrees(1.0, UNITS[axis]) for axis in axes}
-    head = ["run", "date", "vehicle", *(f"{axis} {shown[axis][1]}" for axis in axes), "verdict", "causes"]
-    lines = [head, *(_line(row, axes) for row in rows)]
-    widths = [max(len(line[i]) for line in lines) for i in range(len(head))]
-    right = range(3, 3 + len(axes))
-    return "\n".join("  ".join(c.rjust(w) if i in right else c.ljust(w) for i, (c, w) in enumerate(zip(line, widths, strict=True))).rstrip() for line in lines)
+    names, gaps = ["run", "date", "vehicle"], [f"{axis} {in_degrees(1.0, UNITS[axis])[1]}" for axis in axes]
+    parts = [(names, gaps, ["verdict", "causes"]), *((_named(row), _gaps(row, axes), _found(row)) for row in rows)]
+    right = range(len(names), len(names) + len(axes))
+    whole = _aligned([[*named, *gap, *found] for named, gap, found in parts], right)
+    if max(map(len, whole)) <= WIDTH:
+        return "\n".join(whole)
+    first = _aligned([named for named, _, _ in parts], ())
+    second = _aligned([["", *gap] for _, gap, _ in parts], range(1, 1 + len(axes)))
+    third = (f"  {': '.join(filter(None, found))}" for _, _, found in parts)
+    return fitted("\n".join(line for group in zip(first, second, third, strict=True) for line in group if line.strip()))
 
 
-def _line(row: Mapping[str, Any], axes: Sequence[str]) -> list[str]:
-    gap = [number(None if row[axis] is None else in_degrees(row[axis], UNITS[axis])[0]) for axis in axes]
+def _aligned(lines: Sequence[Sequence[str]], right: Sequence[int]) -> list[str]:
+    """Cells in columns, those of ``right`` to the right."""
+    widths = [max(len(line[i]) for line in lines) for i in range(len(lines[0]))]
+    rows = (zip(line, widths, strict=True) for line in lines)
+    return ["  ".join(c.rjust(w) if i in right else c.ljust(w) for i, (c, w) in enumerate(row)).rstrip() for row in rows]
+
+
+def _named(row: Mapping[str, Any]) -> list[str]:
+    date = f"{row['date']:%Y-%m-%d %H:%M}{'' if row['dated_by'] == 'stamps' else ' ~'}"
+    return [row["run"] + ("" if row["current"] else " *"), date, row["vehicle"]]
+
+
+def _gaps(row: Mapping[str, Any], axes: Sequence[str]) -> list[str]:
+    return [number(None if row[axis] is None else in_degrees(row[axis], UNITS[axis])[0]) for axis in axes]
+
+
+def _found(row: Mapping[str, Any]) -> list[str]:
     causes = [cause["effect"] for cause in row["causes"] or ()]
     more = f" and {len(causes) - CAUSES_SHOWN} more" if len(causes) > CAUSES_SHOWN else ""
-    name = row["run"] + ("" if row["current"] else " *")
-    date = f"{row['date']:%Y-%m-%d %H:%M}{'' if row['dated_by'] == 'stamps' else ' ~'}"
-    return [name, date, row["vehicle"], *gap, row["verdict"] or "", listed(causes[:CAUSES_SHOWN]) + more]
+    return [row["verdict"] or "", listed(causes[:CAUSES_SHOWN]) + more]

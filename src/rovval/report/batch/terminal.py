@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from rovval.report.common.numbers import duration
+from rovval.report.common.terminal import fitted
 
 
 def reasons(why: Mapping[str, int]) -> str:
@@ -28,4 +29,4 @@ def text(summary: Mapping[str, Any]) -> str:
     lines += [f"  left limits  {row['log']}: {row['stops'][0]}" for row in summary["left_sane_limits"]]
     lines += [f"  damaged      {what}" for what in summary.get("damaged", ())]
     lines += [f"  waiting      {row['log']}: {row['why']}" for row in summary["waiting"]]
-    return "\n".join(lines)
+    return fitted("\n".join(lines))

@@ -9,6 +9,7 @@ from statistics import median
 from typing import Any
 
 from rovval.report.common.numbers import estimate, quantity, share
+from rovval.report.common.terminal import fitted
 from rovval.trend import Trend
 from rovval.trend.change_points import NORMAL_90, Change
 from rovval.trend.recent import DIVES
@@ -25,8 +26,8 @@ def text(trends: Sequence[Trend]) -> str:
         if vehicle != (vehicle := (s.pipeline, s.vehicle)):
             lines += [*([""] if lines else []), f"{s.vehicle} ({s.pipeline}): median of the last {DIVES} dives, and what has changed"]
             lines += [f"  left out: {note}" for note in left_out(trend)]
-        lines.append(f"  {title(trend):<34} {quantity(now(trend), s.unit):>12}  {said(trend)}")
-    return "\n".join(lines)
+        lines.append(f"  {title(trend):<30} {quantity(now(trend), s.unit):>12}  {said(trend)}")
+    return fitted("\n".join(lines))
 
 
 def title(trend: Trend) -> str:

@@ -8,9 +8,8 @@ from textwrap import wrap
 from rovval.core.data import ChannelError, Comparison
 from rovval.core.units import DEGREE_UNITS, DEGREES
 from rovval.report.common.numbers import duration, listed, number, per_cent, signed
+from rovval.report.common.terminal import WIDTH
 from rovval.report.comparison import words
-
-WIDTH = 80  # columns of the narrowest terminal that people use
 
 
 def text(comparison: Comparison) -> str:

@@ -6,6 +6,7 @@ from rovval.core.data import Array
 from rovval.fly.dry_run import DryRun
 from rovval.fly.flight import Flight, Held
 from rovval.report.common.numbers import duration, per_cent, quantity
+from rovval.report.common.terminal import fitted
 from rovval.report.flight.json import spread
 
 
@@ -31,18 +32,18 @@ def text(flight: Flight) -> str:
     """Sentences, then a line for each set-point and way point; with draws the 5 % and 95 % quantiles of its error over them."""
     lines = sentences(flight)
     if flight.held:
-        lines += ["", f"{'leg':<14}{'set-point':<10}{'asked':>12}{'step':>14}{'error at end':>15}{'overshoot':>15}{'settled':>9}" + _head(flight)]
+        lines += ["", f"{'leg':<13}{'set-point':<10}{'asked':>11}{'step':>12}{'error at end':>13}{'overshoot':>12}{'settled':>9}" + _head(flight)]
     for h in flight.held:
         settled = "-" if h.settled_s is None or abs(h.step) < 1e-3 else f"{h.settled_s:.1f} s"
         values = (quantity(h.set_point, h.unit), quantity(h.step, h.unit, 2), quantity(h.error, h.unit, 2), quantity(h.overshoot, h.unit, 2))
         asked, step, error, over = values
-        lines.append(f"{h.leg:<14}{h.quantity:<10}{asked:>12}{step:>14}{error:>15}{over:>15}{settled:>9}" + _draws(h.draws, h.unit))
+        lines.append(f"{h.leg:<13}{h.quantity:<10}{asked:>11}{step:>12}{error:>13}{over:>12}{settled:>9}" + _draws(h.draws, h.unit))
     if flight.passed:
         lines += ["", f"{'leg':<14}{'way point (north, east, depth)':<34}{'passed within':>14}{'at':>10}" + _head(flight)]
     for p in flight.passed:
         point = ", ".join(f"{c:g}" for c in p.point)
         lines.append(f"{p.leg:<14}{point:<34}{quantity(p.distance, 'm'):>14}{p.at_s:>8.1f} s" + _draws(p.draws, "m"))
-    return "\n".join([*lines, *(f"note: {n}" for n in flight.notes)])
+    return fitted("\n".join([*lines, *(f"note: {n}" for n in flight.notes)]))
 
 
 def _head(flight: Flight) -> str:
@@ -60,4 +61,4 @@ def dry_run_text(dry: DryRun) -> str:
     for e in dry.entries:
         lines.append(f"{e.start_s:8.1f} to {e.end_s:8.1f} s  {e.label:<16} {e.does}")
         lines += [f"{'':24}exceeds: {problem}" for problem in e.exceeds]
-    return "\n".join([*lines, "", f"{len(dry.exceeds)} things would be exceeded" if dry.exceeds else "nothing would be exceeded"])
+    return fitted("\n".join([*lines, "", f"{len(dry.exceeds)} things would be exceeded" if dry.exceeds else "nothing would be exceeded"]))

@@ -25,6 +25,7 @@ COLOURS = {  # the page's in the dark
     "other": (180, 90, 160),
     "corrected": (31, 191, 143),
 }
+ARROW_RADIUS = 0.02  # of a vehicle's length: the shaft of an arrow of current or force
 ARROW_SHARE = 1.2  # the strongest thrust is drawn this many vehicle lengths long
 
 
@@ -65,14 +66,15 @@ def draw(stream: Any, clock: list[Any], c: Comparison, vehicle: Vehicle, correct
     for name, eta in bodies.items():
         _body(stream, clock, f"/world/{_slug(name)}", eta, vehicle, COLOURS[name], solid=name == next(iter(bodies)))
     shown, eta = next(iter(bodies.items()))
+    above = np.array([0.0, 0.0, -0.5 * vehicle.body.size[2]])
     _thrusts(stream, clock, f"/world/{_slug(shown)}/thrust", c.sim, vehicle)
     around = surroundings(run, corrected or c.sim, vehicle) if (corrected or c.sim).effects else Surroundings(None, {})
     if around.current is not None:
-        largest = _arrow(stream, clock, "/world/current", around.current, "current", vehicle, eta[:, :3])
+        largest = _arrow(stream, clock, "/world/current", around.current, eta[:, :3] + 2.0 * above, "current", vehicle)
         notes.append(f"Arrow of the current, as the simulation with effects has it: {largest:.3g} m/s at most.")
     for effect, force in around.forces.items():
-        largest = _arrow(stream, clock, f"/world/{_slug(shown)}/force/{effect}", force, title(effect), vehicle)
-        notes.append(f"Arrow of {titled(effect)}, drawn from the vehicle's origin: {largest:.3g} N at most.")
+        largest = _arrow(stream, clock, f"/world/{_slug(shown)}/force/{effect}", force, np.tile(above, (len(run), 1)), title(effect), vehicle)
+        notes.append(f"Arrow of {titled(effect)}, drawn from the middle of the hull's top: {largest:.3g} N at most.")
     return notes
 
 
@@ -120,16 +122,16 @@ def _body(
     stream.send_columns(path, clock, columns)
 
 
-def _arrow(stream: Any, clock: list[Any], path: str, vectors: Array, label: str, vehicle: Vehicle, origins: Array | None = None) -> float:
-    """An arrow along the run, the longest `ARROW_SHARE` vehicle lengths long, from ``origins`` (n, 3) or the origin of the entity above; the largest size,
-    in the vectors' unit. Gone where the vector or its origin is missing."""
+def _arrow(stream: Any, clock: list[Any], path: str, vectors: Array, at: Array, label: str, vehicle: Vehicle) -> float:
+    """An arrow along the run from ``at`` (n, 3) in the frame of the entity above, the longest `ARROW_SHARE` vehicle lengths long; the largest size, in
+    the vectors' unit. Gone where the vector or its origin is missing."""
     import rerun as rr
 
-    at = np.zeros_like(vectors) if origins is None else origins
+    longest = max(vehicle.body.size)
     largest = float(np.nanmax(np.linalg.norm(vectors, axis=1)))
     there = np.asarray(np.isfinite(vectors).all(axis=1) & np.isfinite(at).all(axis=1))
-    drawn = np.where(there[:, None], vectors, 0.0) * (ARROW_SHARE * max(vehicle.body.size) / largest)
-    stream.log(path, rr.Arrows3D.from_fields(colors=[COLOURS["corrected"]], radii=[0.02], labels=[label]), static=True)
+    drawn = np.where(there[:, None], vectors, 0.0) * (ARROW_SHARE * longest / largest)
+    stream.log(path, rr.Arrows3D.from_fields(colors=[COLOURS["corrected"]], radii=[ARROW_RADIUS * longest], labels=[label]), static=True)
     columns = rr.Arrows3D.columns(vectors=drawn, origins=np.where(there[:, None], at, 0.0))
     stream.send_columns(path, clock, columns)
     return largest

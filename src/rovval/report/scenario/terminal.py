@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rovval.fly.scenarios import Outcome
+from rovval.report.common.terminal import fitted
 from rovval.report.comparison import terminal
 
 SIGNS = {True: "pass", False: "FAIL", None: "-"}
@@ -17,7 +18,7 @@ def text(outcome: Outcome) -> str:
     lines = [f"  {SIGNS[c.holds]:<4}  {c.expected}: {c.seen}" for c in outcome.checks]
     lines += [terminal.text(outcome.comparison)] if outcome.comparison else []
     lines += _channels(outcome.document.get("channels") or ())
-    return "\n".join([head, *lines, "passed" if outcome.passed else "NOT passed"])
+    return fitted("\n".join([head, *lines, "passed" if outcome.passed else "NOT passed"]))
 
 
 def _channels(rows: Sequence[Mapping[str, Any]]) -> list[str]:
