@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from stat import S_ISREG
 from typing import Any
 
 from rovval.storage.places import name_from, named
@@ -23,10 +24,15 @@ def damage(files: Mapping[str, Mapping[str, Any]], base: Path, digests: bool = F
     found = {}
     for name, wanted in files.items():
         file = named(base, name)
-        if not file.is_file():
+        try:
+            status = file.stat()
+        except (FileNotFoundError, NotADirectoryError):
             found[name] = "gone"
-        elif (size := file.stat().st_size) != wanted["bytes"]:
-            found[name] = f"{size} bytes, {wanted['bytes']} were written"
+            continue
+        if not S_ISREG(status.st_mode):
+            found[name] = "gone"
+        elif status.st_size != wanted["bytes"]:
+            found[name] = f"{status.st_size} bytes, {wanted['bytes']} were written"
         elif digests and digest(file) != wanted["sha256"]:
             found[name] = "another content than was written"
     return found

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import json
+from typing import Any
 
 import report_cases
 
-from rovval.comparison import compare
+from rovval.comparison import compare, metrics
 from rovval.pipeline.keeping import summary
-from rovval.pipeline.planning.records import RECORD, brief, read_record, write_record
+from rovval.pipeline.planning.records import RECORD, brief, judged, read_record, write_record
 from rovval.report.batch import html
 from rovval.report.comparison.json import document
 
@@ -25,6 +26,21 @@ def test_what_a_batch_holds_of_a_record_says_all_that_the_record_says():
     assert said[0] == said[1] and len(said[0]["tolerances_exceeded"]) == len(limits) > 0
     assert html.text(said[0], [record]) == html.text(said[1], [brief(record)])
     assert len(json.dumps(brief(record))) < len(json.dumps(record)) / 3
+
+
+def test_what_is_written_of_a_comparison_judges_the_run_as_all_of_it_does():
+    """A record had all of the document, which stands in the report beside it: three times what the batch reads of every log every night."""
+    run = report_cases.make_run()
+    comparison = document(compare(run, report_cases.make_sim(run)))
+    limits = [f"{way}{axis}.{metric}=0" for axis in comparison["axes"] for metric in metrics.names() for way in ("", "window.")]
+
+    def said(part: dict[str, Any]) -> dict[str, Any]:
+        steps = {"compare": {"comparison": part, "outputs": ["d/report.html"]}}
+        record = {"log": "/logs/d.csv", "run": "d-ab", "duration_s": 90.0, "findings": 2, "steps": steps}
+        return summary.summarise("nightly", [record], [], [], [], limits, 1.0, {}) | {"ended": ""}
+
+    assert said(judged(comparison)) == said(comparison)
+    assert len(json.dumps(judged(comparison))) < 0.6 * len(json.dumps(comparison))
 
 
 def test_records_share_the_names_that_all_of_them_have():

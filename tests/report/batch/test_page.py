@@ -11,6 +11,7 @@ from rovval.pipeline import batch
 from rovval.pipeline.keeping import summary
 from rovval.report.batch import html as batch_html
 from rovval.report.batch import terminal
+from rovval.report.batch.table import folders
 
 
 def record(number: int = 0, **steps: Any) -> dict[str, Any]:
@@ -80,3 +81,9 @@ def test_a_batch_leaves_its_page_also_when_nothing_is_new(tmp_path, steps):
 
 def test_an_empty_batch_has_a_page():
     assert "0 runs" in said([])
+
+
+def test_folders_are_told_from_where_all_logs_lie_unless_they_have_no_such_place():
+    assert folders(["/logs/a/1.csv", "/logs/a/2.csv", "/logs/b/c/3.csv", "/logs/4.csv"]) == ["a", "a", "b/c", ""]
+    assert folders(["/logs/a/1.csv", "s3://dives/2.csv"]) == ["/logs/a", "s3://dives"]
+    assert folders([]) == []

@@ -17,7 +17,7 @@ from rovval.core.version import __version__
 from rovval.ingest.files import files_of, sha256
 from rovval.pipeline.planning.hashes import code_of_this_process
 from rovval.pipeline.planning.plan import Task
-from rovval.pipeline.planning.records import outputs_whole, read_record, write_record
+from rovval.pipeline.planning.records import judged, outputs_whole, read_record, write_record
 from rovval.storage.atomic import FULL, refusal, write_json, write_text
 from rovval.storage.contents import contents
 from rovval.storage.places import name_from, place, reached
@@ -179,7 +179,7 @@ class _Bench:
         comparison = compare(checked_against(self.run, self.vehicle), self.sim)
         with made_by(self._typed("compare")):
             files = report.write(comparison, self.task.folder / "comparison", self.vehicle, recorded=self.task.recordings)
-        return {"comparison": document(comparison)}, list(files.values())
+        return {"comparison": judged(document(comparison))}, list(files.values())
 
     def diagnose(self) -> tuple[dict[str, Any], list[Path]]:
         from rovval import report

@@ -17,6 +17,7 @@ from rovval.storage.places import named
 RECORD = "record.json"
 DIGEST = "digest"
 MARK, NO_DIGEST = f'"{DIGEST}": "', "0" * 64
+JUDGED = ("vehicle", "stops", "findings", "axes", "window")  # parts of a comparison's document by which a batch judges a run
 CHECKED = ("key", "files")  # facts of a step that only the plan asks for
 FREE = frozenset({"rmse", "mae", "iae", "mean_error", "unit"})  # of a free run, what the page and the catalogue tell of each axis,
 WINDOWED = frozenset({"rms", "iae", "unit"})  # and of windows
@@ -63,6 +64,20 @@ def brief(record: Mapping[str, Any], limits: Sequence[str] = ()) -> Mapping[str,
         steps["compare"] = _compared(steps["compare"], {limit.metric for limit in tolerances.parse(tolerances.of_one_run(limits))})
     shared: Mapping[str, Any] = _interned({**record, "steps": steps})
     return shared
+
+
+def judged(comparison: Mapping[str, Any]) -> dict[str, Any]:
+    """Of a comparison's document what tolerances, catalogue and page ask for: every metric as a number. All of it stands in the report beside the
+    record, and a batch reads the records of all logs every night."""
+    kept = {name: comparison[name] for name in JUDGED if name in comparison}
+    kept["axes"] = _numbers(kept["axes"])
+    if window := kept.get("window"):
+        kept["window"] = {"seconds": window["seconds"], "axes": _numbers(window["axes"])}
+    return kept
+
+
+def _numbers(axes: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
+    return {axis: {name: value for name, value in row.items() if not isinstance(value, dict | list)} for axis, row in axes.items()}
 
 
 def _compared(compared: Mapping[str, Any], asked: Set[str]) -> dict[str, Any]:

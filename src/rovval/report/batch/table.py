@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
 from os.path import commonpath, relpath
-from pathlib import Path
 
 from rovval.core.channels import AXES
 from rovval.report.batch.row import Row
@@ -65,11 +64,17 @@ def lead(rows: Sequence[Row]) -> str:
 
 
 def folders(logs: Sequence[str]) -> list[str]:
-    """The folder of each log below the one that all have in common, "" for that one itself."""
+    """The folder of each log below the one that all have in common, "" for that one itself; as it is where some lie on a disk and some in a store."""
     if not logs:
         return []
-    base = commonpath([Path(log).parent for log in logs])
-    return [relpath(Path(log).parent, base).removeprefix(".") for log in logs]
+    parents = [log.rpartition("/")[0] for log in logs]
+    distinct = set(parents)
+    try:
+        base = commonpath(distinct)
+    except ValueError:  # of absolute paths and addresses
+        return parents
+    below = {parent: relpath(parent, base).removeprefix(".") for parent in distinct}
+    return [below[parent] for parent in parents]
 
 
 def _gap(axis: str, rows: Sequence[Row]) -> Column:
