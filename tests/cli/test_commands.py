@@ -255,3 +255,13 @@ def test_compare_between_two_platforms_and_two_files(tmp_path, monkeypatch):
         run("compare", "dive.csv", "--between", "a.parquet", "a.parquet")
     with pytest.raises(UsageProblem, match="needs a log"):
         run("compare")
+
+
+def test_report_sets_models_side_by_side(here):
+    done = run("report", "dive.csv", "--model", "fossen", "--model", "uuv", "--model", "fossen")
+    assert {p.name for p in Path("reports/side_by_side").iterdir()} == {"side_by_side.json", "side_by_side.html"}
+    assert "fossen" in done.stdout and "uuv" in done.stdout
+    told = json.loads(run("report", "dive.csv", "--model", "fossen", "--model", "uuv", "--json").stdout)
+    assert list(told["comparisons"]) == ["fossen", "uuv"]
+    with pytest.raises(UsageProblem, match="nothing stands beside it"):
+        run("report", "dive.csv")

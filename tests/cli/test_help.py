@@ -11,7 +11,7 @@ from rovval.cli import complete
 from rovval.cli.app import COMMANDS, app
 
 CONTRACT = {"demo", "ingest", "simulate", "compare", "diagnose", "fit", "scenario", "run", "view", "list", "show", "blind", "import-vehicle"}
-CONTRACT |= {"archive", "export", "inspect", "profile", "trend", "fly"}
+CONTRACT |= {"archive", "export", "inspect", "profile", "trend", "fly", "report"}
 NAMES = [name for name, _, _ in COMMANDS]
 HEAVY = ("numpy", "polars", "numba", "scipy", "rerun", "pydantic", "rosbags", "mcap", "rich")
 RUNNER = CliRunner()
