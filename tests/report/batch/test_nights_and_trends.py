@@ -69,6 +69,7 @@ def test_a_browser_searches_filters_orders_and_hides_columns(tmp_path):
         command = [str(CHROMIUM), "--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=5000", "--dump-dom"]
         done = subprocess.run([*command, f"file://{tmp_path}/index.html#{view}"], capture_output=True, text=True, check=True, timeout=120)
         body = done.stdout.partition('class="tools"')[2]
+        assert re.search(r'<table class="[^"]*\bruns whole\b', body), "rows below the first screens are drawn once those stand"
         column = re.findall(r'data-title="(.*?)"', body).index("length") + 1
         assert (f"tr > :nth-child({column}) {{ display: none }}" in done.stdout) == ("hide=length" in view)
         return re.findall(r"(d\d{4})-ab", "".join(re.findall(r"<tr>.*?</tr>", body, re.DOTALL)))

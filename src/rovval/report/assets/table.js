@@ -76,4 +76,5 @@
   });
   columns(); order(); show();
   document.querySelector(".tools").hidden = false;
+  requestAnimationFrame(() => setTimeout(() => table.classList.add("whole")));  // the page stands: now the rows below the first screens
 })();
