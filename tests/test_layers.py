@@ -37,7 +37,7 @@ ROOMS = (
 INSIDE = {
     "diagnose": (("",), ("result",), ("decision",), ("search",), ("hypotheses",), ("inference",), ("problem",), ("residuals",), ("windows",), ("criteria",)),
     "blind": (("",), ("scoring",), ("sealed",), ("baselines", "cases"), ("second",), ("planted",), ("missions",), ("plant",)),
-    "report": (("scenario",), ("",), ("recording",), ("batch", "blind", "diagnosis", "flight"), ("comparison",), ("common",)),
+    "report": (("scenario",), ("",), ("recording",), ("batch", "blind", "diagnosis", "flight"), ("comparison",), ("common",), ("drawings",)),
     "effects": (("library",), ("",)),
     "pipeline": (("",), ("keeping",), ("execution",), ("planning",), ("steps", "tolerances")),
     "ingest": (

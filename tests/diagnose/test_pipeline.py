@@ -18,7 +18,7 @@ from rovval.comparison import compare
 from rovval.core.channels import AXES
 from rovval.diagnose import Diagnosis, diagnose
 from rovval.report.diagnosis.json import document as written
-from rovval.report.diagnosis.sentence import sentence
+from rovval.report.diagnosis.sentences.sentence import sentence
 from rovval.simulation import simulate
 from rovval.vehicle import parse
 

@@ -16,7 +16,7 @@ from rovval.fit.calibration import AxisError, Calibration, Row
 from rovval.fit.unknowns import unknowns
 from rovval.report import write_fit
 from rovval.report.calibration import answer, foremost, heat_map, html, rest, whisker
-from rovval.report.common.drawing import Box, Dot, Text
+from rovval.report.drawings.drawing import Box, Dot, Text
 from rovval.report.notebook import page_of
 from rovval.simulation.fitted_commands import Excess, largest
 

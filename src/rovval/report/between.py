@@ -8,12 +8,12 @@ from rovval.comparison.between import RESOLUTION, ChannelDifference, Difference
 from rovval.core.channels import AXES, POSE
 from rovval.core.frames import wrap
 from rovval.core.units import DEGREES, in_degrees, integral_unit
-from rovval.report.common.chart import chart
-from rovval.report.common.drawing import Drawing
 from rovval.report.common.markdown import grid
 from rovval.report.common.numbers import MISSING, listed, number, per_cent
 from rovval.report.common.page import render
 from rovval.report.common.versions import foot
+from rovval.report.drawings.chart import chart
+from rovval.report.drawings.drawing import Drawing
 
 CLAIM = 0.10  # thesis 6.1: "a 10% variation in ROV dynamics across the platforms"
 PLATFORMS = ("fossen", "uuv")  # the thesis's two: its Simulink and its ROS model

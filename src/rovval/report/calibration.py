@@ -7,10 +7,10 @@ from math import log
 from typing import Any
 
 from rovval.core.units import in_degrees
-from rovval.report.common.drawing import Box, Dot, Drawing, Line, Shape, Text
 from rovval.report.common.numbers import MISSING, interval, listed, number, per_cent, quantity
 from rovval.report.common.page import render
 from rovval.report.common.versions import foot
+from rovval.report.drawings.drawing import Box, Dot, Drawing, Line, Shape, Text
 
 MOST_CELLS = 14  # unknowns of the first picture of correlations: more do not fit a phone's width
 TOLD = 0.3  # correlation from which a cell has its number: below it a tenth of the variance is shared

@@ -13,13 +13,13 @@ from rovval.core.channels import AXES, POSE, VELOCITIES, channel
 from rovval.core.data import Array, Comparison, Run, SimResult
 from rovval.core.units import in_degrees
 from rovval.report import fit
-from rovval.report.common import curves
-from rovval.report.common.curves import Place
 from rovval.report.common.files import write_all
-from rovval.report.common.hues import hues
 from rovval.report.common.numbers import duration, number
 from rovval.report.common.page import render
 from rovval.report.common.versions import foot
+from rovval.report.drawings import curves
+from rovval.report.drawings.curves import Place
+from rovval.report.drawings.hues import hues
 
 HEIGHT_PX = 720  # of the page in a notebook's cell; it scrolls
 

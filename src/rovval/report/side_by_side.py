@@ -10,13 +10,13 @@ from rovval.comparison.error_growth import error_growth
 from rovval.core.channels import AXES
 from rovval.core.data import Comparison
 from rovval.core.units import in_degrees
-from rovval.report.common.chart import chart
-from rovval.report.common.drawing import Drawing
 from rovval.report.common.numbers import MISSING, listed, number
 from rovval.report.common.page import render
 from rovval.report.common.terminal import fitted
 from rovval.report.common.versions import foot
 from rovval.report.comparison.json import document as comparison_json
+from rovval.report.drawings.chart import chart
+from rovval.report.drawings.drawing import Drawing
 
 SCHEMA = "rovval.side_by_side/1"
 MOST_CURVES = 8  # that have a colour of their own

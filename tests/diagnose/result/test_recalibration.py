@@ -21,8 +21,8 @@ from rovval.core.data import Run
 from rovval.diagnose import diagnose
 from rovval.diagnose.result.diagnosis import Diagnosis
 from rovval.fit import fit
-from rovval.report.diagnosis import recalibration
 from rovval.report.diagnosis.json import document as written
+from rovval.report.diagnosis.sentences import recalibration
 from rovval.simulation import simulate
 from rovval.storage.archive import open_run
 from rovval.vehicle.model import Vehicle

@@ -28,7 +28,7 @@ from rovval.diagnose.search.onset import Onset, Stretch, evidence_with_onset, on
 from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.diagnose.windows.windows import Windows
 from rovval.report.diagnosis.json import document as written
-from rovval.report.diagnosis.sentence import since
+from rovval.report.diagnosis.sentences.sentence import since
 from rovval.storage.archive import open_run
 
 BEGINS = 120.0

@@ -21,11 +21,11 @@ from rovval.comparison.tolerance import Tolerance
 from rovval.core.channels import AXES
 from rovval.core.data import Array, Comparison
 from rovval.core.errors import Finding, UsageProblem
-from rovval.report.common import curves
-from rovval.report.common.drawing import Text
 from rovval.report.common.files import write_all
 from rovval.report.comparison import html, markdown, residuals, terminal, tolerances, track, uncertainty, words
 from rovval.report.comparison import json as report_json
+from rovval.report.drawings import curves
+from rovval.report.drawings.drawing import Text
 
 MERLIN = vehicle.load("merlin")
 

@@ -10,8 +10,9 @@ from report_cases import diagnosis, make_diagnosis, make_run, make_sim
 from rovval import report, vehicle
 from rovval.comparison import compare
 from rovval.diagnose.result.diagnosis import Diagnosis
-from rovval.report.diagnosis import html, terminal, words
+from rovval.report.diagnosis import html, terminal
 from rovval.report.diagnosis.json import document
+from rovval.report.diagnosis.sentences import words
 from rovval.report.diagnosis.tables import not_testable
 
 CONTRACT = (

@@ -9,7 +9,7 @@ from page_case import formats
 from report_cases import diagnosis
 
 from rovval.diagnose.result.diagnosis import Diagnosis
-from rovval.report.diagnosis.sentence import sentence
+from rovval.report.diagnosis.sentences.sentence import sentence
 
 ROW = {"low": -0.95, "high": -0.7, "unit": "1", "was": 0.0, "tolerance": 0.05, "beyond": True, "at_bound": False, "of_cause": False}
 

@@ -12,10 +12,10 @@ from report_cases import detection, diagnosis, make_diagnosis
 
 from rovval.diagnose.result.diagnosis import Diagnosis
 from rovval.report.diagnosis import html
-from rovval.report.diagnosis.first_screen import first_screen
 from rovval.report.diagnosis.json import document
-from rovval.report.diagnosis.plain import falls, regime, titled
-from rovval.report.diagnosis.sentence import answer, sentence, verdict
+from rovval.report.diagnosis.sentences.first_screen import first_screen
+from rovval.report.diagnosis.sentences.plain import falls, regime, titled
+from rovval.report.diagnosis.sentences.sentence import answer, sentence, verdict
 
 SURE = {"healthy": 0.02, "causes": 0.03, "miscalibrated_file": 0.05, "something_else": 0.9}
 

@@ -16,7 +16,7 @@ from rovval import vehicle
 from rovval.comparison import compare
 from rovval.core.channels import AXES
 from rovval.core.data import Array, Comparison
-from rovval.report.diagnosis.plain import holds
+from rovval.report.diagnosis.sentences.plain import holds
 from rovval.report.recording import write as recording
 
 MERLIN = vehicle.load("merlin")

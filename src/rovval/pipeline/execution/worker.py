@@ -186,7 +186,7 @@ class _Bench:
         from rovval.diagnose import diagnose
         from rovval.report.common.versions import made_by
         from rovval.report.diagnosis import json as diagnosis_json
-        from rovval.report.diagnosis.sentence import verdict
+        from rovval.report.diagnosis.sentences.sentence import verdict
 
         task, folder = self.task, self.task.folder / "diagnosis"
         found = diagnose(

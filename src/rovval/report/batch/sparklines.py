@@ -10,8 +10,8 @@ import numpy as np
 
 from rovval.core.channels import AXES
 from rovval.report.common import trend as words
-from rovval.report.common.drawing import Curve, Dot, Drawing, Line, Shape
 from rovval.report.common.numbers import quantity
+from rovval.report.drawings.drawing import Curve, Dot, Drawing, Line, Shape
 from rovval.trend import Trend
 
 WIDTH, HEIGHT, EDGE = 110.0, 30.0, 3.0

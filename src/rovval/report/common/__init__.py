@@ -1,1 +1,1 @@
-"""What every report uses: the formatter of numbers, the page, drawings and curves, files that appear together."""
+"""What every report uses: the formatter of numbers, the page, the glossary, files that appear together."""

@@ -19,7 +19,7 @@ from markupsafe import Markup, escape
 from rovval.core.units import DEGREE_UNITS, DEGREES, integral_unit
 from rovval.report.common import numbers
 from rovval.report.common.glossary import TERMS, linked
-from rovval.report.common.still import still
+from rovval.report.drawings.still import still
 
 ROOM = Path(__file__).parent.parent
 EXPLAINED = ("comparison.html", "diagnosis.html")  # pages that end with the meaning of their words

@@ -15,13 +15,13 @@ from rovval.core.channels import AXES, POSE, VELOCITIES
 from rovval.core.data import Array, Comparison
 from rovval.core.frames import wrap
 from rovval.core.units import in_degrees
-from rovval.report.common import curves
-from rovval.report.common.curves import Place
-from rovval.report.common.drawing import Curve, Dot, Drawing, Line, Shape, Text, round_up
-from rovval.report.common.hues import hues
 from rovval.report.common.numbers import number, per_cent, quantity
 from rovval.report.comparison import tolerances
 from rovval.report.comparison.words import TITLES
+from rovval.report.drawings import curves
+from rovval.report.drawings.curves import Place
+from rovval.report.drawings.drawing import Curve, Dot, Drawing, Line, Shape, Text, round_up
+from rovval.report.drawings.hues import hues
 
 Pictures = tuple[list[dict[str, Any]], list[Place]]  # what the script draws, and where
 

@@ -9,11 +9,11 @@ from typing import Any
 from rovval.comparison.tolerance import Tolerance
 from rovval.core.channels import AXES
 from rovval.core.data import Comparison
-from rovval.report.common import curves
 from rovval.report.common.numbers import number
 from rovval.report.common.page import render
 from rovval.report.common.versions import foot
 from rovval.report.comparison import figures, residuals, tolerances, track, uncertainty, words
+from rovval.report.drawings import curves
 
 
 def text(comparison: Comparison, recording: bool = True, limits: Sequence[Tolerance] = ()) -> str:

@@ -12,9 +12,9 @@ from rovval.comparison.spectrum import power_spectrum
 from rovval.core.channels import AXES, VELOCITIES
 from rovval.core.data import Comparison
 from rovval.core.units import in_degrees
-from rovval.report.common import curves
-from rovval.report.common.curves import Place
 from rovval.report.common.numbers import per_cent
+from rovval.report.drawings import curves
+from rovval.report.drawings.curves import Place
 
 LONGEST_LAG_S = 30.0  # chosen: three windows; a swing by the surface or of a tether is shorter
 NORMAL_95 = 1.96  # standard errors: white noise has 95 % of its autocorrelations within 1.96 / sqrt(n) (Box and Jenkins 1976, 2.1.6)

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from rovval.core.data import Array, Comparison
-from rovval.report.common import curves
-from rovval.report.common.curves import Place
-from rovval.report.common.drawing import Curve, Dot, Drawing, Line, Shape, Text, round_up
+from rovval.report.drawings import curves
+from rovval.report.drawings.curves import Place
+from rovval.report.drawings.drawing import Curve, Dot, Drawing, Line, Shape, Text, round_up
 
 SIDE, MARGIN = 460.0, 34.0  # pixels: as wide as a picture of curves
 POINTS = 700  # of a track

@@ -10,13 +10,13 @@ import numpy as np
 
 from rovval.core.units import in_degrees
 from rovval.diagnose.result.diagnosis import Coherence, Diagnosis, HeatMap, ScheduleLeg, Trace
-from rovval.report.common import curves
-from rovval.report.common.curves import Place
-from rovval.report.common.drawing import Box, Dot, Drawing, Line, Shape, Text
 from rovval.report.common.numbers import estimate, per_cent
-from rovval.report.diagnosis import plain
+from rovval.report.diagnosis.sentences import plain
+from rovval.report.diagnosis.sentences.words import group
 from rovval.report.diagnosis.tables import MOST_RANKED
-from rovval.report.diagnosis.words import group
+from rovval.report.drawings import curves
+from rovval.report.drawings.curves import Place
+from rovval.report.drawings.drawing import Box, Dot, Drawing, Line, Shape, Text
 
 MOST_REGIMES = 10
 

@@ -7,15 +7,16 @@ from typing import Any, NamedTuple
 
 from rovval.core.data import Comparison, SimResult
 from rovval.diagnose.result.diagnosis import AxisGap, Cause, Diagnosis, Interval, SensorFault
-from rovval.report.common.drawing import Drawing
 from rovval.report.common.numbers import MISSING, number, per_cents, probability
 from rovval.report.common.page import render
 from rovval.report.common.versions import foot
-from rovval.report.diagnosis import figures, recalibration, tables, whole_run, words
-from rovval.report.diagnosis.first_screen import first_screen
-from rovval.report.diagnosis.no_cause import unexplained
-from rovval.report.diagnosis.plain import remaining, title
-from rovval.report.diagnosis.sentence import also, answer, facts
+from rovval.report.diagnosis import figures, tables, whole_run
+from rovval.report.diagnosis.sentences import recalibration, words
+from rovval.report.diagnosis.sentences.first_screen import first_screen
+from rovval.report.diagnosis.sentences.no_cause import unexplained
+from rovval.report.diagnosis.sentences.plain import remaining, title
+from rovval.report.diagnosis.sentences.sentence import also, answer, facts
+from rovval.report.drawings.drawing import Drawing
 
 
 class Gain(NamedTuple):

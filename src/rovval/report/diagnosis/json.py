@@ -6,8 +6,8 @@ from typing import Any
 
 from rovval.diagnose.result.diagnosis import Diagnosis
 from rovval.report.diagnosis.command import Typed, recalibrate
-from rovval.report.diagnosis.no_cause import unexplained
-from rovval.report.diagnosis.sentence import answer, sentence
+from rovval.report.diagnosis.sentences.no_cause import unexplained
+from rovval.report.diagnosis.sentences.sentence import answer, sentence
 
 
 def document(d: Diagnosis, typed: Typed | None = None) -> dict[str, Any]:

@@ -17,10 +17,11 @@ from rovval.report.common.numbers import (
     probability,
     quantity,
 )
-from rovval.report.diagnosis import recalibration, tables, words
-from rovval.report.diagnosis.first_screen import first_screen
-from rovval.report.diagnosis.plain import left_of, titled
-from rovval.report.diagnosis.sentence import also, answer, facts
+from rovval.report.diagnosis import tables
+from rovval.report.diagnosis.sentences import recalibration, words
+from rovval.report.diagnosis.sentences.first_screen import first_screen
+from rovval.report.diagnosis.sentences.plain import left_of, titled
+from rovval.report.diagnosis.sentences.sentence import also, answer, facts
 
 
 def text(d: Diagnosis) -> str:

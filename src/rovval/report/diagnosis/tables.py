@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from rovval.diagnose.result.diagnosis import Candidate, Diagnosis
 from rovval.report.common.numbers import per_cent
-from rovval.report.diagnosis.plain import falls
+from rovval.report.diagnosis.sentences.plain import falls
 
 MOST_CANDIDATES, MOST_RANKED = 8, 16  # of a step of the search, of the screen
 WEIGHED = (

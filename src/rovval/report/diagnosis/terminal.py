@@ -7,10 +7,11 @@ from textwrap import wrap
 
 from rovval.diagnose.result.diagnosis import Candidate, Cause, Diagnosis
 from rovval.report.common.numbers import estimate, interval, number, per_cent, probability, quantity
-from rovval.report.diagnosis import recalibration, tables, words
-from rovval.report.diagnosis.first_screen import FirstScreen, first_screen
-from rovval.report.diagnosis.plain import left_of, titled
-from rovval.report.diagnosis.sentence import also, verdict
+from rovval.report.diagnosis import tables
+from rovval.report.diagnosis.sentences import recalibration, words
+from rovval.report.diagnosis.sentences.first_screen import FirstScreen, first_screen
+from rovval.report.diagnosis.sentences.plain import left_of, titled
+from rovval.report.diagnosis.sentences.sentence import also, verdict
 
 WIDTH = 80  # columns
 MOST_RANKED = 8

@@ -10,9 +10,9 @@ from rovval.core.channels import AXES, VELOCITIES
 from rovval.core.data import Comparison, SimResult
 from rovval.core.units import in_degrees
 from rovval.diagnose.result.diagnosis import Diagnosis
-from rovval.report.common import curves
-from rovval.report.common.curves import Band, Place
-from rovval.report.diagnosis.plain import holds, regime, titled
+from rovval.report.diagnosis.sentences.plain import holds, regime, titled
+from rovval.report.drawings import curves
+from rovval.report.drawings.curves import Band, Place
 
 JOINED_S = 2.0  # chosen: shaded stretches that are nearer to each other are drawn as one
 

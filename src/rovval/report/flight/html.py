@@ -12,11 +12,11 @@ from rovval.core.data import Array
 from rovval.fly.flight import Flight
 from rovval.fly.mission import WayPoints
 from rovval.fly.record import ASKED
-from rovval.report.common import curves
-from rovval.report.common.curves import Place
-from rovval.report.common.drawing import Curve, Dot, Drawing, Shape, Text
 from rovval.report.common.page import render
 from rovval.report.common.versions import foot
+from rovval.report.drawings import curves
+from rovval.report.drawings.curves import Place
+from rovval.report.drawings.drawing import Curve, Dot, Drawing, Shape, Text
 from rovval.report.flight.json import document
 from rovval.report.flight.terminal import sentences
 

@@ -10,9 +10,9 @@ import numpy as np
 from rovval.comparison.missing_force import WINDOW_S, missing_force
 from rovval.core.channels import AXES, VELOCITIES
 from rovval.core.data import Comparison, Reason, Run
-from rovval.report.diagnosis.first_screen import first_screen
-from rovval.report.diagnosis.plain import holds, regime, titled
-from rovval.report.diagnosis.sentence import also
+from rovval.report.diagnosis.sentences.first_screen import first_screen
+from rovval.report.diagnosis.sentences.plain import holds, regime, titled
+from rovval.report.diagnosis.sentences.sentence import also
 from rovval.report.recording.world import COLOURS
 
 if TYPE_CHECKING:

@@ -9,10 +9,10 @@ import numpy as np
 from rovval.core.channels import POSE
 from rovval.core.data import Array, Comparison, SimResult
 from rovval.core.frames import quaternion_from_euler
-from rovval.report.common.hues import hues, rgb
 from rovval.report.common.numbers import listed
 from rovval.report.comparison import words
-from rovval.report.diagnosis.plain import title, titled
+from rovval.report.diagnosis.sentences.plain import title, titled
+from rovval.report.drawings.hues import hues, rgb
 from rovval.simulation.surroundings import Surroundings, surroundings
 
 if TYPE_CHECKING:

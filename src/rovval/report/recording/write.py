@@ -16,9 +16,9 @@ import numpy as np
 from rovval.core.channels import AXES, POSE, VELOCITIES
 from rovval.core.data import Array, Comparison, SimResult
 from rovval.core.units import DEGREES
-from rovval.report.common.hues import hues, rgb
 from rovval.report.comparison import words
-from rovval.report.diagnosis.first_screen import first_screen
+from rovval.report.diagnosis.sentences.first_screen import first_screen
+from rovval.report.drawings.hues import hues, rgb
 from rovval.report.recording import diagnosed, world
 from rovval.report.recording.layout import blueprint
 

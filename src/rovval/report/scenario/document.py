@@ -14,12 +14,12 @@ from rovval.fly.scenarios import Outcome
 from rovval.fly.scenarios.table_6_1 import CIRCULAR, refusals, rows
 from rovval.plant import platforms
 from rovval.report import between as difference
-from rovval.report.common.drawing import Drawing
 from rovval.report.common.files import Writer, write_all
 from rovval.report.common.markdown import bullets, grid
 from rovval.report.common.numbers import number
 from rovval.report.common.page import render
 from rovval.report.common.versions import foot
+from rovval.report.drawings.drawing import Drawing
 from rovval.report.scenario.figures import FIGURES, ROS, SIMULINK
 from rovval.report.scenario.terminal import SIGNS
 from rovval.vehicle.model import Vehicle

@@ -13,8 +13,8 @@ from rovval.core.units import DEGREES
 from rovval.fly.mission import WayPoints
 from rovval.fly.scenarios import Outcome
 from rovval.fly.scenarios.way_points import square
-from rovval.report.common.chart import chart, path
-from rovval.report.common.drawing import Drawing
+from rovval.report.drawings.chart import chart, path
+from rovval.report.drawings.drawing import Drawing
 from rovval.vehicle.model import Vehicle, allocation
 
 ROS, SIMULINK = "uuv", "fossen"  # platforms that stand for the thesis's two

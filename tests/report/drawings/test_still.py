@@ -9,11 +9,11 @@ import pytest
 from report_cases import diagnosis, make_run, make_sim
 
 from rovval.comparison import compare
-from rovval.report.common import curves
-from rovval.report.common.drawing import Box, Curve, Drawing, Text
-from rovval.report.common.still import WIDTH, still
 from rovval.report.comparison import html as comparison_page
 from rovval.report.diagnosis import html as diagnosis_page
+from rovval.report.drawings import curves
+from rovval.report.drawings.drawing import Box, Curve, Drawing, Text
+from rovval.report.drawings.still import WIDTH, still
 
 T = np.arange(0.0, 100.0, 0.1)
 AXES = {"run": curves.times(1000, 0.1), "frequency": curves.steps(100, 0.05, "Hz", 0.05, log=True)}

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rovval.report.common.chart import chart, path
-from rovval.report.common.drawing import Curve, Line, Text
+from rovval.report.drawings.chart import chart, path
+from rovval.report.drawings.drawing import Curve, Line, Text
 
 
 @pytest.mark.parametrize("size", [0.0, 1e-14])

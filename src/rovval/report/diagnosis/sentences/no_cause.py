@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rovval.diagnose.result.diagnosis import Diagnosis, Unexplained
 from rovval.report.common.numbers import listed, number, per_cent, probability
-from rovval.report.diagnosis.plain import falls, titled
-from rovval.report.diagnosis.words import parameter, sensor_tolerance
+from rovval.report.diagnosis.sentences.plain import falls, titled
+from rovval.report.diagnosis.sentences.words import parameter, sensor_tolerance
 
 NOISE = "sensor noise"
 

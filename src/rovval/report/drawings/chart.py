@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.report.common.drawing import Curve, Dot, Drawing, Line, Shape, Text, round_up
+from rovval.report.drawings.drawing import Curve, Dot, Drawing, Line, Shape, Text, round_up
 
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 560.0, 200.0, 54.0, 10.0, 34.0, 24.0  # pixels
 POINTS = 350  # along the width: of what lies between two, the lowest and the highest are drawn

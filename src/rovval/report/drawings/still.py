@@ -1,4 +1,4 @@
-"""The curves of the page (`common.curves`) as drawings, for a page without a script: the same values, thinned so that every peak stays."""
+"""The curves of the page (`drawings.curves`) as drawings, for a page without a script: the same values, thinned so that every peak stays."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.report.common.chart import Scale, pieces
-from rovval.report.common.curves import MISSING
-from rovval.report.common.drawing import Box, Curve, Drawing, Line, Shape, Text, round_up
+from rovval.report.drawings.chart import Scale, pieces
+from rovval.report.drawings.curves import MISSING
+from rovval.report.drawings.drawing import Box, Curve, Drawing, Line, Shape, Text, round_up
 
 WIDTH, LEFT, RIGHT, TOP, BOTTOM = 460.0, 50.0, 8.0, 8.0, 22.0  # pixels
 HEIGHT, LEVELS, POINTS = 170.0, 4, 80  # of a picture: pixels, lines across, and points along the width: without a script there is no zoom

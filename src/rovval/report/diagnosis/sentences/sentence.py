@@ -7,10 +7,10 @@ from typing import Any
 from rovval.diagnose.criteria import OUT_OF_TOLERANCE
 from rovval.diagnose.result.diagnosis import Diagnosis
 from rovval.report.common.numbers import number, per_cent, quantity
-from rovval.report.diagnosis import no_cause, recalibration
-from rovval.report.diagnosis.first_screen import first_screen
-from rovval.report.diagnosis.plain import falls, falls_to, titled
-from rovval.report.diagnosis.words import alone
+from rovval.report.diagnosis.sentences import no_cause, recalibration
+from rovval.report.diagnosis.sentences.first_screen import first_screen
+from rovval.report.diagnosis.sentences.plain import falls, falls_to, titled
+from rovval.report.diagnosis.sentences.words import alone
 
 VERDICTS = {
     "no_gap": "no gap beyond noise and tolerance",

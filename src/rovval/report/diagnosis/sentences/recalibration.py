@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rovval.diagnose.result.diagnosis import Coefficient, Diagnosis, Recalibration
 from rovval.report.common.numbers import share
-from rovval.report.diagnosis.plain import falls, falls_to
-from rovval.report.diagnosis.words import parameter
+from rovval.report.diagnosis.sentences.plain import falls, falls_to
+from rovval.report.diagnosis.sentences.words import parameter
 
 TITLE = "Many coefficients off at once"
 LEAD = "Not a cause: a badly calibrated vehicle file, or an effect that the library lacks and that many coefficients imitate."

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 from rovval.diagnose.result.diagnosis import Cause, Diagnosis
 from rovval.report.common.numbers import listed, per_cent, probability, quantity
-from rovval.report.diagnosis import no_cause
-from rovval.report.diagnosis.plain import falls, falls_to, regime, title
-from rovval.report.diagnosis.words import alone, group, moved, parameter, unmoved
+from rovval.report.diagnosis.sentences import no_cause
+from rovval.report.diagnosis.sentences.plain import falls, falls_to, regime, title
+from rovval.report.diagnosis.sentences.words import alone, group, moved, parameter, unmoved
 
 MOST_VALUES = 2  # parameters of a cause that fit the first screen
 COUNTED = {1: "One effect", 2: "Two effects", 3: "Three effects"}

@@ -8,7 +8,7 @@ from rovval import effects
 from rovval.core.units import in_degrees
 from rovval.diagnose.result.diagnosis import AxisGap, Cause, Coefficient, Diagnosis, GapSlice, Parameter, SensorFault, Shrinkage
 from rovval.report.common.numbers import MISSING, estimate, number, per_cent, probability, share
-from rovval.report.diagnosis.plain import falls_to, regime, remaining
+from rovval.report.diagnosis.sentences.plain import falls_to, regime, remaining
 
 SCOPE = "Every number is about this simulator, this log and this library of effects."
 SQUARED = "Errors are told as rms. Shares of the gap are of squared errors, which add up: an error that falls to a half leaves a quarter of them."
