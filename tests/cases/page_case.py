@@ -2,6 +2,8 @@
 
 import re
 from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote
 
 from rovval.diagnose.result.diagnosis import Diagnosis
 
@@ -9,15 +11,17 @@ VOID = {"meta", "br", "link", "input", "img"}
 
 
 class Balance(HTMLParser):
-    """Refuses tags that are not closed in order, and collects what the page would fetch."""
+    """Refuses tags that are not closed in order, and collects what the page would fetch, and where it leads."""
 
     def __init__(self) -> None:
         super().__init__()
         self.open: list[str] = []
         self.fetched: list[str] = []
+        self.links: list[str] = []
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.fetched += [v or "" for k, v in attrs if k in ("src", "href", "srcset") and not (v or "").startswith("#")]
+        to = self.links if tag == "a" else self.fetched
+        to += [v or "" for k, v in attrs if k in ("src", "href", "srcset") and not (v or "").startswith("#")]
         if tag not in VOID:
             self.open.append(tag)
 
@@ -33,6 +37,15 @@ def check_html(text: str) -> None:
     parser = Balance()
     parser.feed(text)
     assert parser.open == [] and parser.fetched == []
+
+
+def pages_led_to(page: Path) -> set[Path]:
+    """The files that a page leads to, all of which have to be there."""
+    parser = Balance()
+    parser.feed(page.read_text(encoding="utf-8"))
+    found = {(page.parent / unquote(to)).resolve() for to in parser.links}
+    assert all(path.is_file() for path in found), found
+    return found
 
 
 def read(page: str) -> str:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from command_case import run
 from diagnosis_schema import check_document
+from page_case import pages_led_to
 
 from rovval import demo
 from rovval.demo import make
@@ -42,3 +43,5 @@ def test_demo_names_the_effect_that_was_left_in(here):
     check_document(document["diagnosis"])
     assert [cause["effect"] for cause in document["diagnosis"]["causes"]] == [demo.EFFECT.partition(":")[0]]
     assert all(Path(p).exists() for p in document["files"].values())
+    pages = [Path("demo", name).resolve() for name in ("report.html", "diagnosis.html")]
+    assert [set(pages_led_to(page)) for page in pages] == [{other, page.parent / "run.rrd"} for page, other in zip(pages, pages[::-1], strict=True)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -122,7 +122,10 @@ def _report(comparison: Comparison, vehicle: Vehicle, folder: Path | None, as_js
     from rovval.report.comparison.terminal import text
 
     document = comparison_json(comparison)
-    files = {} if folder is None else report.write(comparison, folder, vehicle, limits=limits)
+    files: Mapping[str, Path] = {}
+    if folder is not None:
+        links = {"Diagnosis": "diagnosis/diagnosis.html"} if (folder / "diagnosis" / "diagnosis.html").is_file() else {}
+        files = report.write(comparison, folder, vehicle, limits=limits, links=links)
     if as_json:
         output.result_json(document)
     else:

@@ -140,10 +140,11 @@ def _report(found: Diagnosis, run: Run, nominal: Vehicle, folder: Path) -> None:
     from rovval.core.errors import BadInput, SimulationStopped
     from rovval.simulation import simulate
 
+    links = {"Comparison": "../report.html"} if (folder.parent / "report.html").is_file() else {}
     try:
         comparison = compare(run, simulate(run, nominal, found.model))
         corrected = simulate(run, nominal, found.model, found.settings) if found.settings else None
-        report.write_diagnosis(found, folder, comparison, nominal, corrected)
+        report.write_diagnosis(found, folder, comparison, nominal, corrected, links)
     except (BadInput, SimulationStopped) as error:
         output.say(f"no recording: {error.message}")
-        report.write_diagnosis(found, folder)
+        report.write_diagnosis(found, folder, links=links)

@@ -76,9 +76,10 @@ def run(folder: Path, with_diagnosis: bool, progress: Callable[[str, float], Non
         ]
         corrected = simulate(dive, vehicle, effects=found.settings)
     progress("report", 0.8)
-    files = {"log": log, **report.write(comparison, folder, vehicle, corrected, recorded=not with_diagnosis)}
+    links = {"Diagnosis": "diagnosis.html"} if with_diagnosis else {}
+    files = {"log": log, **report.write(comparison, folder, vehicle, corrected, recorded=not with_diagnosis, links=links)}
     if with_diagnosis:
-        files |= report.write_diagnosis(found, folder, comparison, vehicle, corrected)
+        files |= report.write_diagnosis(found, folder, comparison, vehicle, corrected, {"Comparison": "report.html"})
     progress("demo", 1.0)
     document["files"] = {kind: str(path) for kind, path in files.items()}
     return Shown("\n\n".join(parts), document, files)

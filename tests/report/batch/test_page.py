@@ -5,7 +5,7 @@ from typing import Any
 
 import batch_case
 import pytest
-from page_case import Balance
+from page_case import Balance, pages_led_to
 
 from rovval.pipeline import batch
 from rovval.pipeline.keeping import summary
@@ -77,6 +77,8 @@ def test_a_batch_leaves_its_page_also_when_nothing_is_new(tmp_path, steps):
     run = json.loads(next((tmp_path / "reports").glob("*/record.json")).read_text())["run"]
     assert ">new<" not in text and done["ended"] in text and run in text
     assert ("comparison/report.html" in text) == ("compare" in steps)
+    for report in (tmp_path / "reports").glob("*/comparison/report.html"):
+        assert pages_led_to(page) >= {report} and page in pages_led_to(report)
 
 
 def test_an_empty_batch_has_a_page():

@@ -178,7 +178,8 @@ class _Bench:
 
         comparison = compare(checked_against(self.run, self.vehicle), self.sim)
         with made_by(self._typed("compare")):
-            files = report.write(comparison, self.task.folder / "comparison", self.vehicle, recorded=self.task.recordings)
+            links = self._links("diagnose", "Diagnosis", "../diagnosis/diagnosis.html")
+            files = report.write(comparison, self.task.folder / "comparison", self.vehicle, recorded=self.task.recordings, links=links)
         return {"comparison": judged(document(comparison))}, list(files.values())
 
     def diagnose(self) -> tuple[dict[str, Any], list[Path]]:
@@ -194,11 +195,16 @@ class _Bench:
         )
         document = diagnosis_json.document(found)
         with made_by(self._typed("diagnose", "--calibration-slop", f"{task.calibration_slop:g}")):
-            files = report.write_diagnosis(found, folder)
+            files = report.write_diagnosis(found, folder, links=self._links("compare", "Comparison", "../comparison/report.html"))
         if found.vehicle_fixed:
             write_text(folder / "vehicle_fixed.toml", found.vehicle_fixed)
         facts = {key: document[key] for key in ("vehicle", "verdict", "causes")}
         return {**facts, "said": verdict(found), "gap": document["gap"]["axes"]}, list(files.values())
+
+    def _links(self, step: str, label: str, page: str) -> dict[str, str]:
+        """The pages that belong to one of its reports: that of all runs, and what another ``step`` makes of this one."""
+        to_index = name_from(self.task.folder / "comparison", self.task.reports / "index.html")
+        return {"All runs": to_index} | ({label: page} if step in dict(self.task.keys) else {})
 
     def _typed(self, command: str, *more: str) -> list[str]:
         """The command that makes one of its reports by hand."""

@@ -27,12 +27,12 @@ FORMATS = (numbers.number, numbers.signed, numbers.quantity, numbers.interval, n
            numbers.probability, numbers.duration, numbers.listed)  # fmt: skip
 
 
-def render(template: str, curves: Mapping[str, Any] | None = None, **data: Any) -> str:
+def render(template: str, curves: Mapping[str, Any] | None = None, links: Mapping[str, str] | None = None, **data: Any) -> str:
     """The whole document of ``templates/<template>`` filled with ``data``. ``curves`` is what the script draws (see `curves.plot`); a page without
-    any has no script. A name that the template uses and ``data`` lacks is an error."""
+    any has no script. ``links`` are the pages that belong to it, by what they are called. A name that the template uses and ``data`` lacks is an error."""
     words = TERMS if template in EXPLAINED else {}
     drawn = {"curves": None} if curves is None else {"curves": _json(curves), "picture": partial(still, plots=curves["plots"], axes=curves["x"])}
-    page = _environment().get_template(template).render(glossary=words, **drawn, **data)
+    page = _environment().get_template(template).render(glossary=words, links=links, **drawn, **data)
     return linked(page) if words else page
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rovval.comparison.tolerance import Tolerance
@@ -16,8 +16,8 @@ from rovval.report.comparison import figures, residuals, tolerances, track, unce
 from rovval.report.drawings import curves
 
 
-def text(comparison: Comparison, recording: bool = True, limits: Sequence[Tolerance] = ()) -> str:
-    """The page; ``recording`` says that run.rrd lies beside it, ``limits`` are the tolerances that were stated."""
+def text(comparison: Comparison, recording: bool = True, limits: Sequence[Tolerance] = (), links: Mapping[str, str] | None = None) -> str:
+    """The page; ``recording`` says that run.rrd lies beside it, ``limits`` are the tolerances that were stated, ``links`` lead to pages that belong to it."""
     c, run = comparison, comparison.run
     velocity_curves, velocity_places = figures.velocities(c, limits)
     pose_curves, pose_places = figures.pose(c)
@@ -31,6 +31,7 @@ def text(comparison: Comparison, recording: bool = True, limits: Sequence[Tolera
             "x": {"run": curves.times(len(run), run.dt), **residual_axes},
             "plots": [*velocity_curves, *track_curves, *pose_curves, *thruster_curves, *residual_curves],
         },
+        links,
         title=f"{run.id} · rovval comparison",
         eyebrow="Simulated against measured",
         name=run.id,

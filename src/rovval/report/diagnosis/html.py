@@ -28,15 +28,18 @@ class Gain(NamedTuple):
     rms: str
 
 
-def text(d: Diagnosis, comparison: Comparison | None = None, corrected: SimResult | None = None, recording: bool = False) -> str:
+def text(
+    d: Diagnosis, comparison: Comparison | None = None, corrected: SimResult | None = None, recording: bool = False, links: Mapping[str, str] | None = None
+) -> str:  # fmt: skip
     """The page; with a ``comparison`` of the run it shows all of it, beside its simulation ``corrected`` by the causes. ``recording`` says that run.rrd
-    lies beside it."""
+    lies beside it, ``links`` lead to pages that belong to it."""
     axes, drawn, places = figures.traces(d)
     whole_axes, whole_drawn, whole_places = whole_run.drawn(d, comparison, corrected) if comparison else ({}, [], [])
     main = figures.main_regimes(d, d.heatmap) if d.heatmap else None
     return render(
         "diagnosis.html",
         {"x": axes | whole_axes, "plots": [*drawn, *whole_drawn]},
+        links,
         title=f"{d.run} · rovval diagnosis",
         eyebrow="Diagnosis",
         name=d.run,
