@@ -1,6 +1,6 @@
 """A small sealed set, made, answered and scored from nothing: floors that the engine must reach, and tests that chance scores chance.
 
-By default six logs of 120 s of the Merlin, one or more of each sort; marked slow, the 24 logs of 240 s of `--size small`, and sixteen of plant b.
+Six logs of 120 s of the Merlin, one or more of each sort, the 24 logs of 240 s of `--size small`, and sixteen of plant b; all of them are slow.
 The floors stand a good way below what was measured (the numbers are beside them), so that they fall when something breaks and not when a
 number moves. The full set is `rovval blind make sets/a --size full && rovval blind answer sets/a && rovval blind score sets/a` (hours, two cores).
 """
@@ -45,7 +45,7 @@ def few() -> list[Question]:
     return [Question(case, without, bool(case.effects) and case.effects[0].name in without) for case, without in cases]
 
 
-@pytest.fixture(scope="module", params=["few", pytest.param("small", marks=pytest.mark.slow)])
+@pytest.fixture(scope="module", params=[pytest.param(size, marks=pytest.mark.slow) for size in ("few", "small")])
 def size(request: pytest.FixtureRequest) -> str:
     return str(request.param)
 

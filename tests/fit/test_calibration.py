@@ -92,7 +92,7 @@ def test_correlations_are_those_of_a_covariance():
 
 def test_every_log_that_cannot_be_used_is_told_and_none_at_all_is_refused():
     short = dive(4, 15.0)
-    found = calibrate([dive(1), short], merlin())
+    found = calibrate([dive(1, 60.0), short], merlin())
     assert len(found.left_out) == 1
     assert short.id in found.left_out[0]
     with pytest.raises(BadInput, match="windows of 10 s"):

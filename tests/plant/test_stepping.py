@@ -17,7 +17,7 @@ LANES: tuple[list[str], ...] = (
 )
 
 
-@pytest.mark.parametrize("name", ["merlin", "minerva"])
+@pytest.mark.parametrize("name", ["merlin", pytest.param("minerva", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("lanes", [(0,), (1, 0, 2)])
 def test_steps_are_the_motion_of_the_whole_run(name, lanes):
     plant, rng, steps = Plant(vehicle.load(name), substeps=2), np.random.default_rng(5), 60

@@ -18,7 +18,10 @@ from rovval.diagnose.windows.multiple_shooting import cut
 
 @pytest.mark.parametrize(
     ("effect", "name"),
-    [("waves:amplitude=1,period=9.3,direction=2.6,phase=-2.0", "waves"), ("current_varying:north=0.15,east=-0.1,period=83,phase=2.5", "current_varying")],
+    [
+        ("waves:amplitude=1,period=9.3,direction=2.6,phase=-2.0", "waves"),
+        pytest.param("current_varying:north=0.15,east=-0.1,period=83,phase=2.5", "current_varying", marks=pytest.mark.slow),
+    ],
 )
 def test_what_swings_is_found_whatever_its_period_and_phase(effect, name):
     document = diagnose([own((effect,), 5, 240.0)], merlin()).document()
@@ -58,6 +61,7 @@ def test_a_change_with_depth_begins_at_depths_of_the_log():
         assert len(data) == 3 and z.min() < min(data) < max(data) < z.max()
 
 
+@pytest.mark.slow
 def test_an_offset_along_one_axis_is_tried_by_itself():
     """Three parameters free for one that is off are evidence lost."""
     p, library = posed()

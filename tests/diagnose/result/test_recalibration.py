@@ -59,6 +59,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("another")
 
 
+@pytest.mark.slow
 def test_a_file_off_in_many_coefficients_is_said_to_be_and_is_no_cause(folder: Path):
     d = answered(folder)
     check_document(d)

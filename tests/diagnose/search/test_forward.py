@@ -33,7 +33,8 @@ def test_a_channel_that_never_changes_is_no_measurement():
 @pytest.mark.parametrize(
     ("planted", "name"),
     [
-        ((("density_gradient", "", -0.8),), "density_gradient"), ((("thruster_deadband", "", 2.3),), "thruster_deadband"),
+        ((("density_gradient", "", -0.8),), "density_gradient"),
+        pytest.param((("thruster_deadband", "", 2.3),), "thruster_deadband", marks=pytest.mark.slow),
         pytest.param((("crossflow_loss", "", 1.5),), "crossflow_loss", marks=pytest.mark.slow),
         pytest.param((("current_shear", "", 1.2),), "current_shear", marks=pytest.mark.slow),
     ],
@@ -65,7 +66,7 @@ def test_a_depth_sensor_that_is_late_is_named_and_has_no_tolerance(tmp_path: Pat
 @pytest.mark.parametrize(
     ("planted", "seed", "effect", "parameter", "true"),
     [
-        (("time_offset", "attitude", 2.0), 13, "time_offset[attitude]", "delay", 0.8),
+        pytest.param(("time_offset", "attitude", 2.0), 13, "time_offset[attitude]", "delay", 0.8, marks=pytest.mark.slow),
         pytest.param(("time_offset", "attitude", -1.5), 13, "time_offset[attitude]", "delay", -0.6, marks=pytest.mark.slow),
         pytest.param(("payload_change", "", -1.5), 14, "payload_change", "mass", None, marks=pytest.mark.slow),
     ],
