@@ -257,6 +257,7 @@ def test_compare_between_two_platforms_and_two_files(tmp_path, monkeypatch):
         run("compare")
 
 
+@pytest.mark.slow
 def test_report_sets_models_side_by_side(here):
     done = run("report", "dive.csv", "--model", "fossen", "--model", "uuv", "--model", "fossen")
     assert {p.name for p in Path("reports/side_by_side").iterdir()} == {"side_by_side.json", "side_by_side.html"}

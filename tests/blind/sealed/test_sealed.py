@@ -73,6 +73,7 @@ def test_answers_are_made_once(copy: Folder):
     assert {p: p.stat().st_mtime_ns for p in copy.answer_files()} == before
 
 
+@pytest.mark.slow
 def test_an_interrupted_run_goes_on_where_it_stopped(copy: Folder):
     kept, lost = copy.answer_files()
     before, text = kept.stat().st_mtime_ns, json.loads(lost.read_text())

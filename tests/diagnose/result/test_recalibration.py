@@ -76,6 +76,7 @@ def test_a_file_off_in_many_coefficients_is_said_to_be_and_is_no_cause(folder: P
     assert "No one effect: " in d["sentence"] and "on windows left out of the fit" in d["sentence"]
 
 
+@pytest.mark.slow
 def test_the_command_writes_a_vehicle_that_is_nearer_on_another_dive(folder: Path):
     words = shlex.split(answered(folder)["calibration"]["command"])
     assert words[:2] == ["rovval", "fit"] and words[2] == flown(folder, 11).id

@@ -92,6 +92,7 @@ def test_commands_that_come_most_of_a_second_late_are_found_though_no_slope_show
     assert cause["effect"] in ("time_offset", "thrust_lag") and late["low"] < 0.8 < late["high"]
 
 
+@pytest.mark.slow
 def test_velocities_in_knots_are_a_scale():
     run = own((), 5, 160.0)
     knots = replace(run, values={**run.values, **{c: 1.944 * run.get(c) for c in "uvw"}})
