@@ -13,6 +13,8 @@ SEGMENT_S = 51.2  # chosen: 512 rows at 10 Hz, slow enough for a swing of half a
 def power_spectrum(values: Array, ok: Flags, dt: float) -> tuple[Array, Array]:
     """Frequencies (k,) Hz from the lowest that a segment holds, and the one-sided density (k,) in unit^2/Hz, of the segments all of whose rows are
     ``ok``; empty where there is none. Its integral over frequency is the variance."""
+    from scipy.signal import periodogram
+
     length = min(round(SEGMENT_S / dt), len(values) // 2)
     if length < 8:
         return np.empty(0), np.empty(0)
@@ -21,9 +23,5 @@ def power_spectrum(values: Array, ok: Flags, dt: float) -> tuple[Array, Array]:
     if not whole.any():
         return np.empty(0), np.empty(0)
     segments = sliding_window_view(values, length)[begins][whole]
-    window = np.hanning(length + 1)[:-1]
-    spectra = np.abs(np.fft.rfft((segments - segments.mean(axis=1, keepdims=True)) * window)) ** 2
-    sides = np.full(len(spectra[0]), 2.0)  # the negative frequencies on top, which the highest of an even number has none of
-    sides[-1] = 1.0 if length % 2 == 0 else 2.0
-    density = sides * dt * spectra.mean(axis=0) / np.sum(window**2)
-    return np.asarray(np.fft.rfftfreq(length, dt)[1:], dtype=np.float64), np.asarray(density[1:])
+    frequencies, densities = periodogram(segments, 1.0 / dt, window="hann", detrend="constant")
+    return np.asarray(frequencies[1:]), np.asarray(densities.mean(axis=0)[1:])

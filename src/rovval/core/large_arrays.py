@@ -13,7 +13,7 @@ import tempfile
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.core.errors import BadInput
+from rovval.core.long_columns import no_room
 
 LARGE = 1 << 24  # bytes, 16 MB: the sensitivities of a minute of log to every effect of the library; below, it is not worth a file
 
@@ -31,9 +31,7 @@ def zeros(*shape: int) -> Array:
                 file.truncate(size)
             return np.frombuffer(mmap.mmap(file.fileno(), size), dtype=float).reshape(shape)
     except OSError as error:
-        folder = tempfile.gettempdir()
-        hint = f"large arrays of a long log are kept in {folder} while it is diagnosed: make room there, set TMPDIR, or cut the log by --from and --to"
-        raise BadInput(f"an array of {size / 1e9:.1f} GB cannot be kept in {folder}: {error.strerror}", hint) from None
+        raise no_room(f"an array of {size / 1e9:.1f} GB", error) from None
 
 
 def taken(array: Array, which: np.ndarray) -> Array:
@@ -57,3 +55,10 @@ def joined(*parts: Array) -> Array:
 def columns_first(m: int, *shape: int, columns: int) -> Array:
     """Zeros (m, ..., columns) in which each column of a row is contiguous, since columns are written and read one by one."""
     return np.moveaxis(zeros(m, columns, *shape), 1, -1)
+
+
+def side_by_side(a: Array, b: Array) -> Array:
+    """The columns of two arrays (m, ..., columns), those of ``b`` behind those of ``a``."""
+    both = columns_first(*a.shape[:-1], columns=a.shape[-1] + b.shape[-1])
+    both[..., : a.shape[-1]], both[..., a.shape[-1] :] = a, b
+    return both

@@ -27,6 +27,13 @@ def at_rest(values: NDArray[Any]) -> NDArray[Any]:
     return column.array()
 
 
+def no_room(what: str, error: OSError) -> BadInput:
+    """The refusal where the folder of temporary files takes no more."""
+    folder = tempfile.gettempdir()
+    hint = f"what of a long log is large is kept in {folder} meanwhile: make room there, set TMPDIR, or cut the log by --from and --to"
+    return BadInput(f"{what} cannot be kept in {folder}: {error.strerror}", hint)
+
+
 def is_at_rest(values: NDArray[Any]) -> bool:
     """Whether a column lies in a file of this module."""
     base = values.base
@@ -59,8 +66,7 @@ class LongColumn:
             self._file.write(more.astype(self._held.dtype).tobytes())
             self._written += len(more)
         except OSError as error:
-            hint = f"long columns are kept in {tempfile.gettempdir()} while they are read: make room there, or set TMPDIR"
-            raise BadInput(f"a column of a long log cannot be kept in {tempfile.gettempdir()}: {error.strerror}", hint) from None
+            raise no_room("a column of a long log", error) from None
 
     def array(self) -> NDArray[Any]:
         """The values (n,); of a long column read-only, and nothing is added any more."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 PASSES = 0.1  # cosine under which a jet passes the hull by (chosen: 6 degrees, as a jet spreads)
 WORKING_SPEED = 0.3  # m/s, rad/s, of a vehicle at work, at which its drag is known as a whole (chosen),
 UNMEASURED_SPEED = 0.5  # m/s, rad/s: and of an axis of which nobody has measured the linear part (chosen)
-ALIKE = 1.0 / 3.0  # of the median of the axes of its kind: less drag no axis of a published ROV has (0.39 to 6.2 on five vehicles of the library)
+LEAST_DRAG = 1.0 / 3.0  # of the median of the axes of its kind: less drag no axis of a published ROV has (0.39 to 6.2 on five vehicles of the library)
 SECONDS_PER_MINUTE = 60.0  # thrust gains in a vehicle file are N / rpm^2, here N / (rev/s)^2
 
 
@@ -118,22 +118,23 @@ def reference_drag(vehicle: Vehicle) -> tuple[Array, Array]:
     """Coefficients (6,) that a relative departure of linear and quadratic drag refers to: the vehicle's own diagonal. Where that
     is zero, linear drag refers to the quadratic force at 0.1 m/s (rad/s), quadratic to the linear force at 1 m/s (chosen).
 
-    Of a drag that a file leaves out on one axis, or has far too small, no share is a size: it refers to `ALIKE` of the median of its kind at least.
+    Of a drag that a file leaves out on one axis, or has far too small, no share is a size: it refers to `LEAST_DRAG` of the median of its kind at least.
     """
     linear, quadratic = np.diag(as_matrix(vehicle.body.linear_drag)), np.diag(as_matrix(vehicle.body.quadratic_drag))
-    return _alike(np.where(linear > 0, linear, 0.1 * quadratic)), _alike(np.where(quadratic > 0, quadratic, linear))
+    return _at_least(np.where(linear > 0, linear, 0.1 * quadratic)), _at_least(np.where(quadratic > 0, quadratic, linear))
 
 
-def drag_departure(scale: Array, own: Array, reference: Array) -> Array:
-    """``scale`` (B, 6) of a drag in coefficients: more of it by its ``reference`` (6,), less of it by what the file has, its ``own`` (6,), of which nobody
-    takes away more than there is."""
+def drag_departure(vehicle: Vehicle, part: Literal["linear_drag", "quadratic_drag"], scale: Array) -> Array:
+    """Relative departures ``scale`` (B, 6) of one part of the drag in coefficients: more of it by its reference (`reference_drag`), less of it by what the
+    file has, of which nobody takes away more than there is."""
+    own, reference = np.diag(as_matrix(getattr(vehicle.body, part))), reference_drag(vehicle)[part == "quadratic_drag"]
     return np.asarray(scale * np.where((scale < 0.0) & (own > 0.0), own, reference))
 
 
-def _alike(coefficients: Array) -> Array:
-    """Of six axes, each at least `ALIKE` of the median of the three translations or of the three rotations."""
+def _at_least(coefficients: Array) -> Array:
+    """Of six axes, each at least `LEAST_DRAG` of the median of the three translations or of the three rotations."""
     kinds = coefficients.reshape(2, 3)
-    return np.asarray(np.maximum(kinds, ALIKE * np.median(kinds, axis=1, keepdims=True)).reshape(6))
+    return np.asarray(np.maximum(kinds, LEAST_DRAG * np.median(kinds, axis=1, keepdims=True)).reshape(6))
 
 
 def drag_tolerances(vehicle: Vehicle) -> tuple[Array, Array]:
@@ -157,9 +158,9 @@ def reference_added_mass(vehicle: Vehicle) -> Array:
 
 
 def reference_drag_force(vehicle: Vehicle) -> float:
-    """Drag at 1 m/s ahead, N, at least `ALIKE` of the median of the three translations; a tenth of the weight for a vehicle without any (chosen: only a
+    """Drag at 1 m/s ahead, N, at least `LEAST_DRAG` of the median of the three translations; a tenth of the weight for a vehicle without any (chosen: only a
     size for priors and bounds)."""
-    drag = float(_alike(np.diag(as_matrix(vehicle.body.linear_drag)) + np.diag(as_matrix(vehicle.body.quadratic_drag)))[0])
+    drag = float(_at_least(np.diag(as_matrix(vehicle.body.linear_drag)) + np.diag(as_matrix(vehicle.body.quadratic_drag)))[0])
     return drag if drag > 0 else 0.1 * vehicle.weight
 
 

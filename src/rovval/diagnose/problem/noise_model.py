@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.core.large_arrays import columns_first
+from rovval.core.large_arrays import side_by_side
 from rovval.diagnose.criteria import (
     DISTURBANCE_WINDOWS,
     FORM_ERROR_SMOOTHING,
@@ -123,14 +123,7 @@ def _with_disturbances(
 ) -> tuple[tuple[Windows, ...], tuple[Linearisation, ...]]:
     """Windows and linearisations with disturbances as nuisances, of ``response`` (m, n, c, d) each."""
     known = tuple(replace(windows, disturbance_response=one) for windows, one in zip(runs, response, strict=True))
-    return known, tuple(replace(one, J=_beside(one.J, more)) for one, more in zip(linear, response, strict=True))
-
-
-def _beside(a: Array, b: Array) -> Array:
-    """The columns of two arrays (m, n, c, ...) side by side."""
-    both = columns_first(*a.shape[:-1], columns=a.shape[-1] + b.shape[-1])
-    both[..., : a.shape[-1]], both[..., a.shape[-1] :] = a, b
-    return both
+    return known, tuple(replace(one, J=side_by_side(one.J, more)) for one, more in zip(linear, response, strict=True))
 
 
 def _expected_variance(runs: Sequence[Windows], linear: Sequence[Linearisation], tolerance: Prior) -> Array:

@@ -15,7 +15,7 @@ import numpy as np
 
 from rovval.core.channels import AXES
 from rovval.core.data import Array
-from rovval.core.large_arrays import columns_first
+from rovval.core.large_arrays import side_by_side
 from rovval.diagnose.criteria import GENERIC_SIZES, MOST_FORCES, OWN_FORCE
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.cross_validation import Fold, held_out_losses
@@ -115,8 +115,6 @@ def _beside(problem: Problem, beta: Array, linear: Sequence[Linearisation], prec
     ids = tuple(range(len(beta), len(beta) + len(names)))
     parts = []
     for part, one, answer in zip(problem.runs, linear, answers, strict=True):
-        S = columns_first(*one.r.shape, columns=len(one.columns) + len(ids))
-        S[..., : len(one.columns)], S[..., len(one.columns) :] = one.S, answer
-        both = Linearisation(one.r, S, one.J, (*one.columns, *ids), one.valid)
+        both = Linearisation(one.r, side_by_side(one.S, answer), one.J, (*one.columns, *ids), one.valid)
         parts.append(normal_equations(both, part.ok, problem.likelihood.variance, nuisance_sd(part)))
     return GenericForces(names, concatenated(parts), precision, pull, problem.tempering)

@@ -9,8 +9,8 @@ import numpy as np
 
 from rovval.core.channels import AXES
 from rovval.effects.effect import TOGETHER, Effect, Parameter, Tolerance
-from rovval.effects.lanes import Array, Lanes, drag_departure, drag_tolerances, reference_drag
-from rovval.vehicle.model import Vehicle, as_matrix
+from rovval.effects.lanes import Array, Lanes, drag_departure, drag_tolerances
+from rovval.vehicle.model import Vehicle
 
 
 def _tolerance(parameter: Parameter, vehicle: Vehicle, axis: str) -> float:
@@ -55,6 +55,5 @@ EFFECT = Effect(
 
 def lower(lanes: Lanes, p: Mapping[str, Array]) -> Lanes:
     """Add the departure to the diagonal."""
-    own = np.diag(as_matrix(lanes.vehicle.body.linear_drag))
-    departure = drag_departure(p["scale"], own, reference_drag(lanes.vehicle)[0])
+    departure = drag_departure(lanes.vehicle, "linear_drag", p["scale"])
     return replace(lanes, linear_drag=lanes.linear_drag + departure[:, :, None] * np.eye(6))

@@ -52,10 +52,9 @@ def _blocks(path: Path, progress: Progress = silent, rows: int | None = None) ->
 
     try:
         with _panics_unprinted():
-            names = list(pl.read_parquet_schema(path))
-            columns = []
-            for number in range(len(names)):  # one after the other, as they lie in the file, to tell how far it is
-                progress("reading columns", number / len(names))
+            count, columns = len(pl.read_parquet_schema(path)), list[pl.Series]()
+            for number in range(count):  # one after the other, as they lie in the file, to tell how far it is
+                progress("reading columns", number / count)
                 columns += pl.read_parquet(path, columns=[number], n_rows=rows, use_pyarrow=False, glob=False).get_columns()
             frame = pl.DataFrame(columns)
     except (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError) as error:  # its decoder panics at some damage
