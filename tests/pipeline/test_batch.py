@@ -1,5 +1,6 @@
 """The batch: what is new is done, the rest skipped, a bad log set aside, and no kill loses what was finished."""
 
+import gzip
 import json
 import os
 import signal
@@ -12,6 +13,7 @@ import batch_case
 import pytest
 from batch_case import counts, tasks_of
 
+from rovval import demo
 from rovval.core.errors import UsageProblem
 from rovval.pipeline import batch
 from rovval.storage import lock
@@ -67,6 +69,29 @@ def test_a_step_that_is_no_longer_asked_for_leaves_the_record_when_the_others_ar
     assert list(json.loads(record.read_text())["steps"]) == ["ingest", "simulate"], "nothing is stale, nothing is lost"
     batch.run(batch_case.write_pipeline(site, "window_s = 4.0", steps='["simulate"]'), workers=1)
     assert list(json.loads(record.read_text())["steps"]) == ["simulate"]
+
+
+def test_a_tolerance_stands_on_the_page_of_each_run_and_an_edited_one_makes_that_page_anew(site):
+    def pages(limit: str) -> list[str]:
+        path = batch_case.write_pipeline(site, f'tolerances = ["{limit}"]', steps='["simulate", "compare"]')
+        assert counts(batch.run(path, workers=1)) == {"done": 3} | ({"tolerances_exceeded": 3} if limit == "surge=0" else {})
+        return [page.read_text() for page in sorted((site / "reports").glob("*/comparison/report.html"))]
+
+    assert all('class="pass">kept<' in page and "--fail-above surge=9" in page for page in pages("surge=9"))
+    simulations = {p: p.stat().st_mtime_ns for p in (site / "reports").glob("*/simulation.parquet")}
+    assert all('class="neg">exceeded<' in page for page in pages("surge=0"))
+    assert simulations == {p: p.stat().st_mtime_ns for p in (site / "reports").glob("*/simulation.parquet")}
+
+
+@pytest.mark.slow
+def test_a_diagnosis_shows_the_whole_run_before_and_after(tmp_path):
+    """As that of a single log does."""
+    (tmp_path / "logs").mkdir()
+    (tmp_path / "logs" / "dive.csv").write_bytes(gzip.decompress(demo.SAMPLE.read_bytes()))
+    batch.run(batch_case.write_pipeline(tmp_path, steps='["diagnose"]'), workers=1)
+    [page] = (tmp_path / "reports").glob("*/diagnosis/diagnosis.html")
+    assert "The whole run, before and after" in page.read_text() and 'id="w-surge"' in page.read_text()
+    assert [p.name for p in page.parent.iterdir() if p.suffix == ".rrd"] == [], "recordings are asked for"
 
 
 def test_a_bad_log_is_set_aside_with_its_reason_and_the_batch_goes_on(site):

@@ -136,15 +136,13 @@ def _write(found: Diagnosis, run: Run, nominal: Vehicle, folder: Path | None, me
 def _report(found: Diagnosis, run: Run, nominal: Vehicle, folder: Path) -> None:
     """The report; where the whole run cannot be simulated as a recording needs it, without one, and that is said: the diagnosis is not lost for it."""
     from rovval import report
-    from rovval.comparison import compare
     from rovval.core.errors import BadInput, SimulationStopped
-    from rovval.simulation import simulate
+    from rovval.pipeline.steps import before_and_after
 
     links = {"Comparison": "../report.html"} if (folder.parent / "report.html").is_file() else {}
     try:
-        comparison = compare(run, simulate(run, nominal, found.model))
-        corrected = simulate(run, nominal, found.model, found.settings) if found.settings else None
-        report.write_diagnosis(found, folder, comparison, nominal, corrected, links)
+        before, after = before_and_after(found, run, nominal)
+        report.write_diagnosis(found, folder, before, nominal, after, links)
     except (BadInput, SimulationStopped) as error:
         output.say(f"no recording: {error.message}")
         report.write_diagnosis(found, folder, links=links)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from rovval.core.errors import BadInput, UsageProblem
 
 if TYPE_CHECKING:
-    from rovval.core.data import Array, Run, SimResult
+    from rovval.core.data import Array, Comparison, Run, SimResult
+    from rovval.diagnose.result.diagnosis import Diagnosis
     from rovval.vehicle.model import Vehicle
 
 DAY_S = 86400.0
@@ -98,3 +99,11 @@ def simulated(run: Run, vehicle: Vehicle, model: str, effects: Sequence[str], wi
     from rovval.simulation import simulate
 
     return simulate(run, vehicle, model, effects, window_s)
+
+
+def before_and_after(found: Diagnosis, run: Run, vehicle: Vehicle) -> tuple[Comparison, SimResult | None]:
+    """The run beside its simulation, and its simulation with the causes that were ``found``; None where there are none. Raises as `simulate` does."""
+    from rovval.comparison import compare
+
+    corrected = simulated(run, vehicle, found.model, found.settings, found.window_s) if found.settings else None
+    return compare(run, simulated(run, vehicle, found.model, (), found.window_s)), corrected

@@ -28,6 +28,15 @@ def test_keys_depend_on_what_a_step_depends_on(site):
         assert b != d
 
 
+def test_a_tolerance_makes_the_pages_that_show_it_new_and_no_result(site):
+    steps = '["simulate", "compare", "diagnose"]'
+    before = dict(tasks_of(batch_case.write_pipeline(site, steps=steps))[0].keys)
+    [after, *_] = tasks_of(batch_case.write_pipeline(site, 'tolerances = ["surge=0.1", "trend.surge=3"]', steps=steps))
+    assert {step for step, key in after.keys if before[step] != key} == {"compare"}
+    assert after.tolerances == ("surge=0.1",), "one that holds over dives is none of a single run"
+    assert after.method == tasks_of(batch_case.write_pipeline(site, steps=steps))[0].method
+
+
 def test_the_vehicle_that_a_profile_names_lies_beside_it_and_counts(site, tmp_path, monkeypatch):
     """It was looked for in the working directory, where cron is somewhere else; and edited it left its logs unchanged."""
     text = (profile.FOLDER / "merlin.toml").read_text()

@@ -12,9 +12,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rovval.core.errors import BadInput, RovvalError, Unwritable
+from rovval.core.errors import BadInput, RovvalError, SimulationStopped, Unwritable
 from rovval.core.version import __version__
 from rovval.ingest.files import files_of, sha256
+from rovval.pipeline import tolerances
 from rovval.pipeline.planning.hashes import code_of_this_process
 from rovval.pipeline.planning.plan import Task
 from rovval.pipeline.planning.records import judged, outputs_whole, read_record, write_record
@@ -89,11 +90,9 @@ def _steps(task: Task) -> dict[str, Any]:
     planned = {step: found for step, found in record["steps"].items() if step in dict(task.keys)}  # what is not would stay as it was
     record |= {"log": str(task.log), "sha256": task.sha256, "steps": planned}
     bench = _Bench(task)
-    stale = False
     for step, key in task.keys:
         before = record["steps"].get(step)
-        stale = stale or not before or before["key"] != key or not outputs_whole(before, task.reports, digests=True)
-        if stale:
+        if not before or before["key"] != key or not outputs_whole(before, task.reports, digests=True):
             facts, outputs = bench.do(step)
             run = bench.run
             record |= {"run": run.id, "vehicle": run.vehicle, "duration_s": run.duration_s, "findings": len(run.findings), **_date(run)}
@@ -176,15 +175,17 @@ class _Bench:
         from rovval.report.common.versions import made_by
         from rovval.report.comparison.json import document
 
+        task, limits = self.task, tolerances.parse(self.task.tolerances)
         comparison = compare(checked_against(self.run, self.vehicle), self.sim)
-        with made_by(self._typed("compare")):
+        with made_by(self._typed("compare", *(word for text in task.tolerances for word in ("--fail-above", text)))):
             links = self._links("diagnose", "Diagnosis", "../diagnosis/diagnosis.html")
-            files = report.write(comparison, self.task.folder / "comparison", self.vehicle, recorded=self.task.recordings, links=links)
+            files = report.write(comparison, task.folder / "comparison", self.vehicle, recorded=task.recordings, limits=limits, links=links)
         return {"comparison": judged(document(comparison))}, list(files.values())
 
     def diagnose(self) -> tuple[dict[str, Any], list[Path]]:
         from rovval import report
         from rovval.diagnose import diagnose
+        from rovval.pipeline.steps import before_and_after
         from rovval.report.common.versions import made_by
         from rovval.report.diagnosis import json as diagnosis_json
         from rovval.report.diagnosis.sentences.sentence import verdict
@@ -194,11 +195,17 @@ class _Bench:
             [self.run], self.vehicle, model=task.model, window_s=task.window_s, calibration_slop=task.calibration_slop
         )
         document = diagnosis_json.document(found)
+        facts = {key: document[key] for key in ("vehicle", "verdict", "causes")}
+        try:
+            before, after = before_and_after(found, self.run, self.vehicle)
+        except (BadInput, SimulationStopped) as error:  # the diagnosis is not lost for it
+            before = after = None
+            facts["without_the_whole_run"] = error.message
         with made_by(self._typed("diagnose", "--calibration-slop", f"{task.calibration_slop:g}")):
-            files = report.write_diagnosis(found, folder, links=self._links("compare", "Comparison", "../comparison/report.html"))
+            links = self._links("compare", "Comparison", "../comparison/report.html")
+            files = report.write_diagnosis(found, folder, before, self.vehicle if task.recordings else None, after, links)
         if found.vehicle_fixed:
             write_text(folder / "vehicle_fixed.toml", found.vehicle_fixed)
-        facts = {key: document[key] for key in ("vehicle", "verdict", "causes")}
         return {**facts, "said": verdict(found), "gap": document["gap"]["axes"]}, list(files.values())
 
     def _links(self, step: str, label: str, page: str) -> dict[str, str]:

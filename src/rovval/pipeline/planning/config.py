@@ -62,7 +62,7 @@ class Pipeline(Strict):
     tolerances: tuple[str, ...] = Field((), description='limits on errors, `AXIS[.METRIC]=VALUE` of the free run or `window.AXIS.METRIC=VALUE`, in SI, '
         "and `trend.AXIS=SIGMAS` against the vehicle's 20 dives before; one that is exceeded makes exit code 1")  # fmt: skip
     recordings: bool = Field(
-        False, description="whether the report of a comparison has a recording for the viewer, two thirds of its bytes; `rovval view` makes one of any run"
+        False, description="whether the reports have a recording for the viewer, two thirds of their bytes; `rovval view` makes one of any run"
     )
     most_redone: Annotated[int, Field(ge=0)] | None = Field(
         None, description="how many logs that older code of rovval has judged are judged anew a night, the newest first; without it all"

@@ -15,6 +15,7 @@ from typing import Any
 from rovval.core.errors import Unwritable, UsageProblem, all_at_once
 from rovval.core.file_names import printable, shortened
 from rovval.ingest.files import files_of
+from rovval.pipeline import tolerances
 from rovval.pipeline.planning import discover
 from rovval.pipeline.planning.config import Pipeline, Source
 from rovval.pipeline.planning.hashes import Hashes, code_on_disk
@@ -27,9 +28,9 @@ RETRIED = ("crash", "internal", "unreadable", "changed")  # a worker that died m
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """One log, all that a worker needs to know, picklable. ``keys`` in the order of the steps; ``folder`` takes its reports;
-    ``code`` is what the planner runs, `rovval.pipeline.planning.hashes.code_on_disk`; ``method`` is the digest of all that the results depend on
-    beside the log: runs of one method can be held against each other."""
+    """One log, all that a worker needs to know, picklable. ``keys`` in the order of the steps; ``folder`` takes its reports; ``tolerances`` are the limits
+    that its page shows; ``code`` is what the planner runs, `rovval.pipeline.planning.hashes.code_on_disk`; ``method`` is the digest of all that the results
+    depend on beside the log: runs of one method can be held against each other."""
 
     log: Path
     sha256: str
@@ -46,10 +47,11 @@ class Task:
     code: str
     method: str
     recordings: bool = False
+    tolerances: tuple[str, ...] = ()
 
     @property
     def key(self) -> str:
-        """The last step's key: it depends on all before it."""
+        """The last step's key: it depends on all results before it."""
         return self.keys[-1][1]
 
     @property
@@ -199,17 +201,18 @@ def _unusable(path: Path, reason: str) -> Mapping[str, Any]:
 
 def _task(pipeline: Pipeline, source: Source, log: Path, sha: str, content: tuple[str, str, str]) -> Task:
     vehicle, profile, made_by = content
-    key = _hash(made_by, sha, profile)
-    keys = []
+    result = _hash(made_by, sha, profile)
+    keys, limits = [], tolerances.of_one_run(pipeline.tolerances)
     options: dict[str, tuple[Any, ...]] = {
         "ingest": (),
         "simulate": (vehicle, pipeline.model, pipeline.effects, pipeline.window_s),
-        "compare": (vehicle, pipeline.model, pipeline.effects, pipeline.window_s, pipeline.recordings),
+        "compare": (vehicle, pipeline.model, pipeline.effects, pipeline.window_s),
         "diagnose": (vehicle, pipeline.model, pipeline.window_s, pipeline.calibration_slop),
     }
+    shown: dict[str, tuple[Any, ...]] = {"compare": (limits, pipeline.recordings), "diagnose": (pipeline.recordings,)}
     for step in pipeline.steps:
-        key = _hash(key, step, *options[step])
-        keys.append((step, key))
+        result = _hash(result, step, *options[step])
+        keys.append((step, _hash(result, *shown.get(step, ()))))  # what only its own page shows makes no later step new
     return Task(
         log=log,
         sha256=sha,
@@ -226,6 +229,7 @@ def _task(pipeline: Pipeline, source: Source, log: Path, sha: str, content: tupl
         code=made_by,
         method=_hash(made_by, profile, [(step, *options[step]) for step in pipeline.steps])[:12],
         recordings=pipeline.recordings,
+        tolerances=limits,
     )
 
 
