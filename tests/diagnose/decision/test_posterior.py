@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 
@@ -10,12 +12,13 @@ from rovval.diagnose.decision.posterior import Probabilities, probabilities
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.search.model import Model, ModelPrior
 
+SURE = 0.9  # nothing is surer by much: see `test_no_cause_is_certain`
 NAMES = ("waves", "dvl_scale", "thrust_lag", "time_offset", "cross_drag")
 
 
 def belief(
     evidence: dict[tuple[str, ...], float], file: float = -100.0, forces: float = -np.inf, beside: float = -np.inf, varying: float = -np.inf,
-    filed: float | None = None,
+    filed: float | None = None, weighed: Sequence[tuple[str, ...]] = (),
 ) -> Probabilities:  # fmt: skip
     """Probabilities where sets of causes have some evidence over the healthy vehicle."""
     prior = ModelPrior.of([Hypothesis(n, n, (), (), ()) for n in NAMES])
@@ -25,7 +28,8 @@ def belief(
         models.append(Model(causes, None, worth, prior.log_mass(causes)))
     best = max(models, key=lambda m: m.log_posterior)
     files = {frozenset[str](): file} | ({best.names: filed} if filed is not None else {})
-    return probabilities(models, files, forces, {best.names: beside} if best.causes else {}, {best.names: varying} if best.causes else {})
+    alone = {frozenset(names): beside for names in weighed} or ({best.names: beside} if best.causes else {})
+    return probabilities(models, files, forces, alone, {best.names: varying} if best.causes else {})
 
 
 @pytest.mark.parametrize("worth", [0.0, 8.0, 40.0, 4000.0])
@@ -53,17 +57,31 @@ def test_a_group_is_of_one_cause_beside_the_others():
     found = belief({("waves", "thrust_lag"): 90.0, ("waves", "time_offset"): 89.0, ("waves",): 40.0, ("dvl_scale", "thrust_lag"): 60.0})
     assert [n for n, _ in found.group("waves")] == ["waves"]
     assert [n for n, _ in found.group("thrust_lag")] == ["thrust_lag", "time_offset"]
-    assert found.of("waves") > 0.99 > found.of("thrust_lag")
+    assert found.of("waves") > SURE > found.of("thrust_lag")
 
 
 def test_something_else_takes_what_no_cause_explains():
     assert belief({("waves",): 10.0}, forces=80.0).something_else > 0.99
-    assert belief({("waves",): 80.0}, forces=60.0).causes > 0.99
+    assert belief({("waves",): 80.0}, forces=60.0).causes > SURE
+
+
+@pytest.mark.parametrize("worth", [60.0, 600.0, 60000.0])
+def test_no_cause_is_certain(worth: float):
+    """Whatever the evidence and however many causes: what the library lacks may look like something of it."""
+    one, two = belief({("waves",): worth}), belief({("waves",): worth, ("waves", "dvl_scale"): 2.0 * worth})
+    for found in (one, two):
+        assert 0.05 < found.something_else < 0.1
+        assert found.causes + found.something_else == pytest.approx(1.0)
+    assert one.of("waves") == pytest.approx(two.of("waves"), abs=1e-6)
+
+
+def test_a_healthy_vehicle_may_be_certain():
+    assert belief({("waves",): -60.0}).healthy > 0.999
 
 
 def test_something_beside_the_causes_leaves_them_at_work():
     found = belief({("waves",): 80.0}, beside=30.0)
-    assert found.partly(frozenset({"waves"})) and found.of("waves") > 0.99
+    assert found.partly(frozenset({"waves"})) and found.of("waves") > SURE
 
 
 def test_a_cause_that_would_have_to_vary_is_something_else():
@@ -78,7 +96,7 @@ def test_a_file_off_in_many_numbers_is_believed_where_it_explains_more():
 def test_causes_are_at_work_whatever_else_of_the_file_is_off():
     """Causes with a file that is off in further numbers are those causes; what more is off is told beside them."""
     found = belief({("waves",): 80.0}, file=100.0, filed=120.0)
-    assert found.causes > 0.99 and found.of("waves") > 0.99 and found.off_beside(frozenset({"waves"}))
+    assert found.causes > SURE and found.of("waves") > SURE and found.off_beside(frozenset({"waves"}))
     assert found.healthy + found.causes + found.file + found.something_else == pytest.approx(1.0)
     assert not belief({("waves",): 80.0}, filed=70.0).off_beside(frozenset({"waves"}))
 
@@ -86,7 +104,15 @@ def test_causes_are_at_work_whatever_else_of_the_file_is_off():
 def test_a_further_cause_may_be_the_form_error_of_the_first_however_much_it_explains():
     """No evidence tells a second cause from an equation that is off; the first, and who is healthy, are as sure as before."""
     found = belief({("waves",): 400.0, ("dvl_scale",): 40.0, ("waves", "dvl_scale"): 900.0})
-    assert found.of("waves") > 0.99 and 0.5 < found.of("dvl_scale") < 0.6
+    assert found.of("waves") > SURE and 0.5 < found.of("dvl_scale") < 0.6
     assert found.best == {"waves", "dvl_scale"} and found.healthy < 1e-6
     third = belief({("waves",): 400.0, ("waves", "dvl_scale"): 900.0, ("waves", "dvl_scale", "cross_drag"): 1500.0})
-    assert third.of("waves") > 0.99 > third.of("dvl_scale") > third.of("cross_drag")
+    assert third.of("waves") > SURE > third.of("dvl_scale") > third.of("cross_drag")
+
+
+def test_the_set_that_is_named_holds_what_most_of_the_probability_holds():
+    """The single most probable set holds a slow thruster and waves; a scale of the velocity log is in two others, which together are more probable."""
+    pairs = {("thrust_lag", "waves"): 400.0, ("thrust_lag", "dvl_scale"): 399.5, ("cross_drag", "dvl_scale"): 399.0}
+    found = belief({("thrust_lag",): 70.0, ("dvl_scale",): 380.0, ("cross_drag",): 30.0, ("waves",): 30.0, **pairs}, weighed=list(pairs))
+    assert found.ranked[0] == {"thrust_lag", "waves"} and found.of("dvl_scale") > found.of("waves")
+    assert found.best == {"thrust_lag", "dvl_scale"}

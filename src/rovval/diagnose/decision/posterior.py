@@ -4,8 +4,13 @@ All are on one scale: prior mass times marginal likelihood, the likelihood tempe
 Miller and Dunson 2019; `problem.Problem.tempering`). Something else is what no effect of the library is: a few generic forces, on a healthy vehicle or
 beside causes (model discrepancy: Kennedy and O'Hagan 2001).
 
-What the equations of causes are off by may look like one more cause (`FORM_ALIKE`). No log tells the two apart, since both predict the same: so the
-probability that a cause is at work shares the mass of each set, by their priors, with the set without the cause that adds least.
+No log tells two explanations apart that predict the same; they share its probability by their priors. Most of what the library lacks looks like something of
+it (`LIBRARY_ALIKE`): so something else has a part of the mass of every set of causes, and no cause is ever certain. And what the equations of causes are off
+by may look like one more cause (`FORM_ALIKE`): so the probability that a cause is at work shares the mass of each set with the set without the cause that
+adds least.
+
+The set that is named has as many causes as is most probable, and of such sets it is the one that the true one is expected to share the most causes with
+(centroid estimator: Carvalho and Lawrence 2008). The most probable single set may hold a cause that most of the others do without.
 """
 
 from __future__ import annotations
@@ -17,6 +22,7 @@ from math import exp, log
 from rovval.diagnose.criteria import (
     FORM_ALIKE,
     GROUP_PROBABILITY,
+    LIBRARY_ALIKE,
     PRIOR_CAUSES,
     PRIOR_FILE,
     PRIOR_HEALTHY,
@@ -25,6 +31,8 @@ from rovval.diagnose.criteria import (
 from rovval.diagnose.search.model import Model
 
 Names = frozenset[str]
+CAUSES = ("sets", "beside", "filed")  # kinds of models with causes: these alone, with something else, and with a file that is off in further numbers
+LOOKS_ALIKE = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / (sum(PRIOR_CAUSES) + LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +44,8 @@ class Probabilities:
         beside: of sets of causes with something else beside them.
         filed: of sets of causes with a file that is off in further numbers beside them.
         file: of a file that is off in many numbers, and of no cause.
-        something_else: of something else alone, or of what comes near to a set of causes whose sizes would have to vary along the log.
+        something_else: of something else alone, of what looks like a set of causes and is none, or of what comes near to a set of causes whose sizes would have
+            to vary along the log.
         varying: the latter part of it.
         at_work: of each cause, that it is at work, and not a form error that looks like it.
     """
@@ -61,8 +70,12 @@ class Probabilities:
 
     @property
     def best(self) -> Names:
-        """The most probable set of causes, whatever is beside it; empty where there is none."""
-        return next(iter(self.ranked), frozenset())
+        """The set of causes that is named where causes are believed: as many as is most probable, and those of which the true set is then expected to hold the
+        most, of the sets that were weighed with something else beside them (of all where none was); empty where there is none."""
+        weighed = [names for names in self.ranked if names in self.beside] or self.ranked
+        whole = self._whole()
+        count = max((len(names) for names in weighed), key=lambda n: sum(p for names, p in whole.items() if len(names) == n), default=0)
+        return max((names for names in weighed if len(names) == count), key=lambda names: sum(map(self.of, names)), default=frozenset())
 
     @property
     def ranked(self) -> list[Names]:
@@ -87,7 +100,7 @@ class Probabilities:
         return self.filed.get(names, 0.0) > self.sets.get(names, 0.0) + self.beside.get(names, 0.0)
 
     def group(self, name: str) -> tuple[tuple[str, float], ...]:
-        """The confusion group of a cause of the most probable set: the fewest names that hold `GROUP_PROBABILITY` of the probability of sets that
+        """The confusion group of a cause of the set that is named: the fewest names that hold `GROUP_PROBABILITY` of the probability of sets that
         differ from that one in this cause only, itself first."""
         rest, whole = self.best - {name}, self._whole()
         weight = {other: p for names, p in whole.items() if rest < names and len(names - rest) == 1 for other in names - rest}
@@ -128,13 +141,15 @@ def probabilities(
     top = max(known.values())
     weight = {key: exp(value - top) for key, value in known.items()}
     total = sum(weight.values())
-    share = {key: value / total for key, value in weight.items()}
+    believed = {key: value / total for key, value in weight.items()}
+    share = {(kind, names): p * (1.0 - LOOKS_ALIKE) if names and kind in CAUSES else p for (kind, names), p in believed.items()}
     inconstant = sum(p for (kind, _), p in share.items() if kind == "varying")
     return Probabilities(
         sets={names: p for (kind, names), p in share.items() if kind == "sets"},
         beside={names: p for (kind, names), p in share.items() if kind == "beside"},
         filed={names: p for (kind, names), p in share.items() if kind == "filed" and names},
-        file=share.get(("filed", frozenset()), 0.0), varying=inconstant, something_else=share["else", frozenset()] + inconstant,
+        file=share.get(("filed", frozenset()), 0.0), varying=inconstant,
+        something_else=share["else", frozenset()] + inconstant + sum(believed.values()) - sum(share.values()),
         at_work=_at_work(share, best),
     )  # fmt: skip
 
@@ -143,7 +158,7 @@ def _at_work(share: Mapping[tuple[str, Names], float], best: Mapping[Names, Mode
     """The probability that each cause is at work: of the mass of a set, a part is that of a form error that looks like the cause that adds least."""
     mass = dict[Names, float]()
     for (kind, names), p in share.items():
-        if kind in ("sets", "beside", "filed"):
+        if kind in CAUSES:
             mass[names] = mass.get(names, 0.0) + p
     for size in range(len(PRIOR_CAUSES), 1, -1):
         alike = FORM_ALIKE * PRIOR_CAUSES[size - 2]

@@ -36,7 +36,7 @@ class Decision:
     Attributes:
         verdict: ``no_gap``, ``explained``, ``partly_explained`` or ``unknown``.
         probabilities: of all models.
-        causes: those of the most probable set, the surest first; empty for ``no_gap`` and ``unknown``.
+        causes: those of the set that is named (`Probabilities.best`), the surest first; empty for ``no_gap`` and ``unknown``.
         fit: their joint fit; None without causes.
         groups: of each cause the names that this log does not tell from it (itself first) with their probabilities.
         probability: that each cause is at work.
@@ -99,7 +99,7 @@ def _leading(problem: Problem, selection: Selection, belief: Probabilities) -> l
 
 
 def _named(problem: Problem, selection: Selection, found: Decision, best: Model, fit: HypothesisFit, beside: GenericForces) -> Decision:
-    """The causes of the most probable set are named."""
+    """The causes of the best set are named."""
     belief = found.probabilities
     probability = {h.name: belief.of(h.name) for h in best.causes}
     partly = belief.partly(best.names)
