@@ -10,6 +10,7 @@ from rovval.core.units import in_degrees
 from rovval.report.common.numbers import MISSING, interval, listed, number, per_cent, quantity
 from rovval.report.common.page import render
 from rovval.report.common.versions import foot
+from rovval.report.drawings import columns
 from rovval.report.drawings.drawing import Box, Dot, Drawing, Line, Shape, Text
 
 MOST_CELLS = 14  # unknowns of the first picture of correlations: more do not fit a phone's width
@@ -135,7 +136,8 @@ def heat_map(keys: Sequence[str], matrix: Sequence[Sequence[float]]) -> Drawing:
                 shapes.append(Text(x + CELL / 2, y + 0.66 * CELL, f"{value:.1f}".replace("0.", "."), "value", "middle"))
         if i + 1 < len(keys):
             shapes.append(Text(LABEL + CELL * (i + 0.5), CELL * len(keys) + 12, f"{i + 1}", "m", "middle"))
-    return Drawing(LABEL + CELL * max(len(keys) - 1, 1) + 4, CELL * len(keys) + 18, f"correlations of {len(keys)} unknowns", tuple(shapes))
+    values = {"unknown": columns.words(keys)} | {key: columns.words([round(row[j], 6) for row in matrix]) for j, key in enumerate(keys)}
+    return Drawing(LABEL + CELL * max(len(keys) - 1, 1) + 4, CELL * len(keys) + 18, f"correlations of {len(keys)} unknowns", tuple(shapes), values)
 
 
 def _bars(row: Row) -> tuple[Row, list[tuple[str, float]], str]:

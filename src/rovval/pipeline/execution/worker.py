@@ -24,7 +24,7 @@ from rovval.storage.contents import contents
 from rovval.storage.places import name_from, place, reached
 
 if TYPE_CHECKING:
-    from rovval.core.data import Run, SimResult
+    from rovval.core.data import Comparison, Run, SimResult
     from rovval.vehicle.model import Vehicle
 
 Outcome = dict[str, Any]
@@ -196,10 +196,11 @@ class _Bench:
         )
         document = diagnosis_json.document(found)
         facts = {key: document[key] for key in ("vehicle", "verdict", "causes")}
+        before: Comparison | None = None
+        after: SimResult | None = None
         try:
             before, after = before_and_after(found, self.run, self.vehicle)
         except (BadInput, SimulationStopped) as error:  # the diagnosis is not lost for it
-            before = after = None
             facts["without_the_whole_run"] = error.message
         with made_by(self._typed("diagnose", "--calibration-slop", f"{task.calibration_slop:g}")):
             links = self._links("compare", "Comparison", "../comparison/report.html")

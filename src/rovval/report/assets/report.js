@@ -1,22 +1,13 @@
 "use strict";
 (() => {
   const D = JSON.parse(document.getElementById("data").textContent);
-  const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-  const decode = (e) => {
-    const s = atob(e.b), n = s.length / 2, out = new Array(n), k = (e.hi - e.lo) / 65534;
-    for (let i = 0; i < n; i++) {
-      const q = s.charCodeAt(2 * i) | (s.charCodeAt(2 * i + 1) << 8);
-      out[i] = q === 65535 ? null : e.lo + q * k;
-    }
-    return out;
-  };
-  const times = (x) => (x.b ? decode(x) : Array.from({ length: x.n }, (_, i) => x.t0 + i * x.dt));
+  const { css, values: unpack, offer } = saving;
   const X = {}, hidden = new Set(D.hidden || []);
-  for (const key in D.x) X[key] = times(D.x[key]);
+  for (const key in D.x) X[key] = unpack(D.x[key]);
   // A tube is what lies within a tolerance of the first curve: its two edges are curves without a line.
   const edges = (p) => (p.tube ? [1, -1].map((k) => p.data[1].map((v) => (v === null ? null : v + k * p.tube))) : []);
   const less = (a, b) => a.map((v, i) => (v === null || b[i] === null ? null : v - b[i]));
-  const other = (s) => D.plots.find((p) => p.id === s.of).series, values = (s) => (s.d ? decode(s.d) : less(values(other(s)[s.index]), values(other(s)[0])));
+  const other = (s) => D.plots.find((p) => p.id === s.of).series, values = (s) => (s.d ? unpack(s.d) : less(values(other(s)[s.index]), values(other(s)[0])));
   const plots = D.plots.map((p) => ({ ...p, data: [X[p.x], ...p.series.map(values)] }));
   const colour = (s) => (s.hue === undefined ? css("--" + s.key) : `hsl(${s.hue} 55% ${css("--bg") === "#fff" ? 42 : 66}%)`);
   const short = (v) => (v === null || v === undefined ? "–" : v.toPrecision(3));
@@ -74,39 +65,29 @@
     });
   };
 
-  // Every picture as a file: PNG as it is seen, with its heading, and CSV with all of its values.
-  const save = (name, url) => Object.assign(document.createElement("a"), { download: name, href: url }).click();
-  const named = (host, kind) => `${document.querySelector("h1").textContent} ${host.id}.${kind}`.replace(/[^\w.-]+/g, "_");
+  // Every picture as a file: a picture is one canvas, or two below each other, under its heading.
   const parts = (box) => [...box.querySelectorAll(".canvas")].map((host) => plots.findIndex((p) => p.id === host.id));
-  const png = (box) => {
+  const sheet = (box) => {
     const pictures = parts(box).map((k) => charts[k].ctx.canvas), scale = devicePixelRatio, head = 24 * scale;
-    const sheet = Object.assign(document.createElement("canvas"), { width: pictures[0].width, height: head + pictures.reduce((sum, c) => sum + c.height, 0) });
-    const pen = sheet.getContext("2d");
+    const whole = Object.assign(document.createElement("canvas"), { width: pictures[0].width, height: head + pictures.reduce((sum, c) => sum + c.height, 0) });
+    const pen = whole.getContext("2d");
     pen.fillStyle = css("--bg");
-    pen.fillRect(0, 0, sheet.width, sheet.height);
+    pen.fillRect(0, 0, whole.width, whole.height);
     pen.fillStyle = css("--ink");
     pen.font = `${12 * scale}px system-ui, sans-serif`;
-    pen.fillText([...box.querySelectorAll("header b, header span:not(.read):not(.save)")].map((e) => e.textContent).filter(Boolean).join("   "), 6 * scale, 16 * scale);
+    pen.fillText([...box.querySelectorAll("header > b, header > span")].map((e) => e.textContent).filter(Boolean).join("   "), 6 * scale, 16 * scale);
     pictures.reduce((top, c) => { pen.drawImage(c, 0, top); return top + c.height; }, head);
-    save(named(box.querySelector(".canvas"), "png"), sheet.toDataURL("image/png"));
+    return whole;
   };
-  const csv = (box) => {
-    const shown = parts(box).map((k) => plots[k]), quote = (s) => (/[",\n]/.test(s) ? `"${s.replaceAll('"', '""')}"` : s);
-    const heads = shown.flatMap((p) => p.series.map((s) => quote(s.label + (p.error ? ", error" : ""))));
-    const columns = shown.flatMap((p) => p.data.slice(1)), { unit = "s" } = D.x[shown[0].x];
-    const lines = X[shown[0].x].map((t, i) => [+t.toPrecision(9), ...columns.map((c) => (c[i] === null ? "" : +c[i].toPrecision(6)))].join(","));
-    save(named(box.querySelector(".canvas"), "csv"), URL.createObjectURL(new Blob([[[unit === "s" ? "time_s" : unit, ...heads].join(","), ...lines, ""].join("\n")], { type: "text/csv" })));
+  const columns = (box) => {
+    const shown = parts(box).map((k) => plots[k]), { unit = "s" } = D.x[shown[0].x];
+    const named = shown.flatMap((p) => p.series.map((s, i) => [s.label + (p.error ? ", error" : ""), p.data[i + 1]]));
+    return [[unit === "s" ? "time_s" : unit, X[shown[0].x]], ...named];
   };
   document.querySelectorAll(".plot").forEach((box) => {
     const read = box.querySelector(".read"), line = Object.assign(document.createElement("div"), { className: "line" });
-    const bar = Object.assign(document.createElement("span"), { className: "save" });
-    [["PNG", png], ["CSV", csv]].forEach(([label, write]) => {
-      const button = Object.assign(document.createElement("button"), { type: "button", textContent: label, title: `Save this picture as ${label}` });
-      button.addEventListener("click", () => write(box));
-      bar.append(button);
-    });
     read.replaceWith(line);
-    line.append(read, bar);
+    line.append(read, offer(box.querySelector("header b").textContent, box.querySelector(".canvas").id, () => sheet(box), () => columns(box)));
   });
 
   document.querySelectorAll(".keys button").forEach((b) => {
@@ -116,6 +97,22 @@
       if (hidden.has(key)) hidden.delete(key); else hidden.add(key);
       set();
       charts.forEach((u, j) => plots[j].series.forEach((s, i) => { if (s.key === key) u.setSeries(i + 1, { show: !hidden.has(key) }); }));
+    });
+  });
+  // What the mouse does, by keys: arrows move the reading, + and - zoom round it, 0 shows all.
+  plots.forEach((p, j) => {
+    if (p.error) return;
+    const host = document.getElementById(p.id), title = host.parentNode.querySelector("header b").textContent;
+    Object.assign(host, { tabIndex: 0 }).setAttribute("role", "group");
+    host.setAttribute("aria-label", `${title}: arrows read values, plus and minus zoom, 0 shows all`);
+    host.addEventListener("keydown", (e) => {
+      const u = charts[j], x = u.data[0], wide = u.bbox.width / devicePixelRatio, { min, max } = u.scales.x, at = u.cursor.left < 0 ? wide / 2 : u.cursor.left;
+      const read = (step) => u.setCursor({ left: Math.min(Math.max(at + step, 0), wide), top: 1 });
+      const zoom = (by, mid = u.posToVal(at, "x")) => u.setScale("x", { min: Math.max(x[0], mid - by * (mid - min)), max: Math.min(x[x.length - 1], mid + by * (max - mid)) });
+      const keys = { ArrowLeft: () => read(-4), ArrowRight: () => read(4), "+": () => zoom(0.5), "=": () => zoom(0.5), "-": () => zoom(2), 0: () => u.setScale("x", { min: x[0], max: x[x.length - 1] }) };
+      if (e.ctrlKey || e.metaKey || e.altKey || !keys[e.key]) return;
+      e.preventDefault();
+      keys[e.key]();
     });
   });
   let wait = 0;

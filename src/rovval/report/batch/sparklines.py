@@ -9,8 +9,10 @@ from itertools import groupby
 import numpy as np
 
 from rovval.core.channels import AXES
+from rovval.core.units import in_degrees
 from rovval.report.common import trend as words
 from rovval.report.common.numbers import quantity
+from rovval.report.drawings import columns
 from rovval.report.drawings.drawing import Curve, Dot, Drawing, Line, Shape
 from rovval.trend import Trend
 
@@ -72,4 +74,10 @@ def _spark(trend: Trend) -> Spark:
     marks: list[Shape] = [Line(place, 0.0, place, HEIGHT, "mark") for place in at]
     shapes = (*marks, Curve(tuple(zip(x.tolist(), down.tolist(), strict=True)), "spark"), Dot(float(x[-1]), float(down[-1]), 2.0, "dot"))
     label = f"{series.name} of {series.vehicle}: {words.said(trend)}"
-    return Spark(Drawing(WIDTH, HEIGHT, label, shapes), quantity(words.now(trend), series.unit, 2))
+    factor, unit = in_degrees(1.0, series.unit)
+    values = {
+        "dive": columns.words(series.runs),
+        "date": columns.words([f"{date:%Y-%m-%d}" for date in series.dates]),
+        f"gap in {series.name}, {unit}": columns.numbers(factor * np.array(series.values)),
+    }
+    return Spark(Drawing(WIDTH, HEIGHT, label, shapes, values), quantity(words.now(trend), series.unit, 2))

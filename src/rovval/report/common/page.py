@@ -28,8 +28,8 @@ FORMATS = (numbers.number, numbers.signed, numbers.quantity, numbers.interval, n
 
 
 def render(template: str, curves: Mapping[str, Any] | None = None, links: Mapping[str, str] | None = None, **data: Any) -> str:
-    """The whole document of ``templates/<template>`` filled with ``data``. ``curves`` is what the script draws (see `curves.plot`); a page without
-    any has no script. ``links`` are the pages that belong to it, by what they are called. A name that the template uses and ``data`` lacks is an error."""
+    """The whole document of ``templates/<template>`` filled with ``data``. ``curves`` is what the script draws (see `curves.plot`), if there are any.
+    ``links`` are the pages that belong to it, by what they are called. A name that the template uses and ``data`` lacks is an error."""
     words = TERMS if template in EXPLAINED else {}
     drawn = {"curves": None} if curves is None else {"curves": _json(curves), "picture": partial(still, plots=curves["plots"], axes=curves["x"])}
     page = _environment().get_template(template).render(glossary=words, links=links, **drawn, **data)
@@ -41,7 +41,7 @@ def _environment() -> Environment:
     environment = Environment(
         loader=FileSystemLoader(ROOM / "templates"), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
-    environment.filters |= {f.__name__: f for f in FORMATS} | {"path": quote, "code": _code}
+    environment.filters |= {f.__name__: f for f in FORMATS} | {"path": quote, "code": _code, "as_json": _json}
     environment.globals |= {"asset": _asset, "MISSING": numbers.MISSING, "DEGREES": DEGREES, "DEGREE_UNITS": DEGREE_UNITS, "integral_unit": integral_unit}
     return environment
 
@@ -57,6 +57,6 @@ def _asset(name: str) -> Markup:
     return Markup((ROOM / "assets" / name).read_text(encoding="utf-8"))
 
 
-def _json(curves: Mapping[str, Any]) -> Markup:
-    """The curves as JSON; "</" in them cannot end their element early."""
-    return Markup(json.dumps(curves, separators=(",", ":"), allow_nan=False).replace("</", "<\\/"))
+def _json(values: Any) -> Markup:
+    """Values as JSON; no "<" in them can end their element early."""
+    return Markup(json.dumps(values, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c"))

@@ -18,7 +18,7 @@ from rovval.core.units import in_degrees
 from rovval.report.common.numbers import number, per_cent, quantity
 from rovval.report.comparison import tolerances
 from rovval.report.comparison.words import TITLES
-from rovval.report.drawings import curves
+from rovval.report.drawings import columns, curves
 from rovval.report.drawings.curves import Place
 from rovval.report.drawings.drawing import Curve, Dot, Drawing, Line, Shape, Text, round_up
 from rovval.report.drawings.hues import hues
@@ -119,7 +119,8 @@ def panel(title: str, unit: str, curve: ErrorGrowth, factor: float, baseline: fl
         shapes.append(Text(edge, f.y(baseline) - 4, "no motion", "m", "end"))
     else:
         shapes.append(Text(edge, f.top - 1, f"no motion: {number(baseline, 2)}", "m", "end"))
-    return Drawing(f.width, f.height, f"{title}: error against time since the window's start", tuple(shapes))
+    values = {"time_s": columns.numbers(curve.seconds), f"rms, {unit}": columns.numbers(curve.rms * factor)}
+    return Drawing(f.width, f.height, f"{title}: error against time since the window's start", tuple(shapes), values)
 
 
 def _axes(f: _Frame) -> list[Shape]:

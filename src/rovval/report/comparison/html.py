@@ -95,7 +95,8 @@ def _drawn(c: Comparison) -> str:
     """How the curves are drawn, and what one can do with them."""
     k = curves.bucket(len(c.run))
     thinned = "" if k == 1 else f" Drawn as the lowest and highest of every {k} rows ({number(k * c.run.dt)} s), so that peaks stay."
-    return "Drag to zoom into all of them, double-click for the whole run, press a name to hide its curve. The strip under each plot is the error." + thinned
+    mouse = "Drag to zoom into all of them, double-click for the whole run, press a name to hide its curve."
+    return f"{mouse} By keys: arrows read, + and - zoom, 0 shows all. The strip under each plot is the error.{thinned}"
 
 
 def _clock(c: Comparison) -> dict[str, str]:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rovval.core.data import Array, Comparison
-from rovval.report.drawings import curves
+from rovval.report.drawings import columns, curves
 from rovval.report.drawings.curves import Place
 from rovval.report.drawings.drawing import Curve, Dot, Drawing, Line, Shape, Text, round_up
 
@@ -40,7 +40,8 @@ def plan(c: Comparison) -> Drawing | None:
         shapes += [Dot(x, y, 3.5, "growth-mark"), Text(x + 7, y + (14 if words == "start" else -6), words, "m")]
     rule = round_up(max(north, east) / 6)
     shapes += [Line(8, height - 4, 8 + rule * scale, height - 4, "rule"), Text(8, height - 10, f"{rule:g} m", "m")]
-    return Drawing(SIDE, height, "Tracks seen from above, north up", tuple(shapes))
+    named = {f"{css.removeprefix('k-')}, {way}, m": track[:, j] for css, track in tracks.items() for j, way in enumerate(("north", "east"))}
+    return Drawing(SIDE, height, "Tracks seen from above, north up", tuple(shapes), columns.along(c.run.dt, named))
 
 
 def error(c: Comparison) -> tuple[list[dict[str, Any]], list[Place]]:

@@ -14,7 +14,7 @@ from rovval.report.common.numbers import estimate, per_cent
 from rovval.report.diagnosis.sentences import plain
 from rovval.report.diagnosis.sentences.words import group
 from rovval.report.diagnosis.tables import MOST_RANKED
-from rovval.report.drawings import curves
+from rovval.report.drawings import columns, curves
 from rovval.report.drawings.curves import Place
 from rovval.report.drawings.drawing import Box, Dot, Drawing, Line, Shape, Text
 
@@ -23,7 +23,7 @@ MOST_REGIMES = 10
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A coloured cell: its text, a smaller one under it, and how strong its colour is, from 0 to 0.6."""
+    """A coloured cell: its text, a smaller one under it, and how strong its colour is, from 0 to 0.5: words on it stay readable."""
 
     text: str
     small: str = ""
@@ -112,7 +112,9 @@ def schedule(legs: Sequence[ScheduleLeg]) -> Drawing | None:
                 shapes += [Text(centre, below, f"{speed:g}", "m", "middle")] if wide > 34 else []
     for t in dict.fromkeys([0.0, *(leg.t_s for leg in legs), end]):
         shapes.append(Text(x(t), height - 6, f"{t:g}{' s' if t == end else ''}", "m", "middle" if t < end else "end"))
-    return Drawing(width, height, "thruster schedule, rpm", tuple(shapes))
+    rows = [(name, leg.t_s, leg.duration_s, speed) for leg in legs for name, speed in leg.thrusters.items()]
+    heads = ("thruster", "from, s", "for, s", "speed, rpm")
+    return Drawing(width, height, "thruster schedule, rpm", tuple(shapes), {h: columns.words(v) for h, v in zip(heads, zip(*rows, strict=True), strict=True)})
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,4 +169,4 @@ def _bracket(k: int, members: Sequence[int]) -> tuple[str, str]:
 
 
 def _alpha(value: float, top: float) -> float:
-    return 0.6 * max(0.0, min(value / top, 1.0))
+    return 0.5 * max(0.0, min(value / top, 1.0))

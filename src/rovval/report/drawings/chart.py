@@ -8,12 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.data import Array
+from rovval.report.drawings import columns
+from rovval.report.drawings.columns import MOST_PLACES
 from rovval.report.drawings.drawing import Curve, Dot, Drawing, Line, Shape, Text, round_up
 
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 560.0, 200.0, 54.0, 10.0, 34.0, 24.0  # pixels
 POINTS = 350  # along the width: of what lies between two, the lowest and the highest are drawn
 LEVELS = 4  # lines across
-LETTER = 7.0  # pixels that a letter of a label takes
+LETTER, SAMPLE = 7.0, 16.0  # pixels that a letter of a label takes, and the piece of its curve before it
 ROUNDING = 1e-9  # m, deg, N, rpm: what moves less lies still
 
 
@@ -32,7 +34,7 @@ class Scale:
 
 
 def chart(title: str, unit: str, dt: float, curves: Mapping[str, Array]) -> Drawing:
-    """``curves`` (n,) by their labels against time, NaN left out; the first eight have colours of their own."""
+    """``curves`` (n,) by their labels against time, NaN left out; eight look each their own: four colours, then dashed."""
     known = [v[np.isfinite(v)] for v in curves.values()]
     low, high = (min((float(v.min()) for v in known if len(v)), default=0.0), max((float(v.max()) for v in known if len(v)), default=0.0))
     low, high = min(low, 0.0), max(high, 0.0)
@@ -46,9 +48,13 @@ def chart(title: str, unit: str, dt: float, curves: Mapping[str, Array]) -> Draw
     place = WIDTH - RIGHT
     for k, (label, values) in reversed(list(enumerate(curves.items()))):
         shapes.append(Text(place, 13, label, f"c{k % 8}", "end"))
-        place -= LETTER * len(label) + 12.0
+        place -= LETTER * len(label) + 2.0
+        if label:
+            shapes.append(Line(place - SAMPLE, 9, place, 9, f"c{k % 8}"))
+        place -= SAMPLE + 10.0
         shapes += [Curve(piece, f"c{k % 8}") for piece in pieces(np.arange(0.0, len(values)) * dt, values, x, y)]
-    return Drawing(WIDTH, HEIGHT, f"{title}, {unit}, against time", tuple(shapes))
+    packed = columns.against_time(dt, {f"{label or title}, {unit}": v for label, v in curves.items()})
+    return Drawing(WIDTH, HEIGHT, f"{title}, {unit}, against time", tuple(shapes), packed)
 
 
 def path(title: str, position: Array, marks: Array | None = None) -> Drawing:
@@ -75,7 +81,8 @@ def path(title: str, position: Array, marks: Array | None = None) -> Drawing:
         shapes += [Dot(px, py, 3, "growth-mark"), Text(px - 7, py - 5, name, "m", "end")]
     for k, (px, py) in enumerate(place(_seen(marks)) if marks is not None else ()):
         shapes += [Dot(px, py, 3, "growth-mark"), Text(px + 7, py + 4, f"{k + 1}", "m")]
-    return Drawing(WIDTH, size + 40.0, title, tuple(shapes))
+    values = {f"{name}, m": columns.numbers(known[:: -(-len(known) // MOST_PLACES), j]) for j, name in enumerate(("north", "east", "down"))}
+    return Drawing(WIDTH, size + 40.0, title, tuple(shapes), values)
 
 
 def _axes(scale: float, unit: float, size: float) -> list[Shape]:

@@ -5,9 +5,10 @@ They need no script and take their colours from the page's style sheet, by the c
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from math import floor, log10
-from typing import ClassVar
+from typing import Any, ClassVar
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,12 +74,14 @@ Shape = Text | Line | Box | Dot | Curve
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """Shapes on a ``width`` by ``height`` sheet, y downwards, with a ``label`` for those who cannot see it."""
+    """Shapes on a ``width`` by ``height`` sheet, y downwards, with a ``label`` for those who cannot see it. ``columns`` are the values that it shows, by
+    their headings, as `drawings.columns` packs them: the reader saves them as CSV."""
 
     width: float
     height: float
     label: str
     shapes: tuple[Shape, ...]
+    columns: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
 
 def round_up(value: float) -> float:

@@ -15,7 +15,7 @@ from rovval.report.drawings.curves import MISSING
 from rovval.report.drawings.drawing import Box, Curve, Drawing, Line, Shape, Text, round_up
 
 WIDTH, LEFT, RIGHT, TOP, BOTTOM = 460.0, 50.0, 8.0, 8.0, 22.0  # pixels
-HEIGHT, LEVELS, POINTS = 170.0, 4, 80  # of a picture: pixels, lines across, and points along the width: without a script there is no zoom
+HEIGHT, LEVELS, POINTS = 170.0, 4, 74  # of a picture: pixels, lines across, and points along the width: without a script there is no zoom
 STRIP_HEIGHT, STRIP_LEVELS, STRIP_POINTS = 70.0, 2, 60  # the same of a strip of errors
 
 

@@ -14,7 +14,7 @@ from rovval.fly.mission import WayPoints
 from rovval.fly.record import ASKED
 from rovval.report.common.page import render
 from rovval.report.common.versions import foot
-from rovval.report.drawings import curves
+from rovval.report.drawings import columns, curves
 from rovval.report.drawings.curves import Place
 from rovval.report.drawings.drawing import Curve, Dot, Drawing, Shape, Text
 from rovval.report.flight.json import document
@@ -115,4 +115,5 @@ def _chart(flight: Flight) -> Drawing:
         x, y = at(place)
         shapes += [Dot(x, y, 3, "growth-mark"), Text(x + 7, y + (14 if words == "begin" else 27), words, "m")]
     shapes.append(Text(8, 16, f"north up; {span:.3g} m from edge to edge of the way", "m"))
-    return Drawing(SIDE_PX, SIDE_PX, "The way seen from above", tuple(shapes))
+    values = columns.along(flight.dt, {f"{way}, m": flight.eta[:, j] for j, way in enumerate(("north", "east", "down"))})
+    return Drawing(SIDE_PX, SIDE_PX, "The way seen from above", tuple(shapes), values)

@@ -22,7 +22,7 @@ COLOURS = {  # the page's in the dark
     "measured": (238, 242, 246),
     "windows": (255, 143, 61),
     "free run": (90, 169, 240),
-    "other": (180, 90, 160),
+    "other": (172, 76, 144),
     "corrected": (31, 191, 143),
 }
 ARROW_RADIUS = 0.02  # of a vehicle's length: the shaft of an arrow of current or force
