@@ -1,17 +1,21 @@
-"""The verdict of ASME V&V 20: worked by hand, and on a comparison of which the errors are known."""
+"""The verdict of ASME V&V 20: worked by hand, against drawn errors (no published case with all its numbers was at hand), and on known errors."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from math import sqrt
+from statistics import NormalDist
 
 import numpy as np
 import pytest
-from report_cases import make_run, make_sim
+from report_cases import make_run, make_sim, motion
 
 from rovval.comparison import compare
 from rovval.comparison.between import RESOLUTION
 from rovval.comparison.validation import DOUBTFUL, HIDDEN, SEEN, Validation, validation
 from rovval.core.data import Comparison
+
+DRAWS = 20_000
 
 
 @pytest.mark.parametrize(("error", "interval", "verdict"), [(6.9, (0.0, 20.9), HIDDEN), (10.0, (0.0, 24.0), DOUBTFUL), (20.0, (6.0, 34.0), SEEN)])
@@ -20,6 +24,34 @@ def test_a_worked_example(error: float, interval: tuple[float, float], verdict: 
     found = Validation("m/s", error, u_data=6.0, u_numerical=2.0, u_input=3.0)
     assert found.u_validation == pytest.approx(7.0)
     assert found.interval == pytest.approx(interval) and found.verdict == verdict
+
+
+@pytest.mark.parametrize("model", [0.0, 3.0, 40.0])
+def test_the_interval_holds_the_model_s_error_as_often_as_it_says(model: float):
+    """S - D is the model's error with those of integration, inputs and data (V&V 20-2009, 1-5): drawn, the first lies in E +- 2 u_val 95.4 % of the time."""
+    rng = np.random.default_rng(20)
+    u_data, u_numerical, u_input = 6.0, 2.0, 3.0
+    errors = model + rng.normal(0.0, u_numerical, DRAWS) + rng.normal(0.0, u_input, DRAWS) - rng.normal(0.0, u_data, DRAWS)
+    drawn = [Validation("m/s", abs(e), u_data, u_numerical, u_input) for e in errors]
+    if model == 40.0:  # far from 0, where an absolute value is the value
+        assert np.mean([v.interval[0] <= model <= v.interval[1] for v in drawn]) == pytest.approx(0.9545, abs=0.005)
+    spread = sqrt(u_data**2 + u_numerical**2 + u_input**2)
+    beyond = {k: NormalDist().cdf((model - k * spread) / spread) + NormalDist().cdf((-model - k * spread) / spread) for k in (1.0, 2.0)}
+    seen, hidden = (np.mean([v.verdict == verdict for v in drawn]) for verdict in (SEEN, HIDDEN))
+    assert seen == pytest.approx(beyond[2.0], abs=0.005) and hidden == pytest.approx(1.0 - beyond[1.0], abs=0.01)
+
+
+@pytest.mark.parametrize("gap", [0.02, 0.1])
+def test_the_model_s_error_in_windows_lies_in_its_interval_for_any_draw_of_the_noise(gap: float):
+    run, rng, held = make_run(600), np.random.default_rng(4), 0
+    sim = make_sim(run, gap=(gap, 0.0, 0.0, 0.0, 0.0, 0.0))
+    truth = motion(600)[0][:, 0]
+    error = float(np.sqrt(np.mean((sim.windowed.nu[:, 0] - truth) ** 2)))
+    for _ in range(20):
+        noisy = replace(run, values={**run.values, "u": truth + rng.normal(0.0, 0.006, 600)})
+        low, high = validation(compare(noisy, sim))["surge"].interval
+        held += low <= error <= high
+    assert held == 20, "E is of hundreds of rows, so that its own chance is small beside u_val"
 
 
 def compared(gap: float) -> Comparison:

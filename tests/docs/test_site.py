@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -21,6 +22,7 @@ from rovval.comparison import compare
 from rovval.pipeline import document as pipelines
 from rovval.pipeline.keeping.summary import summarise
 from rovval.pipeline.planning.config import Pipeline, Source
+from rovval.report import side_by_side
 from rovval.report.comparison.json import document
 
 DOCS = ROOT / "docs"
@@ -98,6 +100,18 @@ def test_a_comparison_is_what_its_schema_says(absent):
         validator("comparison").validate(json.loads(json.dumps(compared, allow_nan=False)))
         del compared["model"]
         assert not validator("comparison").is_valid(compared)
+
+
+@pytest.mark.parametrize(("runs", "models"), [(2, 1), (1, 2), (2, 2)])
+def test_a_report_side_by_side_is_what_its_schema_says(runs, models):
+    made = [replace(make_run(300), id=f"dive{k}") for k in range(runs)]
+    all_of_them = [compare(run, replace(make_sim(run), run_id=run.id, model=model)) for run in made for model in ("fossen", "uuv")[:models]]
+    found = json.loads(json.dumps(side_by_side.document(all_of_them), allow_nan=False))
+    validator("side_by_side").validate(found)
+    assert len(found["comparisons"]) == runs * models
+    for one in found["comparisons"].values():
+        validator("comparison").validate(one)
+    assert not validator("side_by_side").is_valid(found | {"comparisons": {"a": {}}})
 
 
 def test_a_summary_is_what_its_schema_says():

@@ -76,9 +76,9 @@ def command(
     \b
     Example:
       rovval compare dive.csv --profile merlin
-      rovval compare dive.csv --fail-above surge=0.10 --fail-above yaw.iae=5 --json
+      rovval compare dive.csv --fail-above surge=0.1 --fail-above yaw.iae=5 --json
       rovval compare dive.csv --from 12 --to 95
-      rovval compare run_a.csv --with run_a.sim.csv --with-profile bluerov2_tank_sim
+      rovval compare run.csv --with sim.csv --with-profile bluerov2_tank_sim
       rovval compare dive.csv --between fossen uuv
       rovval compare --between fossen uuv --vehicle bluerov2_heavy
     """

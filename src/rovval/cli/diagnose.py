@@ -60,7 +60,7 @@ def command(
     \b
     Example:
       rovval diagnose dive.csv --json diagnosis.json
-      rovval diagnose dive1.csv dive2.csv --profile merlin --write-vehicle mended.toml
+      rovval diagnose dive1.csv dive2.csv --write-vehicle mended.toml
     """
     from rovval.diagnose import diagnose
     from rovval.pipeline.steps import vehicle_of

@@ -54,8 +54,8 @@ def command(
 
     \b
     Example:
-      rovval fit dive1.csv dive2.csv --out calibrated.toml --report reports/calibrated
-      rovval fit dive.csv --parameters quadratic_drag[surge],quadratic_drag[sway] --out tuned.toml
+      rovval fit dive1.csv dive2.csv --out mine.toml --report reports/mine
+      rovval fit dive.csv --parameters quadratic_drag[surge] --out tuned.toml
       rovval fit bench.csv --motor --columns 1,2
       rovval fit step.csv --response --columns 2,21
     """

@@ -38,7 +38,7 @@ def command(
 
     \b
     Example:
-      rovval import-vehicle rexrov.yaml TAM.yaml thruster_manager.yaml --out rexrov.toml
+      rovval import-vehicle rexrov.yaml TAM.yaml thrusters.yaml --out rexrov.toml
       rovval import-vehicle preprocessing/minerva --out minerva.toml
       rovval show vehicle rexrov.toml
     """

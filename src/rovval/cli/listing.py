@@ -49,7 +49,7 @@ def list_command(
     Example:
       rovval list effect
       rovval list run --archive /data/archive --json
-      rovval list run --where "vehicle = 'merlin' and surge > 0.1" --since 2026-01-01
+      rovval list run --where "vehicle = 'merlin' and surge > 0.1"
     """
     if where or since:
         if kind is not Kind.run:

@@ -35,7 +35,7 @@ def command(
     \b
     Example:
       rovval simulate dive.csv --profile merlin
-      rovval simulate dive.csv --effect inflow_loss:loss=0.3 --model fossen --out with_loss.parquet
+      rovval simulate dive.csv --effect inflow_loss:loss=0.3 --out loss.parquet
     """
     from rovval.pipeline.steps import simulated, vehicle_of
     from rovval.simulation.file import save_simulation

@@ -26,7 +26,7 @@ def command(
     \b
     Example:
       rovval trend
-      rovval trend --archive /data/archive --vehicle merlin --since 2026-01-01 --json
+      rovval trend --archive /data/archive --vehicle merlin --since 2026-01-01
     """
     from rovval.report.common import trend as words
     from rovval.storage import catalogue

@@ -119,7 +119,7 @@ def panel(title: str, unit: str, curve: ErrorGrowth, factor: float, baseline: fl
         shapes.append(Text(edge, f.y(baseline) - 4, "no motion", "m", "end"))
     else:
         shapes.append(Text(edge, f.top - 1, f"no motion: {number(baseline, 2)}", "m", "end"))
-    values = {"time_s": columns.numbers(curve.seconds), f"rms, {unit}": columns.numbers(curve.rms * factor)}
+    values = columns.against_time(float(curve.seconds[-1]) / max(len(curve.rms) - 1, 1), {f"rms, {unit}": curve.rms * factor})
     return Drawing(f.width, f.height, f"{title}: error against time since the window's start", tuple(shapes), values)
 
 
