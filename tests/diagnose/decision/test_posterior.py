@@ -112,7 +112,7 @@ def test_a_further_cause_may_be_the_form_error_of_the_first_however_much_it_expl
 
 def test_the_set_that_is_named_holds_what_most_of_the_probability_holds():
     """The single most probable set holds a slow thruster and waves; a scale of the velocity log is in two others, which together are more probable."""
-    pairs = {("thrust_lag", "waves"): 400.0, ("thrust_lag", "dvl_scale"): 399.5, ("cross_drag", "dvl_scale"): 399.0}
+    pairs: dict[tuple[str, ...], float] = {("thrust_lag", "waves"): 400.0, ("thrust_lag", "dvl_scale"): 399.5, ("cross_drag", "dvl_scale"): 399.0}
     found = belief({("thrust_lag",): 70.0, ("dvl_scale",): 380.0, ("cross_drag",): 30.0, ("waves",): 30.0, **pairs}, weighed=list(pairs))
     assert found.ranked[0] == {"thrust_lag", "waves"} and found.of("dvl_scale") > found.of("waves")
     assert found.best == {"thrust_lag", "dvl_scale"}

@@ -43,3 +43,14 @@ def test_a_damaged_kernel_cache_is_compiled_anew(tmp_path):
         file.write_bytes(content[: len(content) // 2] + bytes(9) + content[len(content) // 2 + 9 :])
     assert run() == (first, True)
     assert run() == (first, False)
+
+
+@pytest.mark.slow
+def test_of_two_processes_that_need_a_kernel_one_compiles_it(tmp_path):
+    code = "import plant_cases as c; from rovval.plant import Plant; print(c.run(Plant(c.merlin())).nu.sum())"
+    paths = os.pathsep.join([str(Path(__file__).parents[2] / "cases"), os.environ.get("PYTHONPATH", "")])
+    environment = {**os.environ, "ROVVAL_CACHE": str(tmp_path), "PYTHONPATH": paths}
+    both = [subprocess.Popen([sys.executable, "-c", code], env=environment, stdout=-1, stderr=-1, text=True) for _ in range(2)]
+    said = [one.communicate() for one in both]
+    assert [one.returncode for one in both] == [0, 0] and said[0][0] == said[1][0]
+    assert sorted("compiling" in stderr for _, stderr in said) == [False, True]

@@ -16,14 +16,16 @@ import tempfile
 import time
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from functools import cache
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from rovval.core.errors import UsageProblem
 from rovval.plant.codegen.spec import Spec
 from rovval.plant.codegen.text import render
+from rovval.storage import lock
 
 ROOT = Path(__file__).parent
 
@@ -123,27 +125,42 @@ def run(spec: Spec, blocks: int, arguments: tuple[Any, ...]) -> None:
 
 
 def _compile(function: Any, spec: Spec, arguments: tuple[Any, ...]) -> None:
-    """Compile (or load) by a call over no block at all, with a word on stderr if it is going to take a while."""
-    start = time.monotonic()
-    cached = _discard_damaged(_name(spec))
-    if not cached:
-        often = "once for this machine" if _lasting_folder() else "in every run, for want of a folder to keep it: name one in ROVVAL_CACHE"
-        print(f"rovval: compiling the {spec.name} plant, {often} (some seconds) ...", file=sys.stderr, flush=True)  # noqa: T201
-    function(0, 0, *arguments)
-    if not cached:
-        _write(_seal(_name(spec)), _digest(_machine_code(_name(spec))))
-        print(f"rovval: compiled in {time.monotonic() - start:.1f} s", file=sys.stderr, flush=True)  # noqa: T201
+    """Compile (or load) by a call over no block at all. Of several processes that need the kernel one compiles it, and the others wait and load it."""
+    name = _name(spec)
+    if _intact(name):
+        function(0, 0, *arguments)
+    else:
+        with _alone(name):
+            if not _intact(name):  # nobody else has made it meanwhile
+                _compile_anew(function, spec, arguments)
+            function(0, 0, *arguments)
     _compiled.add(spec.name)
 
 
-def _discard_damaged(name: str) -> bool:
-    """Whether there is machine code of that kernel, as its seal says it was written; what is not is removed, for it would be run."""
-    code, seal = _machine_code(name), _seal(name)
-    if code and seal.is_file() and seal.read_bytes() == _digest(code).encode():
-        return True
-    for file in code:
+def _compile_anew(function: Any, spec: Spec, arguments: tuple[Any, ...]) -> None:
+    """Compile, what is there and damaged removed first, for it would be run; with a word on stderr, since it takes a while."""
+    name, start = _name(spec), time.monotonic()
+    for file in _machine_code(name):
         file.unlink(missing_ok=True)
-    return False
+    often = "once for this machine" if _lasting_folder() else "in every run, for want of a folder to keep it: name one in ROVVAL_CACHE"
+    print(f"rovval: compiling the {spec.name} plant, {often} (some seconds) ...", file=sys.stderr, flush=True)  # noqa: T201
+    function(0, 0, *arguments)
+    _write(_seal(name), _digest(_machine_code(name)))
+    print(f"rovval: compiled in {time.monotonic() - start:.1f} s", file=sys.stderr, flush=True)  # noqa: T201
+
+
+def _alone(name: str) -> ExitStack:
+    """Nobody else compiles that kernel meanwhile; where files cannot be locked each process does for itself."""
+    stack = ExitStack()
+    with suppress(OSError, UsageProblem):
+        stack.enter_context(lock.held(cache_folder() / f"{name}.lock", wait=True))
+    return stack
+
+
+def _intact(name: str) -> bool:
+    """Whether there is machine code of that kernel as its seal says it was written."""
+    code, seal = _machine_code(name), _seal(name)
+    return bool(code) and seal.is_file() and seal.read_bytes() == _digest(code).encode()
 
 
 def _machine_code(name: str) -> list[Path]:
@@ -158,6 +175,6 @@ def _seal(name: str) -> Path:
 def _digest(files: Sequence[Path]) -> str:
     digest = hashlib.sha256()
     for file in files:
-        with suppress(FileNotFoundError):  # another process compiles, too
+        with suppress(FileNotFoundError):  # another process compiles, too, where files cannot be locked
             digest.update(file.read_bytes())
     return digest.hexdigest()
