@@ -56,6 +56,20 @@ def test_what_was_compared_is_what_is_read_back(tmp_path: Path) -> None:
     assert blueprints == 1 and "not measured" not in notes
 
 
+def test_every_view_has_a_dark_ground_whatever_the_viewer_s_theme(tmp_path: Path) -> None:
+    """In a light viewer the measured motion was white on white."""
+    from rerun.chunk import RrdReader
+
+    run, path = make_run(300), tmp_path / "run.rrd"
+    recording.write(compare(run, make_sim(run)), path, MERLIN)
+    [blueprint] = RrdReader(str(path)).blueprints()
+    grounds = []
+    for chunk in RrdReader(str(path)).stream(store=blueprint):
+        batch = chunk.to_record_batch()
+        grounds += [batch.column(name).flatten()[0].as_py() for name in batch.schema.names if name.endswith("ackground:color")]
+    assert len(grounds) >= 14 and {g >> 8 for g in grounds} == {0x10151B}
+
+
 def test_a_corrected_simulation_is_a_further_trace(tmp_path: Path) -> None:
     run = make_run(300)
     better = make_sim(run, gap=(0.0,) * 6)

@@ -8,6 +8,7 @@ from rovval.core.channels import AXES
 from rovval.core.data import Comparison
 from rovval.report.comparison import words
 
+GROUND = (16, 21, 27)  # of all views, as the page's in the dark: the viewer may be light, and the measured motion is white
 EYE = (-1.6, -1.4, -1.1)  # of the vehicle's longest side: from astern, to port and above, with room for its arrows (chosen)
 
 
@@ -36,9 +37,9 @@ def blueprint(comparison: Comparison, body: str, corrected: bool, longest: float
         tabs = [rrb.Vertical(lanes, log, name="Diagnosis"), rrb.Grid(*forces, grid_columns=2, name="Missing force"), *tabs]
     third = ", corrected (green)" if corrected else ""
     tracks = "Measured (white), windows (orange), free run (blue)" if body == "measured" else "Free run (blue)"
-    world = rrb.Spatial3DView(origin="/world", name=f"{tracks}{third}: north-east-down")
+    world = rrb.Spatial3DView(origin="/world", name=f"{tracks}{third}: north-east-down", background=GROUND)
     eye = rrb.EyeControls3D(position=[longest * x for x in EYE], look_target=(0.0, 0.0, 0.0), eye_up=(0.0, 0.0, -1.0))
-    near = rrb.Spatial3DView(origin=f"/world/{body.replace(' ', '_')}", name=f"Thrusts on the vehicle ({body})", eye_controls=eye)
+    near = rrb.Spatial3DView(origin=f"/world/{body.replace(' ', '_')}", name=f"Thrusts on the vehicle ({body})", eye_controls=eye, background=GROUND)
     left = rrb.Vertical(world, near, rrb.TextDocumentView(origin="/notes", name="Notes"), row_shares=[5, 4, 2])
     return rrb.Blueprint(
         rrb.Horizontal(left, rrb.Tabs(*tabs, active_tab=0), column_shares=[2, 3]),
@@ -53,7 +54,7 @@ def _curves(origin: str, name: str) -> Any:
     """A plot of the whole run; the viewer's own default would show half a minute round the cursor."""
     import rerun.blueprint as rrb
 
-    return rrb.TimeSeriesView(origin=origin, name=name, axis_x=_whole_run())
+    return rrb.TimeSeriesView(origin=origin, name=name, axis_x=_whole_run(), background=rrb.archetypes.PlotBackground(color=GROUND))
 
 
 def _whole_run() -> Any:
