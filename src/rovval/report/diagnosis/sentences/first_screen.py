@@ -76,7 +76,7 @@ def next_step(d: Diagnosis) -> str:
     if d.calibration:
         return "Write the vehicle with its numbers tuned (the command stands below) and diagnose again with it."
     if any(c.kind == "file" for c in d.causes):
-        return "Correct that number of the vehicle's file: `--write-vehicle FILE.toml` writes it."
+        return "Correct this number in the vehicle's file: `--write-vehicle FILE.toml` writes it."
     if d.causes:
         return "Write the mended vehicle with `--write-vehicle FILE.toml` and compare again."
     return no_cause.next_step(d)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from rovval.diagnose.result.diagnosis import Diagnosis, Unexplained
 from rovval.report.common.numbers import listed, number, per_cent, probability
-from rovval.report.diagnosis.sentences.plain import falls, titled
+from rovval.report.diagnosis.sentences.plain import falls, remaining, titled
 from rovval.report.diagnosis.sentences.words import parameter, sensor_tolerance
 
 NOISE = "sensor noise"
+WORTH_A_FORMULA = 0.95  # of the rms error: a formula that leaves more of it helps nobody (chosen)
 
 
 def undecided(d: Diagnosis) -> bool:
@@ -19,7 +20,7 @@ def nothing(d: Diagnosis) -> str:
     """That no gap is claimed, and how sure that is."""
     sure = f" (probability {probability(d.probabilities.healthy)})" if d.probabilities else ""
     seen = " A sensor, or an effect that came near, deserves a look." if undecided(d) else ""
-    return f"No gap beyond {known(d)}{sure}: nothing in this log asks for a cause.{seen}" if not seen else f"No gap beyond {known(d)} is shown{sure}.{seen}"
+    return f"No gap beyond {known(d)}{sure}: no cause is needed.{seen}" if not seen else f"No gap beyond {known(d)} is shown{sure}.{seen}"
 
 
 def unknown(d: Diagnosis) -> str:
@@ -95,7 +96,7 @@ def _acting(left: Unexplained | None) -> str:
 def _force(left: Unexplained) -> str:
     text = f"a force in {listed(left.axes)} that nothing in the library explains"
     text += f"; it varies with {listed(left.depends_on)}" if left.depends_on else ""
-    return text + (f", and a formula for it would bring the error to {falls(left.share).rpartition('to ')[2]}" if left.share >= 0.005 else "")
+    return text + (f", and with a formula for it the error {falls(left.share)}" if remaining(left.share) <= WORTH_A_FORMULA else "")
 
 
 def _open(d: Diagnosis, accounted: float) -> str:

@@ -70,7 +70,9 @@ def _gap(d: Diagnosis) -> str:
     axis, row = max(d.gap.axes.items(), key=lambda item: item[1].share)
     times = row.rms / row.floor_rms if row.floor_rms > 0 else float("inf")
     floor = f", {number(times, 2)} times the sensor's noise" if times < 1e4 else ""
-    return f"In {axis} the simulator is {quantity(row.rms, row.unit)} rms off after a restart, within {d.window_s:g} s{floor}."
+    healthy = d.verdict == "no_gap" and not no_cause.undecided(d) and times > 2.0 and d.calibration_slop
+    why = f": coefficients that are off by their tolerance of {per_cent(d.calibration_slop)} make as much" if healthy else ""
+    return f"In {axis} the simulator is {quantity(row.rms, row.unit)} rms off within {d.window_s:g} s of a restart from the measured motion{floor}{why}."
 
 
 def _each(d: Diagnosis) -> list[str]:
