@@ -1,13 +1,14 @@
 """Files appear whole or not at all, and a disk that is full is said so with what to do."""
 
 import errno
+import json
 import os
 from pathlib import Path
 
 import pytest
 
 from rovval.core.errors import Unwritable, UsageProblem
-from rovval.storage.atomic import LEFTOVER, drafts, refuse_unwritable, write_text
+from rovval.storage.atomic import LEFTOVER, drafts, read_json, refuse_unwritable, write_json, write_text
 
 
 def full(*args: object, **kwargs: object) -> None:
@@ -51,3 +52,15 @@ def test_places_are_checked_before_the_work(tmp_path):
     for wrong in (tmp_path, tmp_path / "file" / "d.json"):
         with pytest.raises(UsageProblem, match="cannot be written"):
             refuse_unwritable(wrong)
+
+
+def test_a_document_is_read_as_it_was_written_or_not_at_all(tmp_path):
+    """Also one with the name of a file that is not UTF-8, which the fast reader refuses."""
+    document = {"name": "dive \udcff \u00e9", "numbers": [0.1 + 0.2, -0.0, 1e-320, 2**70, True, None], "": {}}
+    write_json(place := tmp_path / "d.json", document)
+    assert read_json(place) == document
+    whole = place.read_bytes()
+    for damaged in (b"", whole[:-3], b"[1]", whole.replace(b"dive", b"d\xffve"), whole + b"}", b"[" * 100_000):
+        place.write_bytes(damaged)
+        assert read_json(place) is None
+    assert json.loads(whole) == document and read_json(tmp_path / "none.json") is None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
@@ -19,6 +19,7 @@ from rovval.pipeline.keeping.summary import STOPPED
 from rovval.pipeline.keeping.trends import trends
 from rovval.pipeline.planning import config
 from rovval.pipeline.planning.config import Pipeline
+from rovval.pipeline.planning.packed import Packed
 from rovval.pipeline.planning.plan import Plan, Task, plan
 from rovval.pipeline.planning.records import brief
 from rovval.report.batch.terminal import reasons
@@ -53,7 +54,7 @@ def run(
         todo = plan(pipeline, path.resolve().parent, retry, verify)
         why = todo.why  # before the work changes it
         progress(reasons(why) or "plan", 0.0)
-        finished: list[Mapping[str, Any]] = []
+        finished = Packed()
         aside = list(todo.set_aside)
         stop: UsageProblem | None = None
         try:
@@ -65,7 +66,7 @@ def run(
                 progress(f"{number} of {len(todo.todo)} logs, {task.log.name}", number / len(todo.todo))
         except UsageProblem as problem:
             stop = problem
-        records = [*finished, *todo.done, *todo.kept, *todo.postponed]
+        records = finished + todo.done + todo.kept + todo.postponed
         damaged, unusual, unwritten = _entered(pipeline, records, finished)
         before = read_json(pipeline.reports / SUMMARY)
         stop, seconds = stop or unwritten, time.monotonic() - began
@@ -88,9 +89,7 @@ def _spread(pipeline: Pipeline, tasks: Sequence[Task], workers: int | None, sche
     return execute(tasks, work, died, workers or pipeline.workers or os.cpu_count() or 1, pipeline.timeout_s)
 
 
-def _entered(
-    pipeline: Pipeline, records: Sequence[Mapping[str, Any]], done: Sequence[Mapping[str, Any]]
-) -> tuple[list[str], list[dict[str, str]], UsageProblem | None]:
+def _entered(pipeline: Pipeline, records: Packed, done: Packed) -> tuple[list[str], list[dict[str, str]], UsageProblem | None]:
     """Put the records into the catalogue: what of it was damaged, which of the runs ``done`` are unusual among their vehicle's dives, and why it
     could not be written."""
     try:
@@ -99,7 +98,7 @@ def _entered(
         return [], [], problem
 
 
-def _publish(pipeline: Pipeline, summary: dict[str, Any], records: list[Mapping[str, Any]]) -> None:
+def _publish(pipeline: Pipeline, summary: dict[str, Any], records: Packed) -> None:
     """The summary for programs and for people: both of this batch, or both of the one before. Where the disk is too full for them, what
     stopped the batch takes the place of the page of the night before, which would look like this night's."""
     from rovval.report.batch import html as batch_html

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import fnmatch
 import json
 import os
 import shutil
@@ -12,6 +13,8 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
+
+from pydantic_core import from_json
 
 from rovval.core.errors import Unwritable, UsageProblem
 from rovval.storage.places import is_remote, put
@@ -108,25 +111,34 @@ def json_text(document: dict[str, Any]) -> str:
 
 def read_json(path: Path) -> dict[str, Any] | None:
     """A JSON object; None where there is none, or what lies there is damaged."""
-    return read_json_with_text(path)[0]
+    return read_json_with_bytes(path)[0]
 
 
-def read_json_with_text(path: Path) -> tuple[dict[str, Any] | None, str]:
-    """As `read_json`, and the text that it was read from."""
+def read_json_with_bytes(path: Path) -> tuple[dict[str, Any] | None, bytes]:
+    """As `read_json`, and the bytes that it was read from."""
     try:
-        text = path.read_text(encoding="utf-8")
-        document = json.loads(text)
+        content = path.read_bytes()
+        document = _parsed(content)
     except (FileNotFoundError, IsADirectoryError, ValueError, RecursionError):
-        return None, ""
-    return (document if isinstance(document, dict) else None), text
+        return None, b""
+    return (document if isinstance(document, dict) else None), content
+
+
+def _parsed(content: bytes) -> Any:
+    """What JSON says, by pydantic's reader, which takes a third of the time of Python's; what only Python's takes (half of a surrogate pair, as it
+    writes of a file's name that is not UTF-8) by that. Raises ValueError and RecursionError."""
+    try:
+        return from_json(content)
+    except ValueError:
+        return json.loads(content.decode("utf-8"))
 
 
 def sweep(root: Path) -> None:
     """Remove what a kill left half-written under ``root`` (call it only while holding the lock of ``root``). An object store has nothing half-written."""
     if is_remote(root):
         return
-    for left in list(root.rglob(LEFTOVER)):
-        if left.is_dir():
-            shutil.rmtree(left, ignore_errors=True)
-        else:
-            left.unlink(missing_ok=True)
+    for folder, folders, files in os.walk(root):
+        for name in fnmatch.filter(folders, LEFTOVER):
+            shutil.rmtree(Path(folder, name), ignore_errors=True)
+        for name in fnmatch.filter(files, LEFTOVER):
+            Path(folder, name).unlink(missing_ok=True)

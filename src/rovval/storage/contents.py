@@ -8,7 +8,7 @@ from pathlib import Path
 from stat import S_ISREG
 from typing import Any
 
-from rovval.storage.places import name_from, named
+from rovval.storage.places import name_from, named, status
 
 BLOCK = 1 << 20
 
@@ -23,17 +23,16 @@ def damage(files: Mapping[str, Mapping[str, Any]], base: Path, digests: bool = F
     """Which of ``files`` (as `contents` returned them) is gone or another, and how; by size, and by content if ``digests``."""
     found = {}
     for name, wanted in files.items():
-        file = named(base, name)
         try:
-            status = file.stat()
+            there = status(base, name)
         except (FileNotFoundError, NotADirectoryError):
             found[name] = "gone"
             continue
-        if not S_ISREG(status.st_mode):
+        if not S_ISREG(there.st_mode):
             found[name] = "gone"
-        elif status.st_size != wanted["bytes"]:
-            found[name] = f"{status.st_size} bytes, {wanted['bytes']} were written"
-        elif digests and digest(file) != wanted["sha256"]:
+        elif there.st_size != wanted["bytes"]:
+            found[name] = f"{there.st_size} bytes, {wanted['bytes']} were written"
+        elif digests and digest(named(base, name)) != wanted["sha256"]:
             found[name] = "another content than was written"
     return found
 

@@ -17,6 +17,7 @@ from rovval.core.data import Array
 Row = Mapping[str, Any]
 Of = Literal["gap", "cause"]
 UNITS = dict(zip(AXES, ("m/s",) * 3 + ("rad/s",) * 3, strict=True))
+COLUMNS = ("pipeline", "vehicle", "run", "log", "current", "date", "dated_by", "method", "stops", *AXES, "causes")  # of the catalogue, that are asked for
 SAME_GAP = 0.01  # two gaps that differ by less are one: by so much they differ with the water's density or the digits of a log
 FEWEST = 4  # dives on which a cause is named before its size is followed: level, scatter and a change of it leave one to judge by
 SAME_SIZE = 1e-3  # the same for a cause's size where no interval is told, as a share of it

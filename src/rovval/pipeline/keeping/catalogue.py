@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from datetime import datetime
 from typing import Any
 
@@ -16,7 +16,7 @@ Record = Mapping[str, Any]
 NO_VEHICLE = "unknown"  # of a run that was only ingested, by a profile that names none
 
 
-def enter(pipeline: Pipeline, records: Sequence[Record], now: datetime) -> list[str]:
+def enter(pipeline: Pipeline, records: Iterable[Record], now: datetime) -> list[str]:
     """Put every record of a batch, new or unchanged, into the catalogue of its archive, so that a row that was lost comes back.
 
     Returns what of the catalogue was damaged and set aside. Raises `UsageProblem` where it cannot be written.
@@ -25,10 +25,11 @@ def enter(pipeline: Pipeline, records: Sequence[Record], now: datetime) -> list[
 
     with lock.held(pipeline.archive / catalogue.FOLDER, wait=True):
         sweep(pipeline.archive / catalogue.FOLDER)
-        return catalogue.update(pipeline.archive, [_row(pipeline, record) for record in records], now)
+        reports = places.name_from(pipeline.archive, pipeline.reports)
+        return catalogue.update(pipeline.archive, (_row(pipeline.name, reports, record) for record in records), now)
 
 
-def unusual(pipeline: Pipeline, done: Sequence[Record]) -> list[dict[str, str]]:
+def unusual(pipeline: Pipeline, done: Iterable[Record]) -> list[dict[str, str]]:
     """The runs that this batch has ``done`` and whose gap exceeds a tolerance over dives (``trend.surge=3``), each with the sentence that says so. Only
     the last dives of a vehicle are held against those before them: after an update of rovval the whole archive is done."""
     limits = tolerances.parse_trends(pipeline.tolerances)
@@ -50,21 +51,23 @@ def unusual(pipeline: Pipeline, done: Sequence[Record]) -> list[dict[str, str]]:
 
 
 def rows_of(pipeline: Pipeline) -> list[dict[str, Any]]:
-    """The rows of the catalogue that this pipeline entered."""
+    """The rows of the catalogue that this pipeline entered, with the columns that `rovval.trend` follows."""
     from rovval.storage import catalogue
+    from rovval.trend.series import COLUMNS
 
-    return [row for row in catalogue.find(pipeline.archive) if row["pipeline"] == pipeline.name]
+    return catalogue.load(pipeline.archive).filter(pipeline=pipeline.name).select(COLUMNS).to_dicts()
 
 
-def _row(pipeline: Pipeline, record: Record) -> dict[str, Any]:
-    """The columns of `rovval.storage.catalogue` that a record (rovval.batch/1) fills; the links lead from the archive."""
+def _row(pipeline: str, reports: str, record: Record) -> dict[str, Any]:
+    """The columns of `rovval.storage.catalogue` that a record (rovval.batch/1) fills; the links lead from the archive, from which the
+    ``reports`` are called so."""
     steps = record["steps"]
     compared, diagnosed = steps.get("compare", {}), steps.get("diagnose", {})
     comparison = compared.get("comparison", {})
     gap = comparison.get("window", {}).get("axes") or diagnosed.get("gap") or {}
     causes = [_cause(cause) for cause in diagnosed.get("causes") or ()]
     return {
-        "pipeline": pipeline.name,
+        "pipeline": pipeline,
         **{name: record.get(name) for name in ("run", "log", "sha256", "dated_by", "duration_s", "model", "rovval", "method")},
         "vehicle": comparison.get("vehicle") or diagnosed.get("vehicle") or record.get("vehicle") or NO_VEHICLE,
         "date": datetime.fromisoformat(record["began"]),
@@ -75,8 +78,8 @@ def _row(pipeline: Pipeline, record: Record) -> dict[str, Any]:
         "findings": [": ".join((f["code"], f["where"], f["detail"])) for f in comparison.get("findings", ())] or steps.get("ingest", {}).get("findings") or [],
         "stops": list(comparison.get("stops") or steps.get("simulate", {}).get("stops") or ()),
         "code": [step["code"] for step in steps.values()][-1],
-        "report": _page(pipeline, compared),
-        "diagnosis": _page(pipeline, diagnosed),
+        "report": _page(reports, compared),
+        "diagnosis": _page(reports, diagnosed),
     }
 
 
@@ -92,6 +95,6 @@ def _cause(cause: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _page(pipeline: Pipeline, step: Mapping[str, Any]) -> str | None:
+def _page(reports: str, step: Mapping[str, Any]) -> str | None:
     page = next((place for place in step.get("outputs", ()) if place.endswith(".html")), None)
-    return page and places.name_from(pipeline.archive, places.named(pipeline.reports, page))
+    return page and f"{reports}/{page}".removeprefix("./")

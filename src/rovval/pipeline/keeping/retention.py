@@ -6,7 +6,7 @@ The runs of the archive and the rows of the catalogue stay in any case, and so d
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -18,7 +18,7 @@ from rovval.storage import places
 DAY_S = 86400.0
 
 
-def sweep(pipeline: Pipeline, folders: Mapping[str, frozenset[Path]]) -> list[str]:
+def sweep(pipeline: Pipeline, folders: Mapping[str, Sequence[str]]) -> list[str]:
     """Remove the report folders of the pipeline that are about a log of ``folders`` and none of its own (its content, or its vehicle or profile, was
     another) and whose time is over; hold the lock of the reports. Returns their names, for the summary."""
     if pipeline.keep_replaced_days is None:
@@ -29,9 +29,9 @@ def sweep(pipeline: Pipeline, folders: Mapping[str, frozenset[Path]]) -> list[st
     return sorted(folder.name for folder in over if not folder.exists())
 
 
-def _is_over(folder: Path, folders: Mapping[str, frozenset[Path]], days: float) -> bool:
+def _is_over(folder: Path, folders: Mapping[str, Sequence[str]], days: float) -> bool:
     record = read_record(folder)
-    if record is None or folder in folders.get(record["log"], {folder}):
+    if record is None or folder.name in folders.get(record["log"], (folder.name,)):
         return False
     with suppress(OSError):  # a log that cannot be looked at tells nothing
         return time.time() - max(part.stat().st_mtime for part in files_of(places.place(record["log"]))) > days * DAY_S

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from itertools import chain
 from typing import Any
 
 from rovval.core.errors import UsageProblem
@@ -15,8 +16,8 @@ DONE, BEYOND, STOPPED, UNUSABLE, LEFT_LIMITS = 0, 1, 2, 3, 4
 
 def summarise(
     name: str,
-    finished: Sequence[Mapping[str, Any]],
-    skipped: Sequence[Mapping[str, Any]],
+    finished: Collection[Mapping[str, Any]],
+    skipped: Collection[Mapping[str, Any]],
     set_aside: Sequence[Mapping[str, Any]],
     waiting: Sequence[tuple[Any, str]],
     limits: Sequence[str],
@@ -32,7 +33,7 @@ def summarise(
     are runs beyond a tolerance over dives, ``damaged`` what was set aside of the catalogue."""
     parsed = tolerances.parse(tolerances.of_one_run(limits))
     beyond, stopped = [], []
-    for record in (*finished, *skipped):
+    for record in chain(finished, skipped):
         compared = record["steps"].get("compare")
         if stops := record["steps"].get("simulate", {}).get("stops") or (compared["comparison"]["stops"] if compared else ()):
             stopped.append({"log": record["log"], "run": record["run"], "stops": list(stops)})

@@ -7,6 +7,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from fnmatch import fnmatchcase
+from functools import cache
 from pathlib import Path
 
 from rovval.core.errors import BadInput, all_at_once
@@ -44,10 +45,10 @@ def matching(patterns: Sequence[str], base: Path) -> tuple[list[Path], dict[Path
     """
     unusable: dict[Path, str] = {}
     found = {path for pattern in patterns for path in _matched(pattern, base, unusable)}
-    bags, files = set(), set()
+    bags, files, holds_a_bag = set(), set(), cache(is_bag)
     for path in found:
         try:
-            if bag := next((p for p in (path, path.parent) if is_bag(p)), None):
+            if bag := next((p for p, sure in ((path, is_bag), (path.parent, holds_a_bag)) if sure(p)), None):
                 bags.add(bag)
             elif path.is_file() and not path.name.startswith(".") and path.suffix != ".md":
                 files.add(path)

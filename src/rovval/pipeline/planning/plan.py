@@ -19,6 +19,7 @@ from rovval.pipeline import tolerances
 from rovval.pipeline.planning import discover
 from rovval.pipeline.planning.config import Pipeline, Source
 from rovval.pipeline.planning.hashes import Hashes, code_on_disk
+from rovval.pipeline.planning.packed import Packed
 from rovval.pipeline.planning.records import brief, is_damaged, outputs_whole, read_quarantine, read_record
 
 QUARANTINE = "quarantine"
@@ -70,17 +71,18 @@ class Plan:
     """Tasks to do, records of what is done, records of what stays in quarantine or cannot be read, and logs left for later with the reason.
 
     ``missing`` are sources of which no log is there, with the reason; ``kept`` the records of the logs that they had. ``postponed`` are the records
-    of logs that older code of rovval has judged and that a later night judges anew; ``folders`` are those of the reports of every log.
+    of logs that older code of rovval has judged and that a later night judges anew; ``folders`` are the names of
+    those of the reports of every log.
     """
 
     todo: tuple[Task, ...]
-    done: tuple[Mapping[str, Any], ...]
+    done: Packed
     set_aside: tuple[Mapping[str, Any], ...]
     waiting: tuple[tuple[Path, str], ...]
     missing: tuple[tuple[str, str], ...] = ()
-    kept: tuple[Mapping[str, Any], ...] = ()
-    postponed: tuple[Mapping[str, Any], ...] = ()
-    folders: Mapping[str, frozenset[Path]] = field(default_factory=dict)
+    kept: Packed = field(default_factory=Packed)
+    postponed: Packed = field(default_factory=Packed)
+    folders: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @property
     def why(self) -> Mapping[str, int]:
@@ -96,22 +98,22 @@ class _Sorting:
     hashes: Hashes
     retry: bool
     todo: list[Task] = field(default_factory=list)
-    done: list[Mapping[str, Any]] = field(default_factory=list)
+    done: Packed = field(default_factory=Packed)
     aside: list[Mapping[str, Any]] = field(default_factory=list)
     waiting: list[tuple[Path, str]] = field(default_factory=list)
     missing: list[tuple[str, str]] = field(default_factory=list)
-    kept: list[Mapping[str, Any]] = field(default_factory=list)
-    seen: dict[str, Path] = field(default_factory=dict)
-    folders: dict[str, frozenset[Path]] = field(default_factory=dict)
+    kept: Packed = field(default_factory=Packed)
+    seen: dict[str, str] = field(default_factory=dict)
+    folders: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
-    def log(self, log: Path, source: Source, content: tuple[str, str, str]) -> None:
+    def log(self, log: Path, source: Source, method: _Method) -> None:
         """Put one log where it belongs."""
         if _changes(log, self.pipeline.settle_s):
             self.waiting.append((log, f"changed less than {self.pipeline.settle_s:g} s ago (settle_s): a later run takes it"))
             return
-        task = _task(self.pipeline, source, log, self.hashes.of(log), content)
-        self.folders[str(log)] = self.folders.get(str(log), frozenset()) | {task.folder}
-        if (twin := self.seen.setdefault(task.key, log)) != log:
+        task = _task(self.pipeline, source, log, self.hashes.of(log), method)
+        self.folders[str(log)] = (*self.folders.get(str(log), ()), task.folder.name)
+        if (twin := self.seen.setdefault(task.key, str(log))) != str(log):
             self.waiting.append((log, f"same content as {twin}"))
         elif record := _finished(task, self.hashes.afresh):
             self.done.append(brief(record, self.pipeline.tolerances))
@@ -120,10 +122,10 @@ class _Sorting:
         else:
             self.todo.append(task)
 
-    def nothing_of(self, source: Source, base: Path, content: tuple[str, str, str]) -> None:
+    def nothing_of(self, source: Source, base: Path, method: _Method) -> None:
         """No log of a source is there: what is known of those that were there is kept."""
         for log, sha in self.hashes.below([discover.fixed(pattern, base) for pattern in source.logs]):
-            record = None if log.exists() else _finished(_task(self.pipeline, source, log, sha, content), False)
+            record = None if log.exists() else _finished(_task(self.pipeline, source, log, sha, method), False)
             if record:
                 self.kept.append(brief(record, self.pipeline.tolerances))
         gone = discover.absent(source.logs, base)
@@ -141,24 +143,23 @@ def plan(pipeline: Pipeline, base: Path, retry: bool = False, verify: bool = Fal
     sorting = _Sorting(pipeline, Hashes(pipeline.reports / HASHES, afresh=verify), retry)
     made_by = code_on_disk()
     for source in pipeline.source:
-        content = (*_content(source), made_by)
+        method = _method(pipeline, source, made_by)
         logs, unusable = discover.matching(source.logs, base)
         for path, reason in unusable.items():
             sorting.aside.append(_unusable(path, reason))
         for log in logs:
             try:
-                sorting.log(log, source, content)
+                sorting.log(log, source, method)
             except OSError as error:
                 sorting.aside.append(_unusable(log, f"cannot be read: {error.strerror}"))
         if not logs:
-            sorting.nothing_of(source, base, content)
+            sorting.nothing_of(source, base, method)
     _refuse_unknown_folders(pipeline, base, sorting)
     with suppress(Unwritable):  # it only saves reading; whoever writes a result on that disk is stopped, and says why
         sorting.hashes.save()
     todo, postponed = _in_a_night(sorting.todo, pipeline)
     return Plan(
-        tuple(todo), tuple(sorting.done), tuple(sorting.aside), tuple(sorting.waiting), tuple(sorting.missing), tuple(sorting.kept),
-        tuple(postponed), sorting.folders,
+        tuple(todo), sorting.done, tuple(sorting.aside), tuple(sorting.waiting), tuple(sorting.missing), sorting.kept, Packed(postponed), sorting.folders,
     )  # fmt: skip
 
 
@@ -199,20 +200,37 @@ def _unusable(path: Path, reason: str) -> Mapping[str, Any]:
     return {"log": name, "kind": "unreadable", "reason": f"{name}: {reason}", "next": "mend its name or its permissions", "exit_code": 3}
 
 
-def _task(pipeline: Pipeline, source: Source, log: Path, sha: str, content: tuple[str, str, str]) -> Task:
-    vehicle, profile, made_by = content
-    result = _hash(made_by, sha, profile)
-    keys, limits = [], tolerances.of_one_run(pipeline.tolerances)
+@dataclass(frozen=True, slots=True)
+class _Method:
+    """What the results of a source's logs depend on beside the logs: ``code``, and the digest ``results`` of all, vehicle, profile and options; and for
+    each step that of what it depends on, and its page."""
+
+    code: str
+    results: str
+    steps: tuple[tuple[str, str], ...]
+
+
+def _method(pipeline: Pipeline, source: Source, code: str) -> _Method:
+    vehicle, profile = _content(source)
     options: dict[str, tuple[Any, ...]] = {
         "ingest": (),
         "simulate": (vehicle, pipeline.model, pipeline.effects, pipeline.window_s),
         "compare": (vehicle, pipeline.model, pipeline.effects, pipeline.window_s),
         "diagnose": (vehicle, pipeline.model, pipeline.window_s, pipeline.calibration_slop),
     }
-    shown: dict[str, tuple[Any, ...]] = {"compare": (limits, pipeline.recordings), "diagnose": (pipeline.recordings,)}
+    shown: dict[str, tuple[Any, ...]] = {"compare": (_limits(pipeline), pipeline.recordings), "diagnose": (pipeline.recordings,)}
+    results, steps = _hash(code, profile), []
     for step in pipeline.steps:
-        result = _hash(result, step, *options[step])
-        keys.append((step, _hash(result, *shown.get(step, ()))))  # what only its own page shows makes no later step new
+        results = _hash(results, step, *options[step])
+        steps.append((step, _hash(results, *shown.get(step, ()))))  # what only its own page shows makes no later step new
+    return _Method(code, results, tuple(steps))
+
+
+def _limits(pipeline: Pipeline) -> tuple[str, ...]:
+    return tolerances.of_one_run(pipeline.tolerances)
+
+
+def _task(pipeline: Pipeline, source: Source, log: Path, sha: str, method: _Method) -> Task:
     return Task(
         log=log,
         sha256=sha,
@@ -222,14 +240,14 @@ def _task(pipeline: Pipeline, source: Source, log: Path, sha: str, content: tupl
         effects=pipeline.effects,
         window_s=pipeline.window_s,
         calibration_slop=pipeline.calibration_slop,
-        keys=tuple(keys),
+        keys=tuple((step, hashlib.sha256(f"{sha} {digest}".encode()).hexdigest()) for step, digest in method.steps),
         archive=pipeline.archive,
         reports=pipeline.reports,
         folder=pipeline.reports / f"{shortened(log.stem)}-{_hash(sha, source.profile, source.vehicle)[:8]}",
-        code=made_by,
-        method=_hash(made_by, profile, [(step, *options[step]) for step in pipeline.steps])[:12],
+        code=method.code,
+        method=method.results[:12],
         recordings=pipeline.recordings,
-        tolerances=limits,
+        tolerances=_limits(pipeline),
     )
 
 

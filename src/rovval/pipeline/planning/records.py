@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import json
-import sys
 from collections.abc import Mapping, Sequence, Set
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 from rovval.pipeline import tolerances
-from rovval.storage.atomic import json_text, read_json, read_json_with_text, write_text
+from rovval.storage.atomic import json_text, read_json, read_json_with_bytes, write_text
 from rovval.storage.contents import damage
 from rovval.storage.places import named
 
@@ -19,17 +19,16 @@ DIGEST = "digest"
 MARK, NO_DIGEST = f'"{DIGEST}": "', "0" * 64
 JUDGED = ("vehicle", "stops", "findings", "axes", "window")  # parts of a comparison's document by which a batch judges a run
 CHECKED = ("key", "files")  # facts of a step that only the plan asks for
-FREE = frozenset({"rmse", "mae", "iae", "mean_error", "unit"})  # of a free run, what the page and the catalogue tell of each axis,
-WINDOWED = frozenset({"rms", "iae", "unit"})  # and of windows
+TOLD = frozenset({"rms", "unit"})  # what the page and the catalogue tell of each axis, over windows
 
 
 def read_record(folder: Path) -> dict[str, Any] | None:
     """The record of the log whose reports lie in ``folder``; None where there is none or it is damaged."""
-    record, text = read_json_with_text(folder / RECORD)
+    record, content = read_json_with_bytes(folder / RECORD)
     if record is None:
         return None
     digest = record.pop(DIGEST, None)
-    if digest is not None and digest != _digest_of_text(text) and digest != _digest_of_older(record):  # one of a still older rovval has none
+    if digest is not None and digest != _digest_of_text(content) and digest != _digest_of_older(record):  # one of a still older rovval has none
         return None
     steps = record.get("steps")
     sound = isinstance(steps, dict) and all(isinstance(s, dict) and {"key", "outputs"} <= s.keys() for s in steps.values())
@@ -45,7 +44,7 @@ def write_record(folder: Path, record: Mapping[str, Any]) -> None:
     """Write it with its digest: that of its text, as a reader has it; that of its content took two thirds of the time of reading a record."""
     text = json_text({**record, DIGEST: NO_DIGEST})
     before, mark, after = text.rpartition(MARK)
-    write_text(folder / RECORD, before + mark + _digest_of_text(text) + after[len(NO_DIGEST) :])
+    write_text(folder / RECORD, before + mark + _digest_of_text(text.encode()) + after[len(NO_DIGEST) :])
 
 
 def read_quarantine(path: Path) -> dict[str, Any] | None:
@@ -55,15 +54,14 @@ def read_quarantine(path: Path) -> dict[str, Any] | None:
 
 
 def brief(record: Mapping[str, Any], limits: Sequence[str] = ()) -> Mapping[str, Any]:
-    """What of a record the summary, the catalogue and the page of a batch are made of, a tenth of it: a batch holds one of every log at once, and
-    the names that all of them have once. Metrics that ``limits``, the tolerances of the pipeline file, are about are kept as well."""
+    """What of a record the summary, the catalogue and the page of a batch are made of, a tenth of it: a batch holds one of every log at once. Metrics
+    that ``limits``, the tolerances of the pipeline file, are about are kept as well."""
     steps = {step: {name: fact for name, fact in facts.items() if name not in CHECKED} for step, facts in record["steps"].items()}
     for facts in steps.values():
         facts["outputs"] = [place for place in facts["outputs"] if place.endswith(".html")]
     if "compare" in steps:
-        steps["compare"] = _compared(steps["compare"], {limit.metric for limit in tolerances.parse(tolerances.of_one_run(limits))})
-    shared: Mapping[str, Any] = _interned({**record, "steps": steps})
-    return shared
+        steps["compare"] = _compared(steps["compare"], _metrics(tuple(limits)))
+    return {**record, "steps": steps}
 
 
 def judged(comparison: Mapping[str, Any]) -> dict[str, Any]:
@@ -80,22 +78,18 @@ def _numbers(axes: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Any]]
     return {axis: {name: value for name, value in row.items() if not isinstance(value, dict | list)} for axis, row in axes.items()}
 
 
+@cache
+def _metrics(limits: Sequence[str]) -> frozenset[str]:
+    return frozenset(limit.metric for limit in tolerances.parse(tolerances.of_one_run(limits)))
+
+
 def _compared(compared: Mapping[str, Any], asked: Set[str]) -> dict[str, Any]:
     whole = compared["comparison"]
     kept = {name: whole[name] for name in ("vehicle", "stops", "findings") if name in whole}
-    kept["axes"] = _only(whole["axes"], FREE.union(asked))
+    kept["axes"] = _only(whole["axes"], asked | {"unit"}) if asked else {}
     if window := whole.get("window"):
-        kept["window"] = {"seconds": window["seconds"], "axes": _only(window["axes"], WINDOWED.union(asked))}
+        kept["window"] = {"seconds": window["seconds"], "axes": _only(window["axes"], asked | TOLD)}
     return {**compared, "comparison": kept}
-
-
-def _interned(fact: Any) -> Any:
-    """The same with every text held once, however many records have it."""
-    if isinstance(fact, dict):
-        return {sys.intern(name): _interned(value) for name, value in fact.items()}
-    if isinstance(fact, list):
-        return [_interned(value) for value in fact]
-    return sys.intern(fact) if type(fact) is str else fact
 
 
 def _only(axes: Mapping[str, Mapping[str, Any]], names: Set[str]) -> dict[str, dict[str, Any]]:
@@ -109,10 +103,10 @@ def outputs_whole(step: Mapping[str, Any], reports: Path, digests: bool = False)
     return not damage(step["files"], reports, digests)
 
 
-def _digest_of_text(text: str) -> str:
+def _digest_of_text(content: bytes) -> str:
     """That of a record's text, of which its digest is the last entry, with zeros in the place of that."""
-    before, mark, after = text.rpartition(MARK)
-    return hashlib.sha256((before + mark + NO_DIGEST + after[len(NO_DIGEST) :]).encode()).hexdigest()
+    before, mark, after = content.rpartition(MARK.encode())
+    return hashlib.sha256(b"".join((before, mark, NO_DIGEST.encode(), after[len(NO_DIGEST) :]))).hexdigest()
 
 
 def _digest_of_older(record: Mapping[str, Any]) -> str:

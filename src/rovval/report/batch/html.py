@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -17,7 +17,7 @@ MOST_LISTED = 200  # rows of a list above the table; summary.json has all
 FAILED = ("crash", "internal")  # kinds of a quarantine record that are no refusal
 
 
-def text(summary: Mapping[str, Any], records: Sequence[Record], trends: Sequence[Trend] = ()) -> str:
+def text(summary: Mapping[str, Any], records: Iterable[Record], trends: Sequence[Trend] = ()) -> str:
     """The page of a batch's summary (rovval.summary/1), of the records of its runs (rovval.batch/1), new and unchanged, and of the trends of
     their vehicles."""
     rows, aside = _rows(summary, records), summary["quarantined"]
@@ -55,7 +55,7 @@ def text(summary: Mapping[str, Any], records: Sequence[Record], trends: Sequence
     )
 
 
-def _rows(summary: Mapping[str, Any], records: Sequence[Record]) -> list[Row]:
+def _rows(summary: Mapping[str, Any], records: Iterable[Record]) -> list[Row]:
     """In the order of the logs."""
     new = {done["log"] for done in summary["done"]}
     beyond: dict[str, list[str]] = {}
