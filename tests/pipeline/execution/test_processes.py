@@ -8,10 +8,11 @@ import time
 from pathlib import Path
 
 import batch_case
+import pytest
 from batch_case import counts, tasks_of
 
 from rovval.pipeline import batch
-from rovval.pipeline.execution.processes import execute
+from rovval.pipeline.execution.processes import THREADS, execute
 
 
 def test_a_worker_that_dies_takes_only_its_own_log_with_it(site):
@@ -71,3 +72,16 @@ def is_alive(process: int) -> bool:
         return False
     status = Path(f"/proc/{process}/stat")
     return not status.exists() or status.read_text().rpartition(")")[2].split()[0] != "Z"
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="threads are counted as Linux tells them")
+def test_a_worker_computes_with_one_thread(site):
+    """With one a core each, as many workers as cores are in each other's way."""
+    before = dict(os.environ)
+    code = "import sys, batch_case; from pathlib import Path; from rovval.pipeline.execution.processes import execute\n"
+    code += "[(_, done)] = execute(batch_case.tasks_of(Path(sys.argv[1]))[:1], batch_case.counting_threads, None, 1); print(done['record']['threads'])"
+    path = [str(Path(batch_case.__file__).parent), *sys.path]
+    environment = {name: value for name, value in before.items() if name not in THREADS} | {"PYTHONPATH": os.pathsep.join(path)}
+    done = subprocess.run([sys.executable, "-c", code, str(batch_case.write_pipeline(site))], env=environment, capture_output=True, text=True, check=True)
+    assert int(done.stdout) == 2, "the one that works, and the one that waits for the end of the batch"
+    assert os.environ == before

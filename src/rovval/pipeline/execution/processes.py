@@ -11,6 +11,7 @@ import signal
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
@@ -67,17 +68,29 @@ def execute(
 def _hire(context: Any, work: Work) -> _Worker:
     mine, theirs = context.Pipe()
     process = context.Process(target=_serve, args=(theirs, work), daemon=True)
-    process.start()
+    with _one_thread_each():
+        process.start()
     theirs.close()
     return _Worker(process, mine)
+
+
+@contextmanager
+def _one_thread_each() -> Iterator[None]:
+    """What is started within computes with one thread, unless the user says otherwise: a worker that finds it in its environment only when it is at
+    work has loaded numpy by then, with a thread for every core of the machine."""
+    ours = [name for name in THREADS if name not in os.environ]
+    os.environ.update(dict.fromkeys(ours, "1"))
+    try:
+        yield
+    finally:
+        for name in ours:
+            os.environ.pop(name, None)
 
 
 def _serve(pipe: Connection, work: Work) -> None:
     """The worker's life: a task in, its outcome out, until the other end is closed or gone."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_leave_with_parent, daemon=True).start()
-    for name in THREADS:
-        os.environ.setdefault(name, "1")
     while True:
         try:
             task = pipe.recv()
