@@ -50,6 +50,19 @@ def test_the_first_screen_is_sixty_words_for_one_cause_and_ninety_for_two() -> N
         assert all(first_screen(one)) and all(first_screen(two))
 
 
+@pytest.mark.parametrize(
+    ("kinds", "said"),
+    [
+        (("file",), "Correct this number in the vehicle's file: `--write-vehicle FILE.toml` writes it."),
+        (("file", "file"), "Correct these numbers in the vehicle's file: `--write-vehicle FILE.toml` writes them."),
+        (("file", "effect"), "Write the mended vehicle with `--write-vehicle FILE.toml` and compare again."),
+    ],
+)
+def test_what_to_do_next_fits_all_of_the_causes(kinds: tuple[str, ...], said: str) -> None:
+    causes = [make_diagnosis()["causes"][0] | {"kind": kind} for kind in kinds]
+    assert first_screen(diagnosis(causes=causes, next_experiment=None)).next == said
+
+
 def test_the_first_screen_says_what_where_which_how_far_and_what_to_do_next() -> None:
     said = first_screen(diagnosis(verdict="explained"))
     assert said.what == "One effect explains the gap: Axial inflow loss."
@@ -108,7 +121,7 @@ def test_a_formula_that_helps_little_is_not_offered() -> None:
     ],
 )
 def test_an_unknown_gap_says_which_kind_of_answer_is_the_most_probable(likely: str, said: str, then: str) -> None:
-    left = {"axes": ["surge", "yaw"], "depends_on": ["u"], "share": 0.42}
+    left = {"axes": ["yaw", "surge"], "depends_on": ["u"], "share": 0.42}  # told in the order of the gap
     p = dict.fromkeys(SURE, 0.1 / 3) | {likely: 0.9}
     d = null(0.1, 0.1, verdict="unknown", left=left, probabilities=p)
     assert said in answer(d) and then in first_screen(d).next

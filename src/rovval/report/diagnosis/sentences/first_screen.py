@@ -75,8 +75,9 @@ def next_step(d: Diagnosis) -> str:
         return f"Fly {d.manoeuvre.name if d.manoeuvre else plan.manoeuvre.rstrip('.')}: it tells them apart."
     if d.calibration:
         return "Write the vehicle with its numbers tuned (the command stands below) and diagnose again with it."
-    if any(c.kind == "file" for c in d.causes):
-        return "Correct this number in the vehicle's file: `--write-vehicle FILE.toml` writes it."
+    if d.causes and all(c.kind == "file" for c in d.causes):
+        these, them = ("these numbers", "them") if len(d.causes) > 1 else ("this number", "it")
+        return f"Correct {these} in the vehicle's file: `--write-vehicle FILE.toml` writes {them}."
     if d.causes:
         return "Write the mended vehicle with `--write-vehicle FILE.toml` and compare again."
     return no_cause.next_step(d)

@@ -36,14 +36,14 @@ def unknown(d: Diagnosis) -> str:
         return f"There is a gap that nothing here explains: {known(d)} account for only {per_cent(d.left.accounted)} of it, and no effect for the rest."
     if likely == "file":
         return f"No single cause: many numbers of the vehicle's file seem to be off at once{sure}."
-    return f"There is a gap, and no effect of the library is its cause: something else is at work{sure}{_acting(d.left)}."
+    return f"There is a gap, and no effect of the library is its cause: something else is at work{sure}{_acting(d)}."
 
 
 def unexplained(d: Diagnosis) -> str:
     """What is left unexplained: a force that is surely at work, or a gap that nothing accounts for; empty where nothing is left."""
     if d.left is None:
         return ""
-    return d.left.text or (_force(d.left) if d.left.accounted is None else _open(d, d.left.accounted))
+    return d.left.text or (_force(d, d.left) if d.left.accounted is None else _open(d, d.left.accounted))
 
 
 def nearest(d: Diagnosis) -> str:
@@ -89,12 +89,18 @@ def known(d: Diagnosis) -> str:
     return f"{NOISE} and a calibration tolerance of {per_cent(d.calibration_slop)}" if d.calibration_slop else NOISE
 
 
-def _acting(left: Unexplained | None) -> str:
-    return f", most in {listed(left.axes)}" if left and left.axes else ""
+def _acting(d: Diagnosis) -> str:
+    return f", most in {listed(_axes(d, d.left))}" if d.left and d.left.axes else ""
 
 
-def _force(left: Unexplained) -> str:
-    text = f"a force in {listed(left.axes)} that nothing in the library explains"
+def _axes(d: Diagnosis, left: Unexplained) -> list[str]:
+    """The axes of what is left; without any cause those of the gap, and then in the order in which "Where" has them."""
+    share = {axis: row.share for axis, row in d.gap.axes.items()}
+    return list(left.axes) if d.causes else sorted(left.axes, key=lambda axis: -share.get(axis, 0.0))
+
+
+def _force(d: Diagnosis, left: Unexplained) -> str:
+    text = f"a force in {listed(_axes(d, left))} that nothing in the library explains"
     text += f"; it varies with {listed(left.depends_on)}" if left.depends_on else ""
     return text + (f", and with a formula for it the error {falls(left.share)}" if remaining(left.share) <= WORTH_A_FORMULA else "")
 
