@@ -1,7 +1,7 @@
-"""Constancy of a cause: a true cause has one size all through the log, the nearest relative of another effect has not.
+"""Constancy of a cause: a true cause has mostly one size all through the log, the nearest relative of another effect has not.
 
 The model in which the size of a cause varies from window to window about its mean (a hierarchical model; Gelman and Hill 2007, chapter 11) stands beside
-the one in which it is constant. A constant cause that is only nearly right does not vary so (development logs: of 40 right causes none had evidence for it).
+the one in which it is constant. A constant cause that is only nearly right hardly ever varies so (of some 70 right causes on three plants, three did).
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ beside causes (model discrepancy: Kennedy and O'Hagan 2001).
 No log tells two explanations apart that predict the same; they share its probability by their priors. Most of what the library lacks looks like something of
 it (`LIBRARY_ALIKE`): so something else has a part of the mass of every set of causes, and no cause is ever certain. And what the equations of causes are off
 by may look like one more cause (`FORM_ALIKE`): so the probability that a cause is at work shares the mass of each set with the set without the cause that
-adds least.
+adds least. A cause that would have to vary along the log may be that cause in another form, or something else that comes near it: the two are as likely.
 
 The set that is named has as many causes as is most probable, and of such sets it is the one that the true one is expected to share the most causes with
 (centroid estimator: Carvalho and Lawrence 2008). The most probable single set may hold a cause that most of the others do without.
@@ -18,6 +18,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, log
+
+import numpy as np
 
 from rovval.diagnose.criteria import (
     FORM_ALIKE,
@@ -127,7 +129,7 @@ def probabilities(
             of causes.
         forces: evidence of something else on the healthy vehicle, over it; its prior among such forces included.
         beside: the same of something else beside sets of causes, over these.
-        varying: the same of a cause that varies along the log, over the set that it is of.
+        varying: the same of a cause that varies along the log, over the set that it is of; half of it is something else, half that cause in another form.
     """
     best = _best_of_each_set(models)
     doubt = log(PRIOR_SOMETHING_ELSE / PRIOR_HEALTHY)
@@ -137,7 +139,10 @@ def probabilities(
     filed = log(PRIOR_FILE / PRIOR_HEALTHY)
     known |= {("filed", names): best[names].log_prior + filed + 0.5 * evidence for names, evidence in file.items()}
     known["else", frozenset()] = nothing.log_posterior + doubt + 0.5 * forces
-    known |= {("varying", names): best[names].log_posterior + doubt + 0.5 * more for names, more in varying.items()}
+    for names, more in varying.items():  # as likely that cause in another form, something else beside it, as what only comes near it
+        half = best[names].log_posterior + doubt + 0.5 * more - log(2.0)
+        known["varying", names] = half
+        known["beside", names] = float(np.logaddexp(known.get(("beside", names), -np.inf), half))
     top = max(known.values())
     weight = {key: exp(value - top) for key, value in known.items()}
     total = sum(weight.values())
