@@ -29,13 +29,14 @@ const loaded = async ({ contentWindow: inner }) => {
   try { const result = await look(inner, inner.document); say({ result, failed: inner.failed }); } catch (error) { say({ failed: [String(error.stack)] }); }
 };
 </script>
-<iframe src="inner" style="width:WIDTHpx;height:900px;border:0" onload="loaded(this)"></iframe></body>"""
+<iframe src="innerVIEW" style="width:WIDTHpx;height:900px;border:0" onload="loaded(this)"></iframe></body>"""
 
 
-def found(page: str, script: str, folder: Path, width: int = 1200, dark: bool = False) -> Any:
+def found(page: str, script: str, folder: Path, width: int = 1200, dark: bool = False, view: str = "") -> Any:
     """What ``script``, the body of an async function of ``window`` and ``document``, returns in a page that is so many pixels ``width`` and on which
-    nothing fails. ``folder`` takes the browser's profile."""
-    pages = {"/": OUTER.replace("SCRIPT", script).replace("WIDTH", str(width)), "/inner": page.replace("<head>", f"<head>{ERRORS}", 1)}
+    nothing fails. ``folder`` takes the browser's profile; ``view`` stands behind the # of the address."""
+    outer = OUTER.replace("SCRIPT", script).replace("WIDTH", str(width)).replace("VIEW", f"#{view}" if view else "")
+    pages = {"/": outer, "/inner": page.replace("<head>", f"<head>{ERRORS}", 1)}
     said = Queue[dict[str, Any]]()
 
     class Site(BaseHTTPRequestHandler):

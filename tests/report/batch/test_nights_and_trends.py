@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
-import subprocess
 from typing import Any
 
 import numpy as np
 import pytest
+from browser_case import found, in_browser
 from catalogue_case import row
 from page_case import check_html
 
 from rovval.pipeline.keeping import summary
 from rovval.report.batch import html as batch_html
 from rovval.trend import trends
-
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 
 
 def record(number: int, vehicle: str = "merlin", surge: float = 0.05) -> dict[str, Any]:
@@ -60,19 +57,23 @@ def test_each_vehicle_has_a_curve_an_axis_and_a_sentence_for_what_changes():
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(CHROMIUM is None, reason="no chromium on this machine")
+@in_browser
 def test_a_browser_searches_filters_orders_and_hides_columns(tmp_path):
     records = [record(n, ("merlin", "minerva")[n % 2], 0.001 * (n % 100 + 1)) for n in range(300)]
-    (tmp_path / "index.html").write_text(batch_html.text(document(records[:3], records[3:]), records), encoding="utf-8")
+    page = batch_html.text(document(records[:3], records[3:]), records)
+    script = """
+    for (let k = 0; k < 50 && !document.querySelector("table.runs.whole"); k++) await pause(100);
+    const table = document.querySelector("table.runs"), column = [...table.tHead.rows[0].cells].findIndex((th) => th.dataset.title === "length");
+    const shown = [...table.tBodies[0].rows].filter((row) => !row.hidden);
+    const names = shown.map((row) => row.cells[0].textContent.trim().slice(0, 5)), drawn = shown.filter((row) => row.getClientRects().length);
+    return { names, drawn: drawn.length, hides: window.getComputedStyle(table.tHead.rows[0].cells[column]).display === "none" };
+    """
 
     def rows(view: str) -> list[str]:
-        command = [str(CHROMIUM), "--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=5000", "--dump-dom"]
-        done = subprocess.run([*command, f"file://{tmp_path}/index.html#{view}"], capture_output=True, text=True, check=True, timeout=120)
-        body = done.stdout.partition('class="tools"')[2]
-        assert re.search(r'<table class="[^"]*\bruns whole\b', body), "rows below the first screens are drawn once those stand"
-        column = re.findall(r'data-title="(.*?)"', body).index("length") + 1
-        assert (f"tr > :nth-child({column}) {{ display: none }}" in done.stdout) == ("hide=length" in view)
-        return re.findall(r"(d\d{4})-ab", "".join(re.findall(r"<tr>.*?</tr>", body, re.DOTALL)))
+        seen = found(page, script, tmp_path, view=view)
+        assert seen["drawn"] == len(seen["names"]), "rows below the first screens are drawn once those stand"
+        assert seen["hides"] == ("hide=length" in view)
+        return list(seen["names"])
 
     assert len(rows("")) == 300
     assert set(rows("q=d0007+merlin")) == set() and set(rows("q=D0007+minerva")) == {"d0007"}
