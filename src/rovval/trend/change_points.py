@@ -27,6 +27,7 @@ KINDS: tuple[Kind, ...] = ("step", "ramp")
 TAILS = 4.0  # degrees of freedom of the errors
 CORRELATIONS = (0.0, 0.25, 0.5, 0.75)  # from one dive to the next: the same site, load or pilot; as likely each
 MOST_PLACES = 120  # dives at which a change is tried: of a longer series every second, third, ...
+AT_ONCE = 16  # places that are tried together: all of them take 300 MB for ten thousand dives
 ROUNDS = 12  # of reweighted least squares; the evidence then moves by less than 0.1
 ALIKE = 1e-9  # columns of which less than this share of their squares differs are one
 NORMAL_90 = 1.6449  # half-width of a 90 % interval in standard deviations
@@ -73,8 +74,8 @@ def _pair(t: Array, y: Array, chosen: Sequence[Begin], least: float, prior_odds:
     if len(y) < len(chosen) + 6 or len(places) < 2:
         return []
     given = _design(t, chosen)
-    apart = np.eye(len(y)) - given @ np.linalg.pinv(given)
-    columns = apart @ np.stack([_column(t, kind, j) for kind, j in places], axis=1)
+    columns = np.stack([_column(t, kind, j) for kind, j in places], axis=1)
+    columns -= given @ (np.linalg.pinv(given) @ columns)  # what is apart from those chosen
     gram, along = columns.T @ columns, columns.T @ y
     own = np.diag(gram)
     det = own[:, None] * own[None] - gram**2
@@ -98,9 +99,10 @@ def _one_more(t: Array, y: Array, chosen: Sequence[Begin], least: float) -> Chan
     places = _begin_places(t, chosen)
     if len(y) < given.shape[1] + 3 or not places:  # level, scatter and the size of the change leave no dive to judge by
         return None
-    designs = np.stack([np.column_stack([given, _column(t, kind, j)]) for kind, j in places])
     before = _evidence(given[None], y, least)[0]
-    log_evidence, size, spread = _evidence(designs, y, least)
+    parts = [places[i : i + AT_ONCE] for i in range(0, len(places), AT_ONCE)]
+    designs = (np.stack([np.column_stack([given, _column(t, kind, j)]) for kind, j in part]) for part in parts)
+    log_evidence, size, spread = map(np.concatenate, zip(*(_evidence(design, y, least) for design in designs), strict=True))
     prior = np.array([-log(len(KINDS) * sum(k == kind for k, _ in places)) for kind, _ in places])
     joint = log_evidence + prior[:, None]  # (places, correlations)
     weight = np.exp(joint - joint.max())
