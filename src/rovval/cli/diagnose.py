@@ -51,6 +51,7 @@ def command(
     start: options.FromOption = None,
     end: options.ToOption = None,
     archive: options.ArchiveOption = Path("archive"),
+    pictures: options.PicturesOption = False,
     quiet: options.QuietOption = False,
 ) -> None:
     """Say where the gap lies, which effect of the library causes it, and how far it shrinks with it on held-out data.
@@ -84,7 +85,8 @@ def command(
     for line in found.runs_left_out:
         output.say(f"left out: {line}", quiet)
     _print(found, json_, quiet)
-    _write(found, runs[0], nominal, _folder(out, json_, runs[0].id), write_vehicle, quiet)
+    log = logs.with_pictures(sources[0]) if pictures else None
+    _write(found, runs[0], nominal, _folder(out, json_, runs[0].id), write_vehicle, quiet, log)
 
 
 def _folder(out: Path | None, json_: Path | None, run: str) -> Path | None:
@@ -119,12 +121,12 @@ def _print(found: Diagnosis, json_: Path | None, quiet: bool) -> None:
         output.say(f"written: {json_}", quiet)
 
 
-def _write(found: Diagnosis, run: Run, nominal: Vehicle, folder: Path | None, mended: Path | None, quiet: bool) -> None:
+def _write(found: Diagnosis, run: Run, nominal: Vehicle, folder: Path | None, mended: Path | None, quiet: bool, log: Path | None) -> None:
     """The report with the recording of the first run, and the mended vehicle, each where it was asked for."""
     from rovval.storage.atomic import write_text
 
     if folder is not None:
-        _report(found, run, nominal, folder)
+        _report(found, run, nominal, folder, log)
         output.say(f"written: {folder}", quiet)
     if mended is not None and not found.vehicle_fixed:
         output.say(f"{mended} not written: no cause was found that could be added to the vehicle")
@@ -133,7 +135,7 @@ def _write(found: Diagnosis, run: Run, nominal: Vehicle, folder: Path | None, me
         output.say(f"written: {mended}", quiet)
 
 
-def _report(found: Diagnosis, run: Run, nominal: Vehicle, folder: Path) -> None:
+def _report(found: Diagnosis, run: Run, nominal: Vehicle, folder: Path, log: Path | None) -> None:
     """The report; where the whole run cannot be simulated as a recording needs it, without one, and that is said: the diagnosis is not lost for it."""
     from rovval import report
     from rovval.core.errors import BadInput, SimulationStopped
@@ -142,7 +144,7 @@ def _report(found: Diagnosis, run: Run, nominal: Vehicle, folder: Path) -> None:
     links = {"Comparison": "../report.html"} if (folder.parent / "report.html").is_file() else {}
     try:
         before, after = before_and_after(found, run, nominal)
-        report.write_diagnosis(found, folder, before, nominal, after, links)
+        report.write_diagnosis(found, folder, before, nominal, after, links, log)
     except (BadInput, SimulationStopped) as error:
         output.say(f"no recording: {error.message}")
         report.write_diagnosis(found, folder, links=links)

@@ -42,6 +42,11 @@ def opened(source: str, how: Reading, quiet: bool = False) -> Run:
     return run
 
 
+def with_pictures(source: str) -> Path | None:
+    """The log file or folder at ``source``, of which a recording takes the pictures; None for a run of the archive, which has none."""
+    return Path(source) if Path(source).exists() else None
+
+
 def checked_against(run: Run, vehicle: Vehicle, quiet: bool = False) -> Run:
     """The run beside the vehicle's file: what it exceeds there is among its findings, and said on stderr."""
     from rovval.pipeline import steps

@@ -90,6 +90,7 @@ EffectOption = Annotated[
 ]
 WindowOption = Annotated[float, typer.Option("--window", metavar="S", min=0.5, help="Length of the restarted windows, s.")]
 JsonFlag = Annotated[bool, typer.Option("--json", help="Print only the machine-readable result on stdout.")]
+PicturesOption = Annotated[bool, typer.Option("--pictures", help="Camera and sonar pictures of a bag into its recording, too.")]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No messages or progress on stderr.")]
 FailAbove = Annotated[
     list[str] | None,

@@ -27,7 +27,7 @@ def command(
     web: Annotated[bool, typer.Option("--web", help="Serve it to a browser, where there is no display; Ctrl-C ends it.")] = False,
     quiet: options.QuietOption = False,
 ) -> None:
-    """Open a run and its simulation in the rerun viewer: velocities, errors, thrusters, both trajectories in 3-D.
+    """Open a run and its simulation in the rerun viewer: velocities, errors, thrusters, both trajectories in 3-D, and camera and sonar pictures of a bag.
 
     \b
     Example:
@@ -45,7 +45,7 @@ def command(
     run = logs.opened(source, logs.Reading(profile, archive, timezone, start, end), quiet)
     nominal = vehicle_of(run, vehicle)
     comparison = compare(run, simulated(run, nominal, model.value, tuple(effect or ()), 10.0))
-    files = report.write(comparison, out or Path("reports") / run.id, nominal)
+    files = report.write(comparison, out or Path("reports") / run.id, nominal, log=logs.with_pictures(source))
     output.result(str(files["run.rrd"]))
     if open_:
         output.say("serving the viewer to a browser; Ctrl-C ends it" if web else "opening the viewer; close it to return", quiet)

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 def write(
     comparison: Comparison, folder: Path, vehicle: Vehicle, corrected: SimResult | None = None, recorded: bool = True, limits: Sequence[Tolerance] = (),
-    links: Mapping[str, str] | None = None,
+    links: Mapping[str, str] | None = None, log: Path | None = None,
 ) -> Mapping[str, Path]:  # fmt: skip
     """Write report.json, report.md, report.html and, where it is to be ``recorded``, run.rrd into ``folder``, whole or not at all; name -> path.
 
     ``corrected`` is a simulation of the same run with the effects of a diagnosis in it, whose report has or will have the recording in the same
     ``folder``: the recording's third trace. ``limits`` are the tolerances that were stated, ``links`` the pages that belong to this
-    one, by what they are called, relative to ``folder``.
+    one, by what they are called, relative to ``folder``. The recording carries camera and sonar pictures of the ``log``, if it is given.
     """
     from rovval.report.common.files import Writer, write_all
     from rovval.report.comparison import html, json, markdown
@@ -34,7 +34,7 @@ def write(
         "report.html": html.text(comparison, recorded or corrected is not None, limits, links),
     }
     if recorded:
-        files["run.rrd"] = lambda path: recording.write(comparison, path, vehicle, corrected)
+        files["run.rrd"] = lambda path: recording.write(comparison, path, vehicle, corrected, log=log)
     return write_all(folder, files)
 
 
@@ -45,11 +45,12 @@ def write_diagnosis(
     vehicle: Vehicle | None = None,
     corrected: SimResult | None = None,
     links: Mapping[str, str] | None = None,
+    log: Path | None = None,
 ) -> Mapping[str, Path]:
     """Write diagnosis.json, diagnosis.md and diagnosis.html into ``folder``, whole or not at all; name -> path.
 
     With a comparison and its vehicle it also writes run.rrd, which carries the diagnosis, with the corrected simulation as its third trace.
-    ``links`` as of `write`.
+    ``links`` and ``log`` as of `write`.
     """
     from rovval.report.common.files import Writer, write_all
     from rovval.report.comparison import json
@@ -67,7 +68,7 @@ def write_diagnosis(
         "diagnosis.html": diagnosis_html.text(diagnosis, comparison, corrected, comparison is not None and vehicle is not None, links),
     }
     if comparison is not None and vehicle is not None:
-        files["run.rrd"] = lambda path: recording.write(comparison, path, vehicle, corrected, diagnosis)
+        files["run.rrd"] = lambda path: recording.write(comparison, path, vehicle, corrected, diagnosis, log)
     return write_all(folder, files)
 
 

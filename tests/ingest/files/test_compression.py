@@ -89,7 +89,7 @@ def test_utf_16_with_and_without_a_mark(tmp_path, plain, order):
     assert len(log.channels["u"].values) == 300 and log.findings == ()
 
 
-@pytest.mark.parametrize(("name", "content"), [("dive.csv", bytes(range(256)) * 100), ("dive.csv.gz", gzip.compress(bytes(4000)))])
+@pytest.mark.parametrize(("name", "content"), [("dive.csv", bytes(range(256)) * 100), ("dive.csv.gz", gzip.compress(bytes(4000)))], ids=["csv", "gz"])
 def test_binary_content_is_refused(tmp_path, name, content):
     (tmp_path / name).write_bytes(content)
     with pytest.raises(BadInput, match="is binary"):

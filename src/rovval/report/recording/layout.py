@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 from rovval.core.channels import AXES
@@ -9,11 +11,13 @@ from rovval.core.data import Comparison
 from rovval.report.comparison import words
 
 GROUND = (16, 21, 27)  # of all views, as the page's in the dark: the viewer may be light, and the measured motion is white
+NONE: Mapping[str, str] = MappingProxyType({})
 EYE = (-1.6, -1.4, -1.1)  # of the vehicle's longest side: from astern, to port and above, with room for its arrows (chosen)
 
 
-def blueprint(comparison: Comparison, body: str, corrected: bool, longest: float, diagnosed: bool = False) -> Any:
-    """World, vehicle with its thrusts (the ``body`` that they are drawn on, ``longest`` m) and notes left; the curves in tabs right."""
+def blueprint(comparison: Comparison, body: str, corrected: bool, longest: float, diagnosed: bool = False, pictures: Mapping[str, str] = NONE) -> Any:
+    """World, vehicle with its thrusts (the ``body`` that they are drawn on, ``longest`` m) and notes left; the curves in tabs right, and ``pictures``
+    by their topics, each the entity that they stand in."""
     import rerun.blueprint as rrb
 
     c = comparison
@@ -30,6 +34,9 @@ def blueprint(comparison: Comparison, body: str, corrected: bool, longest: float
     if c.sim.thrusters:
         thrusters = [_curves("/thruster/speed", "speed, rpm"), _curves("/thruster/force", "force, N")]
         tabs.append(rrb.Vertical(*thrusters, name="Thrusters"))
+    if pictures:
+        views = [rrb.Spatial2DView(origin=place, name=topic) for topic, place in pictures.items()]
+        tabs.append(rrb.Grid(*views, name="Pictures"))
     if diagnosed:
         lanes = rrb.StateTimelineView(origin="/state", name="What holds when", time_view=_whole_run())
         log = rrb.TextLogView(origin="/log", name="In words")

@@ -19,7 +19,7 @@ from rovval.core.units import DEGREES
 from rovval.report.comparison import words
 from rovval.report.diagnosis.sentences.first_screen import first_screen
 from rovval.report.drawings.hues import hues, rgb
-from rovval.report.recording import diagnosed, world
+from rovval.report.recording import diagnosed, pictures, world
 from rovval.report.recording.layout import blueprint
 
 if TYPE_CHECKING:
@@ -30,14 +30,16 @@ ROOM = 1 << 20  # bytes; rerun does not say why it could not write, and on a dis
 
 
 def write(
-    comparison: Comparison, path: Path, vehicle: Vehicle, corrected: SimResult | None = None, diagnosis: Diagnosis | None = None
+    comparison: Comparison, path: Path, vehicle: Vehicle, corrected: SimResult | None = None, diagnosis: Diagnosis | None = None, log: Path | None = None
 ) -> None:
-    """Write the recording to ``path``; ``corrected`` is a second simulation, with the effects that a ``diagnosis`` found, which is told beside it."""
+    """Write the recording to ``path``; ``corrected`` is a second simulation, with the effects that a ``diagnosis`` found, which is told beside it; pictures
+    of cameras and sonars are taken from the ``log``."""
     import rerun as rr
 
     c, run = comparison, comparison.run
+    seen = {topic: pictures.entity(topic) for topic in pictures.topics(log)}
     stream = rr.RecordingStream("rovval", recording_id=run.id, send_properties=False)
-    layout = blueprint(c, "measured" if world.is_placed(c) else "free run", corrected is not None, max(vehicle.body.size), diagnosis is not None)
+    layout = blueprint(c, "measured" if world.is_placed(c) else "free run", corrected is not None, max(vehicle.body.size), diagnosis is not None, seen)
     stream.save(path, default_blueprint=layout)
     banner = " SYNTHETIC" if words.synthetic(c) else ""
     stream.send_recording_name(f"{run.id} ({c.sim.model}){banner}")
@@ -49,6 +51,8 @@ def write(
     _thrusters(stream, clock, c.sim)
     notes = world.draw(stream, clock, c, vehicle, corrected)
     told = list(first_screen(diagnosis)) if diagnosis else []
+    if log and seen:
+        notes += pictures.draw(stream, run, log)
     if diagnosis:
         diagnosed.draw(stream, c, diagnosis, vehicle)
     lines = [f"# {run.id}", words.synthetic(c), *told, *words.sentences(c), *(f"- {n}" for n in notes)]
