@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-import os
 import shutil
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ from typing import Any
 from rovval.blind.sealed.folder import COMMIT, Folder, engine_hash, write
 from rovval.blind.sealed.make import now
 from rovval.blind.sealed.sealing import digest, digest_of_files
+from rovval.core.environment import environment
 from rovval.core.errors import RovvalError, UsageProblem
 
 PROFILE = "merlin"  # the layout of every log of the plant
@@ -106,16 +106,6 @@ def _done(place: Folder, engine: str) -> set[str]:
     return {row["log"] for row in found}
 
 
-@contextmanager
-def one_thread_each() -> Iterator[None]:
+def one_thread_each() -> AbstractContextManager[None]:
     """Processes that are started within use one thread each."""
-    before = {name: os.environ.get(name) for name in ONE_THREAD}
-    os.environ.update(dict.fromkeys(ONE_THREAD, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
+    return environment(dict.fromkeys(ONE_THREAD, "1"))

@@ -11,16 +11,17 @@ import signal
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any
 
+from rovval.core.environment import environment
 from rovval.pipeline.execution.worker import Outcome
 from rovval.pipeline.planning.plan import Task
 
 Work = Callable[[Task], Outcome]
+# Of a worker each is 1 unless the user says otherwise. It has to find them when it starts: later numpy has a thread for every core of the machine.
 THREADS = ("POLARS_MAX_THREADS", "NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
 
 
@@ -68,23 +69,10 @@ def execute(
 def _hire(context: Any, work: Work) -> _Worker:
     mine, theirs = context.Pipe()
     process = context.Process(target=_serve, args=(theirs, work), daemon=True)
-    with _one_thread_each():
+    with environment({name: "1" for name in THREADS if name not in os.environ}):
         process.start()
     theirs.close()
     return _Worker(process, mine)
-
-
-@contextmanager
-def _one_thread_each() -> Iterator[None]:
-    """What is started within computes with one thread, unless the user says otherwise: a worker that finds it in its environment only when it is at
-    work has loaded numpy by then, with a thread for every core of the machine."""
-    ours = [name for name in THREADS if name not in os.environ]
-    os.environ.update(dict.fromkeys(ours, "1"))
-    try:
-        yield
-    finally:
-        for name in ours:
-            os.environ.pop(name, None)
 
 
 def _serve(pipe: Connection, work: Work) -> None:

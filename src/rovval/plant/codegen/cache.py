@@ -131,9 +131,10 @@ def _compile(function: Any, spec: Spec, arguments: tuple[Any, ...]) -> None:
         function(0, 0, *arguments)
     else:
         with _alone(name):
-            if not _intact(name):  # nobody else has made it meanwhile
+            if _intact(name):  # another process has made it meanwhile
+                function(0, 0, *arguments)
+            else:
                 _compile_anew(function, spec, arguments)
-            function(0, 0, *arguments)
     _compiled.add(spec.name)
 
 
