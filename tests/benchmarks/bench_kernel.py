@@ -133,13 +133,23 @@ def held(slot: Slot) -> bool:
     return not {*effects.load(slot.effect).needs, slot.parameter.needs} & set(ABSENT)
 
 
+def away(slot: Slot, share: float) -> float:
+    """A parameter by a share of its typical size from where it changes nothing, to the side on which there is room."""
+    p = slot.parameter
+    return p.null + share * p.typical if p.null + share * p.typical <= p.high else p.null - share * p.typical
+
+
+def instead_of_channels(plant: Plant, slot: Slot) -> list[int]:
+    """What of the same hypothesis stands in the place of a channel that the log of `inputs` does not hold: without it the hypothesis is refused."""
+    return [i for i, other in enumerate(plant.slots) if other.hypothesis == slot.hypothesis and other.parameter.instead_of]
+
+
 def everything(plant: Plant):
     """A little of every effect whose channel the log holds, in every lane."""
     beta = plant.null.copy()
     for c, slot in enumerate(plant.slots):
-        p = slot.parameter
         if held(slot):
-            beta[c] = p.null + 0.01 * p.typical if p.null + 0.01 * p.typical <= p.high else p.null - 0.01 * p.typical
+            beta[c] = away(slot, 0.01)
     return beta
 
 
@@ -223,8 +233,8 @@ def test_whole_calls(lanes):
     screen = np.tile(plant.null, (lanes, 1))
     for b in range(lanes):
         c = b % len(plant.slots)
-        p = plant.slots[c].parameter
-        screen[b, c] = min(p.null + p.typical, p.high) if held(plant.slots[c]) else p.null
+        for i in (c, *instead_of_channels(plant, plant.slots[c])):
+            screen[b, i] = away(plant.slots[i], 1.0) if held(plant.slots[i]) else plant.null[i]
     plant.simulate(log, start, 100, zero, zero, screen)
     took = best(lambda: plant.simulate(log, start, 100, zero, zero, screen), 3, time.perf_counter)
     print(f"{lanes:6} stretches of 10 s, every slot in turn: {took * 1e3:9.2f} ms")
