@@ -48,6 +48,16 @@ def test_a_tolerance_is_no_diagnosis():
     assert any(parts[0].plant.slots[s].effect == "thruster_astern" for s in tolerance_prior(parts[0].plant, 0.05).sd)
 
 
+def test_in_still_water_nothing_of_the_water_competes():
+    """Where the profile says so (`water = "still"`): a tank has neither current nor waves, whatever they would explain."""
+    run = own((), 5, 100.0)
+    for properties, there in (({}, True), ({"water": "still"}, False)):
+        parts, _ = cut([replace(run, properties=properties)], merlin(), "fossen", 10.0)
+        library, untestable = hypotheses(parts)
+        assert any(h.effect.place == "water" for h in library) is there
+        assert ("current_constant" in untestable and "stands still" in untestable["current_constant"]) is not there
+
+
 @pytest.mark.parametrize("logged", [True, False])
 def test_a_seabed_is_searched_for_below_the_log_where_no_altitude_says_where_it_is(logged: bool):
     run = own((), 5, 120.0)

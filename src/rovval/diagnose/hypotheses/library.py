@@ -48,7 +48,10 @@ def hypotheses(windows: Sequence[Windows], without: Sequence[str] = (), hints: H
 
 
 def _untestable(effect: effects.Effect, windows: Sequence[Windows]) -> str:
-    """Why the logs cannot test an effect: a channel that it needs is missing, or never near enough; "" where they can."""
+    """Why the logs cannot test an effect: a channel that it needs is missing, or never near enough, or the water that would have to move stands still by the
+    word of their source; "" where they can."""
+    if effect.place == "water" and all(part.run.properties.get("water") == "still" for part in windows):
+        return "the water stands still, as the profile of these logs says"
     if missing := [c for c in effect.needs if not _logged(windows, c)]:
         return f"needs {', '.join(missing)}, which this log does not hold"
     for p in (p for p in effect.parameters if p.instead_of):

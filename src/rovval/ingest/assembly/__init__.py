@@ -51,7 +51,7 @@ def build(
     if profile.draft:
         detail = "its units, frames and channels are guesses that nobody has reviewed: confirm them and delete the line `draft`"
         found.insert(0, Finding("draft_profile", profile.name, detail))
-    facts = {"profile_sha256": profile.sha256, **properties}
+    facts = {"profile_sha256": profile.sha256, **({"water": profile.water} if profile.water else {}), **properties}
     series: dict[str, Series] = {}
     sources: dict[str, Source] = {}
     for name, signal in signals:

@@ -112,7 +112,7 @@ class Clock(BaseModel):
 
 
 # Keys that came after the first archives: they count for the digest where they are set, so that the ids of runs stay as they were.
-LATER = {"source": ("sign_from", "world"), "time": ("since", "date_order", "timezone"), "profile": ("ardusub_frame", "draft", "header", "markers")}
+LATER = {"source": ("sign_from", "world"), "time": ("since", "date_order", "timezone"), "profile": ("ardusub_frame", "draft", "header", "markers", "water")}
 
 
 class Profile(BaseModel):
@@ -141,6 +141,8 @@ class Profile(BaseModel):
     """The guesses of `rovval profile propose` that nobody has reviewed yet: every run says so. Delete it once each line is confirmed."""
     relative_heading: bool = False
     """The heading counts from the start while the position is in fixed axes; the constant between them is found from the log and reported."""
+    water: Literal["still"] | None = None
+    """`still`: a tank or a basin, where nothing but the vehicle moves the water: a diagnosis of these logs asks for no current and no waves."""
     time: Clock
     """Where the stamps come from: the keys of `[time]`."""
     channels: dict[str, Source] = Field(min_length=1)
