@@ -18,7 +18,7 @@ from rovval.plant.arguments import checked
 from rovval.plant.codegen.layout import RATE_LIMIT, SPEED_LIMIT
 from rovval.plant.inputs import Inputs, prepare
 from rovval.plant.integration import Integrator, Starts
-from rovval.plant.lowering import lower
+from rovval.plant.lowering import lower, rows_at_rest
 from rovval.plant.sensor_delay import Clock, Delay, true_start
 from rovval.vehicle.model import Vehicle
 
@@ -67,6 +67,7 @@ class Plant:
         self.hypotheses: Mapping[str, tuple[int, ...]] = MappingProxyType(groups)
         late = platform.engine.time_constant(vehicle) if platform.engine else 0.0
         self.nominal = replace(nominal(self.simulated), vehicle=vehicle, lag=np.array([late]))
+        self._resting = rows_at_rest(self.nominal, self.index, self.null)
         self.integrator = Integrator(self.simulated, substeps, platform.engine)
 
     def steps(self, dt: float) -> int:
@@ -97,7 +98,7 @@ class Plant:
         start, nu0, eta0, beta, which, gain = checked(self.slots, self.null, thrusters, inputs, start, steps, nu0, eta0, beta, extra, extra_gain)
         prepared = prepare(inputs, self.vehicle)
         first, numbers = _in_a_row(beta)
-        lowered = lower(self.nominal, self.slots, self.index, self.null, beta[first])
+        lowered = lower(self.nominal, self.slots, self.index, self.null, beta[first], self._resting)
         starts = Starts(start, *sensors.unobserve(self.vehicle, self.index, self.null, beta, nu0, eta0), which, gain, numbers)
         motion = partial(self.integrator.motion, inputs, prepared, lowered, self.integrator.packed(lowered, inputs.dt, starts))
         delays = sensors.delays(self.index, self.null, beta)
