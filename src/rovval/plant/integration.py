@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,17 +25,19 @@ GAP, NOTHING = 4, 5  # reasons for which a lane stops (`rovval.plant.model.REASO
 
 @dataclass(frozen=True, slots=True)
 class Starts:
-    """Where each lane begins: sample of the log (B,), true ``nu`` and ``eta`` there (B, 6), which extra wrench acts (B,) (-1: none) and its factor."""
+    """Where each lane begins: sample of the log (B,), true ``nu`` and ``eta`` there (B, 6), which extra wrench acts (B,) (-1: none) and its factor;
+    ``numbers`` (B,): which of the parameter vectors that were lowered it has."""
 
     sample: Indices
     nu: Array
     eta: Array
     which: Indices
     gain: Array
+    numbers: Indices
 
     def take(self, part: Indices) -> Starts:
         """Some of the lanes."""
-        return Starts(self.sample[part], self.nu[part], self.eta[part], self.which[part], self.gain[part])
+        return Starts(self.sample[part], self.nu[part], self.eta[part], self.which[part], self.gain[part], self.numbers[part])
 
 
 class Integrator:
@@ -52,48 +55,59 @@ class Integrator:
         """Steps of the integration in a sample of ``dt`` s."""
         return self.substeps if self.engine is None else max(1, round(dt / self.engine.step))
 
-    def motion(self, inputs: Inputs, prepared: Prepared, lowered: Lowered, starts: Starts, steps: int) -> tuple[Array, Indices, Indices]:
-        """True motion (B, steps + 1, 12): u v w p q r, x y z phi theta psi; first invalid sample (B,) (-1: none) and its reason (B,)."""
-        full = lowered.full | (starts.which >= 0)
+    def motion(
+        self, inputs: Inputs, prepared: Prepared, lowered: Lowered, packed: Mapping[bool, Array], starts: Starts, steps: int
+    ) -> tuple[Array, Indices, Indices]:
+        """True motion (B, steps + 1, 12): u v w p q r, x y z phi theta psi; first invalid sample (B,) (-1: none) and its reason (B,).
+
+        ``packed``: the numbers of ``lowered`` for each kernel that some lane needs, as `packed` has them.
+        """
+        full = self._full(lowered, starts)
         if full.all() or not full.any():
-            return self._some_lanes(inputs, prepared, lowered, starts, steps, bool(full.any()))
+            return self._some_lanes(inputs, prepared, lowered, packed, starts, steps, bool(full.any()))
         out = np.empty((len(full), steps + 1, 12))
         stopped, codes = np.empty(len(full), dtype=np.int64), np.empty(len(full), dtype=np.int64)
         for kind in (False, True):
             part = np.flatnonzero(full == kind)
-            out[part], stopped[part], codes[part] = self._some_lanes(inputs, prepared, lowered.take(part), starts.take(part), steps, kind)
+            out[part], stopped[part], codes[part] = self._some_lanes(inputs, prepared, lowered, packed, starts.take(part), steps, kind)
         return out, stopped, codes
 
     def _some_lanes(
-        self, inputs: Inputs, prepared: Prepared, lowered: Lowered, starts: Starts, steps: int, full: bool
+        self, inputs: Inputs, prepared: Prepared, lowered: Lowered, packed: Mapping[bool, Array], starts: Starts, steps: int, full: bool
     ) -> tuple[Array, Indices, Indices]:
-        return self.one_kernel(self.packed(lowered, inputs.dt, full), lowered, prepared, starts, inputs.dt, inputs.hold, steps, full)
+        numbers = blocked(packed[full][starts.numbers])
+        return self.one_kernel(numbers, lowered, prepared, starts, inputs.dt, inputs.hold, steps, full)
+
+    def _full(self, lowered: Lowered, starts: Starts) -> NDArray[np.bool_]:
+        """Lanes (B,) that need the kernel with every effect in it."""
+        return np.asarray(lowered.full[starts.numbers] | (starts.which >= 0))
 
     def _spec(self, full: bool) -> Spec:
         return Spec(self.thrusters, self._dense, self._advance, full, self.engine.share if self.engine else 0.0)
 
-    def packed(self, lowered: Lowered, dt: float, full: bool) -> Array:
-        """Numbers of the lanes as `one_kernel` takes them, with every effect in the kernel (``full``) or none."""
-        return blocked(pack(lowered, self._spec(full), dt, self.steps(dt)))
+    def packed(self, lowered: Lowered, dt: float, starts: Starts) -> dict[bool, Array]:
+        """Numbers (P, rows) of every parameter vector that was lowered, for the kernels with every effect (True) and with none, as far as lanes need them."""
+        return {full: pack(lowered, self._spec(full), dt, self.steps(dt)) for full in np.unique(self._full(lowered, starts)).tolist()}
 
     def one_kernel(
         self, numbers: Array, lowered: Lowered, prepared: Prepared, starts: Starts, dt: float, hold: bool, steps: int, full: bool
     ) -> tuple[Array, Indices, Indices]:
-        """As `motion`, all lanes by one kernel, from numbers that are `packed` already."""
+        """As `motion`, all lanes by one kernel, from the numbers of each, `packed` and `blocked`."""
         spec = self._spec(full)
         size, blocks = len(starts.sample), -(-len(starts.sample) // W)
-        late, onset = _payload(lowered.lanes, spec, blocks)
+        lanes = lowered.lanes.take(starts.numbers) if lowered.lanes.payload_mass.any() else None
+        late, onset = _payload(lanes, spec, blocks)
         states = blocked(np.concatenate([starts.eta[:, :3], quaternion_from_euler(starts.eta[:, 3:]), starts.nu], axis=1))
         out = np.empty((blocks * W, steps + 1, 12))
         stopped, reason = np.full((blocks, W), -1), np.zeros((blocks, W), dtype=np.int64)
         gap = prepared.steps_before_gap(starts.sample, hold)
-        nothing = steps_before_nothing(lowered.lanes, prepared.t[starts.sample], dt)
+        nothing = gap if lanes is None else steps_before_nothing(lanes, prepared.t[starts.sample], dt)
         limit = np.minimum(gap, nothing)
         cache.run(
-            spec, blocks,
+            spec, blocks, steps * self.steps(dt),
             (
-                numbers, _some(lowered.acts), late, onset, states, _flat(starts.sample), _flat(limit), _flat(starts.which, -1), _flat(starts.gain),
-                prepared.speed, prepared.log, prepared.t, prepared.extra, *self._geometry, dt, hold, steps, self.steps(dt),
+                numbers, _some(lowered.acts[starts.numbers]), late, onset, states, _flat(starts.sample), _flat(limit), _flat(starts.which, -1),
+                _flat(starts.gain), prepared.speed, prepared.log, prepared.t, prepared.extra, *self._geometry, dt, hold, steps, self.steps(dt),
                 out, stopped, reason,
             ),
         )  # fmt: skip
@@ -123,10 +137,10 @@ def _some(acts: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return np.asarray(padded.reshape(-1, W, count).any(axis=1))
 
 
-def _payload(lanes: Lanes, spec: Spec, blocks: int) -> tuple[Array, Array]:
-    """Mass numbers after a payload's onset, and the onsets (s; infinite where there is none)."""
+def _payload(lanes: Lanes | None, spec: Spec, blocks: int) -> tuple[Array, Array]:
+    """Mass numbers after a payload's onset, and the onsets (s; infinite where there is none); None where no lane has one."""
     onset = np.full(blocks * W, np.inf)
-    if not lanes.payload_mass.any():
+    if lanes is None:
         return np.zeros((blocks, 1)), onset.reshape(blocks, W)
     onset[: len(lanes)] = np.where(lanes.payload_mass != 0, lanes.payload_onset, np.inf)
     return blocked(mass_numbers(with_payload(lanes), spec)), onset.reshape(blocks, W)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,42 +44,59 @@ def active_effects(found: tuple[slots.Slot, ...], null: Array, beta: Array) -> f
     return frozenset(found[c].effect for c in np.flatnonzero((beta != null).any(axis=0)))
 
 
-def lower(nominal: Lanes, found: tuple[slots.Slot, ...], index: Mapping[str, int], null: Array, beta: Array) -> Lowered:
-    """Lower ``beta`` (B, K) from one ``nominal`` lane. An effect that no lane has is not even called."""
+def lower(
+    nominal: Lanes, found: tuple[slots.Slot, ...], index: Mapping[str, int], null: Array, beta: Array, resting: Mapping[str, Array] | None = None
+) -> Lowered:
+    """Lower ``beta`` (B, K) from one ``nominal`` lane. An effect that no lane has is not even called; its rows are those of ``resting`` where
+    `rows_at_rest` was called before."""
     active, vehicle = active_effects(found, null, beta), nominal.vehicle
     lanes = nominal.repeated(len(beta))
+    given = {name: slots.gather(vehicle, index, name, beta) for name in effects.names() if name in active}
+    for name, p in given.items():
+        if hasattr(effects.module(name), "lower"):
+            lanes = effects.module(name).lower(lanes, p)
+    rows = dict(rows_at_rest(nominal, index, null) if resting is None else resting)
+    for name, p in given.items():
+        rows |= _rows(name, lanes, p)
+    return Lowered(lanes, rows, active, _full(found, null, beta), _acts(found, null, beta))
+
+
+def rows_at_rest(nominal: Lanes, index: Mapping[str, int], null: Array) -> dict[str, Array]:
+    """Rows of every effect at its null value, for one lane, under ``effect.row``."""
     rows: dict[str, Array] = {}
     for name in effects.names():
-        if name not in active:
-            continue
-        module, p = effects.module(name), slots.gather(vehicle, index, name, beta)
-        if hasattr(module, "lower"):
-            lanes = module.lower(lanes, p)
-    for name in effects.names():
-        own, _ = effect_rows(name)
-        if not own:
-            continue
-        p = slots.gather(vehicle, index, name, beta if name in active else null[None])
-        values = effects.module(name).rows(lanes if name in active else nominal, p)
-        for row in own:
-            rows[f"{name}.{row}"] = values[row]
-    return Lowered(lanes, rows, active, _full(found, null, beta), _acts(found, null, beta))
+        if effect_rows(name)[0]:
+            rows |= _rows(name, nominal, slots.gather(nominal.vehicle, index, name, null[None]))
+    return rows
+
+
+def _rows(name: str, lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
+    """An effect's own rows; none where it has none."""
+    own, _ = effect_rows(name)
+    values = effects.module(name).rows(lanes, p) if own else {}
+    return {f"{name}.{row}": values[row] for row in own}
 
 
 def _full(found: tuple[slots.Slot, ...], null: Array, beta: Array) -> Flags:
     """Lanes (B,) that need the kernel with every effect in it: some effect acts on more than the numbers of the nominal one."""
-    beyond = {name for name in effects.names() if any(hasattr(effects.module(name), kind) for kind in (*HOOKS, "FULL_KERNEL"))}
+    beyond = _beyond_numbers()
     columns = [c for c, slot in enumerate(found) if slot.effect in beyond]
     return np.asarray((beta[:, columns] != null[columns]).any(axis=1))
+
+
+@cache
+def _beyond_numbers() -> frozenset[str]:
+    """Effects that act on more than the numbers of the nominal kernel."""
+    return frozenset(name for name in effects.names() if any(hasattr(effects.module(name), kind) for kind in (*HOOKS, "FULL_KERNEL")))
 
 
 def _acts(found: tuple[slots.Slot, ...], null: Array, beta: Array) -> Flags:
     """Which of the effects that a kernel can pass over each lane has (B, E)."""
     away, names = beta != null, switches()
     out = np.zeros((len(beta), len(names)), dtype=bool)
-    for c, slot in enumerate(found):
-        if slot.effect in names:
-            out[:, names[slot.effect]] |= away[:, c]
+    for c in np.flatnonzero(away.any(axis=0)):
+        if found[c].effect in names:
+            out[:, names[found[c].effect]] |= away[:, c]
     return out
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from types import MappingProxyType
 
 import numpy as np
@@ -15,14 +16,15 @@ from rovval.effects.log import Log
 from rovval.plant import platforms, sensors, slots
 from rovval.plant.arguments import checked
 from rovval.plant.codegen.layout import RATE_LIMIT, SPEED_LIMIT
-from rovval.plant.inputs import Inputs, Prepared, prepare
+from rovval.plant.inputs import Inputs, prepare
 from rovval.plant.integration import Integrator, Starts
-from rovval.plant.lowering import Lowered, lower
+from rovval.plant.lowering import lower, rows_at_rest
 from rovval.plant.sensor_delay import Clock, Delay, true_start
 from rovval.vehicle.model import Vehicle
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
+Course = Callable[[Starts, int], tuple[Array, Indices, Indices]]  # of lanes and steps, their motion as `Integrator.motion` has it
 REASONS = (
     "", f"speed above {SPEED_LIMIT:g} m/s", f"rate above {RATE_LIMIT:g} rad/s", "state not finite", "thruster speed missing in the log",
     "the payload that was set down leaves no inertia")  # fmt: skip
@@ -65,6 +67,7 @@ class Plant:
         self.hypotheses: Mapping[str, tuple[int, ...]] = MappingProxyType(groups)
         late = platform.engine.time_constant(vehicle) if platform.engine else 0.0
         self.nominal = replace(nominal(self.simulated), vehicle=vehicle, lag=np.array([late]))
+        self._resting = rows_at_rest(self.nominal, self.index, self.null)
         self.integrator = Integrator(self.simulated, substeps, platform.engine)
 
     def steps(self, dt: float) -> int:
@@ -94,35 +97,41 @@ class Plant:
         thrusters = len(self.vehicle.thruster)
         start, nu0, eta0, beta, which, gain = checked(self.slots, self.null, thrusters, inputs, start, steps, nu0, eta0, beta, extra, extra_gain)
         prepared = prepare(inputs, self.vehicle)
-        lowered = lower(self.nominal, self.slots, self.index, self.null, beta)
-        starts = Starts(start, *sensors.unobserve(self.vehicle, self.index, self.null, beta, nu0, eta0), which, gain)
+        first, numbers = _in_a_row(beta)
+        lowered = lower(self.nominal, self.slots, self.index, self.null, beta[first], self._resting)
+        starts = Starts(start, *sensors.unobserve(self.vehicle, self.index, self.null, beta, nu0, eta0), which, gain, numbers)
+        motion = partial(self.integrator.motion, inputs, prepared, lowered, self.integrator.packed(lowered, inputs.dt, starts))
         delays = sensors.delays(self.index, self.null, beta)
-        starts, before, after = self._behind(delays, inputs, prepared, lowered, starts) if delays else (starts, np.empty((len(start), 0, 12)), 0)
-        out, stopped, codes = self.integrator.motion(inputs, prepared, lowered, starts, steps + after)
-        out, first = np.concatenate([before, out], axis=1) if delays else out, before.shape[1]
+        starts, before, after = self._behind(delays, inputs, motion, starts) if delays else (starts, np.empty((len(start), 0, 12)), 0)
+        out, stopped, codes = motion(starts, steps + after)
+        out, led = np.concatenate([before, out], axis=1) if delays else out, before.shape[1]
         seen = sensors.overwritten(
             self.vehicle, self.index, self.null, beta,
-            Log(out[..., :6], out[..., 6:], inputs.dt, nu0, eta0, first),
+            Log(out[..., :6], out[..., 6:], inputs.dt, nu0, eta0, led),
         )  # fmt: skip
         stopped = np.where(stopped > steps, -1, stopped)
         why = tuple(f"lane {b} stopped at {stopped[b] * inputs.dt:.1f} s: {REASONS[codes[b]]}" for b in np.flatnonzero(stopped >= 0))
-        window = slice(first, first + steps + 1)
+        window = slice(led, led + steps + 1)
         return Motion(seen.nu[:, window], seen.eta[:, window], stopped, why)
 
-    def _behind(
-        self, delays: Sequence[Delay], inputs: Inputs, prepared: Prepared, lowered: Lowered, starts: Starts
-    ) -> tuple[Starts, Array, int]:
+    def _behind(self, delays: Sequence[Delay], inputs: Inputs, motion: Course, starts: Starts) -> tuple[Starts, Array, int]:
         """The lanes at their true first states behind sensors that are late, the samples before those (B, m, 12), and how many samples beyond the
         windows sensors that are early show."""
 
         def simulate(some: Indices, start: Indices, state: Array, steps: int) -> tuple[Array, Indices]:
             there = replace(starts.take(some), sample=start, nu=state[:, :6], eta=state[:, 6:])
-            out, stopped, _ = self.integrator.motion(inputs, prepared, lowered.take(some), there, steps)
+            out, stopped, _ = motion(there, steps)
             return out, stopped
 
         clock = Clock(simulate, inputs.dt, len(inputs.speed))
         state, before, after = true_start(clock, starts.sample, np.concatenate([starts.nu, starts.eta], axis=1), delays)
         return replace(starts, nu=state[:, :6], eta=state[:, 6:]), before, after
+
+
+def _in_a_row(beta: Array) -> tuple[Indices, Indices]:
+    """The first lane (P,) of each row of neighbours with equal parameters ``beta`` (B, K), and the row (B,) that each lane is of."""
+    begins = np.concatenate([[True], (beta[1:] != beta[:-1]).any(axis=1)])
+    return np.flatnonzero(begins), np.cumsum(begins) - 1
 
 
 def parse_settings(plant: Plant, settings: Sequence[str]) -> Array:

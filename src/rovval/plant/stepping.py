@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from rovval.plant import slots
 from rovval.plant.inputs import FAR, Prepared
-from rovval.plant.integration import Starts
+from rovval.plant.integration import Starts, blocked
 from rovval.plant.lowering import lower
 from rovval.plant.model import REASONS, Plant
 
@@ -38,7 +38,8 @@ class Stepper:
         back = int(LAG_MEMORY * lanes.lag.max() / dt) + 1 + int(np.ceil(np.abs(lanes.shift).max() / dt)) if lanes.lag.any() or lanes.shift.any() else 0
         self._speed = np.zeros((size, back + 2, k))
         self._full = bool(self._lowered.full.any())
-        self._numbers = self._integrator.packed(self._lowered, dt, self._full)
+        packed = self._integrator.packed(self._lowered, dt, self._starts(np.zeros(size, dtype=np.int64)))
+        self._numbers = blocked(packed[self._full])
 
     def step(self, speed: Array, altitude: Array | None = None) -> None:
         """One sample on, the thrusters turning linearly from their last speed to ``speed`` (B, k) rev/s; ``altitude`` (B,) m, where effects ask for it."""
@@ -50,7 +51,7 @@ class Stepper:
             log[:, 0] = np.repeat(altitude, rows)
         t = np.tile((self._step - (rows - 2) + np.arange(rows)) * self._dt, size)
         prepared = Prepared(self._speed.reshape(size * rows, k), log, t, np.zeros((1, 1, 6)), np.full(size * rows, size * rows))
-        starts = Starts(first, self.nu, self.eta, np.full(size, -1), np.ones(size))
+        starts = self._starts(first)
         out, stopped, codes = self._integrator.one_kernel(self._numbers, self._lowered, prepared, starts, self._dt, False, 1, self._full)
         self._step += 1
         here = (self.stopped < 0) & (stopped >= 0)
@@ -58,3 +59,8 @@ class Stepper:
             self.why[b] = f"stopped at {self._step * self._dt:.1f} s: {REASONS[codes[b]]}"
         self.stopped = np.where(here, self._step, self.stopped)
         self.nu, self.eta = out[:, 1, :6], out[:, 1, 6:]
+
+    def _starts(self, sample: NDArray[np.int64]) -> Starts:
+        """Every lane where it is now, at the samples ``sample`` (B,) of a log."""
+        size = len(self.nu)
+        return Starts(sample, self.nu, self.eta, np.full(size, -1), np.ones(size), np.arange(size))

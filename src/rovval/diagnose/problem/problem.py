@@ -173,7 +173,7 @@ def equations_of(problem: Problem, beta: Array, linear: Sequence[Whitened]) -> t
 
 
 def equations_with_frozen(problem: Problem, beta: Array, linear: Sequence[Whitened]) -> NormalEquations | None:
-    """Normal equations about ``beta`` (k,), parity with them, by one simulation of every window: the sensitivities are those of ``linear``.
+    """Normal equations of all windows in one about ``beta`` (k,), parity with them, by one simulation: the sensitivities are those of ``linear``.
 
     None where a window that ran at ``linear`` stops at ``beta``.
     """
@@ -182,9 +182,10 @@ def equations_with_frozen(problem: Problem, beta: Array, linear: Sequence[Whiten
         r, ran = residual(windows, beta)
         if not ran[one.valid].all():
             return None
-        found.append(one.normal_equations(r))
-    dynamics = concatenated(found)
-    return dynamics + _parity_at(problem, beta, dynamics.columns)
+        found.append(one.normal_equations(r).summed())
+    columns = found[0].columns
+    parity = [check.normal_equations(beta, columns, problem.design_effect, summed=True) for check in problem.parity]
+    return concatenated([*found, *parity]).summed()
 
 
 def corrected_residuals(problem: Problem, beta: Array | None = None) -> list[Array]:

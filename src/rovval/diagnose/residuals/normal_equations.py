@@ -39,6 +39,10 @@ class NormalEquations:
         where = {column: i for i, column in enumerate(self.columns)}
         return np.array([where[s] for s in slots], dtype=int)
 
+    def summed(self) -> NormalEquations:
+        """Those of all windows in one (1, ...)."""
+        return replace(self, A=self.A.sum(axis=0, keepdims=True), b=self.b.sum(axis=0, keepdims=True), c=self.c.sum(keepdims=True))
+
     def __add__(self, other: NormalEquations) -> NormalEquations:
         A = np.add(self.A, other.A, out=zeros(*self.A.shape))
         return NormalEquations(A, self.b + other.b, self.c + other.c, self.columns, self.offset)
@@ -57,6 +61,18 @@ def concatenated(parts: list[NormalEquations]) -> NormalEquations:
 
 
 @dataclass(frozen=True, slots=True)
+class WhitenedColumns:
+    """Sensitivities ``x`` (m, n c, k) over the standard errors of the samples, and ``y`` = q^T x (m, s, k) for the nuisances q of `Whitened`."""
+
+    x: Array
+    y: Array
+
+    def onto(self, scaled: Array, z: Array) -> Array:
+        """S^T V^-1 r (m, k) of residuals over the standard errors ``scaled`` (m, n c), ``z`` = q^T r (m, s)."""
+        return _onto(self.x, scaled) - _onto(self.y, z)
+
+
+@dataclass(frozen=True, slots=True)
 class Whitened:
     """A linearisation in the metric V = diag(variance) + J Sigma0 J^T, from which normal equations of many residuals are quick.
 
@@ -64,8 +80,9 @@ class Whitened:
         r, J, columns, valid: as of `Linearisation`.
         root: inverse standard error of each sample (m, n c); 0 where nothing was measured.
         q: nuisances (m, n c, s) over the standard errors, orthogonalised so that S^T V^-1 S = x^T x - y^T y.
-        x: sensitivities (m, n c, k) over the standard errors.
-        y: q^T x (m, s, k).
+        blocks: sensitivities to the k columns and maybe to others, some of them shared with other linearisations; those in a window that is not
+            ``valid`` are none.
+        place: where each of the columns stands in the blocks, one behind the other (k,).
         A: S^T V^-1 S (m, k, k).
     """
 
@@ -75,8 +92,8 @@ class Whitened:
     valid: np.ndarray
     root: Array
     q: Array
-    x: Array
-    y: Array
+    blocks: tuple[WhitenedColumns, ...]
+    place: np.ndarray
     A: Array
 
     @property
@@ -84,15 +101,22 @@ class Whitened:
         """The linearisation itself; sensitivities are 0 where nothing was measured."""
         m, n, c = self.r.shape
         S = columns_first(m, n, c, columns=len(self.columns))
-        for to, x, root in zip(S, self.x, self.root, strict=True):
-            to[:] = (x / np.where(root > 0, root, 1.0)[:, None]).reshape(to.shape)
-        return Linearisation(self.r, S, self.J, self.columns, self.valid)
+        for w in np.flatnonzero(self.valid):
+            root = np.where(self.root[w] > 0, self.root[w], 1.0)
+            x = np.concatenate([block.x[w].T for block in self.blocks])[self.place].T
+            S[w] = (x / root[:, None]).reshape(n, c, -1)
+        return Linearisation(self.r, S, self._where_valid(self.J), self.columns, self.valid)
 
     def normal_equations(self, r: Array) -> NormalEquations:
         """Normal equations of other residuals ``r`` (m, n, c) with these sensitivities."""
         scaled = r.reshape(self.root.shape) * self.root
-        z = _onto(self.q, scaled)
-        return NormalEquations(self.A, _onto(self.x, scaled) - _onto(self.y, z), (scaled**2).sum(axis=1) - (z**2).sum(axis=1), self.columns)
+        z = self._where_valid(_onto(self.q, scaled))
+        b = self._where_valid(np.concatenate([block.onto(scaled, z) for block in self.blocks], axis=1)[:, self.place])
+        return NormalEquations(self.A, b, (scaled**2).sum(axis=1) - (z**2).sum(axis=1), self.columns)
+
+    def _where_valid(self, values: Array) -> Array:
+        """Values of every window (m, ...), zero in windows that stop."""
+        return values if self.valid.all() else np.where(self.valid.reshape(-1, *[1] * (values.ndim - 1)), values, 0.0)
 
 
 def normal_equations(linear: Linearisation, ok: np.ndarray, variance: Array, spread: Array) -> NormalEquations:
@@ -117,29 +141,29 @@ def normal_equations(linear: Linearisation, ok: np.ndarray, variance: Array, spr
 def whiten(linear: Linearisation, ok: np.ndarray, variance: Array, spread: Array) -> Whitened:
     """A linearisation in the metric, kept for normal equations with further residuals; arguments as of `normal_equations`."""
     m, n, k = len(linear.r), linear.r[0].size, linear.S.shape[-1]
-    root, q, x, y, A = np.empty((m, n)), zeros(m, n, len(spread)), columns_first(m, n, columns=k), np.empty((m, len(spread), k)), zeros(m, k, k)
+    root, q, x = np.empty((m, n)), columns_first(m, n, columns=len(spread)), columns_first(m, n, columns=k)
+    y, A = np.empty((m, len(spread), k)), zeros(m, k, k)
     for w in range(m):
         root[w], q[w], x[w], y[w] = _window(linear, w, ok, variance, spread)
         A[w] = x[w].T @ x[w] - y[w].T @ y[w]
-    return Whitened(linear.r, linear.J, linear.columns, linear.valid, root, q, x, y, A)
+    return Whitened(linear.r, linear.J, linear.columns, linear.valid, root, q, (WhitenedColumns(x, y),), np.arange(k), A)
 
 
 def with_frozen_columns(own: Linearisation, other: Whitened, columns: tuple[int, ...]) -> Whitened:
     """A linearisation with further ``columns`` whose sensitivities, and those to the nuisances, are taken from another one at a point nearby."""
-    place, k, m = [other.columns.index(c) for c in columns], len(own.columns), len(own.r)
-    x = columns_first(m, other.root.shape[1], columns=k + len(place))
-    mine = x[..., :k] = own.S.reshape(*other.root.shape, k) * other.root[..., None]
-    for to, there in zip(x, other.x, strict=True):
-        to[:, k:] = there[:, place]
-    y = np.concatenate([_gram(other.q, mine), other.y[..., place]], axis=-1)
-    A = zeros(m, k + len(place), k + len(place))
-    A[:, k:, k:] = other.A[:, place][..., place]
-    A[:, :k] = _gram(mine, x) - _gram(y[..., :k], y)
-    A[:, k:, :k] = np.swapaxes(A[:, :k, k:], 1, 2)
-    J, q = other.J, other.q
-    if not own.valid.all():  # the other's slopes there are of a window that ran
-        J, q, x, y, A = (np.where(own.valid.reshape(-1, *[1] * (a.ndim - 1)), a, 0.0) for a in (J, q, x, y, A))
-    return Whitened(own.r, J, (*own.columns, *columns), own.valid, other.root, q, x, y, A)
+    there, k, m = np.array([other.columns.index(c) for c in columns], dtype=int), len(own.columns), len(own.r)
+    x = columns_first(m, other.root.shape[1], columns=k)
+    x[:] = own.S.reshape(*other.root.shape, k) * other.root[..., None]
+    mine = WhitenedColumns(x, _gram(other.q, x))
+    place = np.concatenate([np.arange(k), k + other.place[there]])
+    A = zeros(m, k + len(there), k + len(there))
+    A[:, k:, k:] = other.A[:, there][..., there]
+    if k:
+        products = np.concatenate([_gram(x, block.x) - _gram(mine.y, block.y) for block in (mine, *other.blocks)], axis=-1)
+        A[:, :k] = products[..., place]
+        A[:, k:, :k] = np.swapaxes(A[:, :k, k:], 1, 2)
+    A[~own.valid] = 0.0  # the other's slopes there are of a window that ran
+    return Whitened(own.r, other.J, (*own.columns, *columns), own.valid, other.root, other.q, (mine, *other.blocks), place, A)
 
 
 def _window(linear: Linearisation, w: int, ok: np.ndarray, variance: Array, spread: Array) -> tuple[Array, Array, Array, Array]:

@@ -79,15 +79,16 @@ class ParityResiduals:
             signatures[..., self.columns.index(column)] = self._scaled(slope[..., keep])
         return self.rows - self._scaled(caused[..., keep]), signatures
 
-    def normal_equations(self, beta: Array, columns: tuple[int, ...], design_effect: float) -> NormalEquations:
+    def normal_equations(self, beta: Array, columns: tuple[int, ...], design_effect: float, summed: bool = False) -> NormalEquations:
         """Normal equations of the parity residuals about ``beta`` (p,) in ``columns``, times ``design_effect`` over their own: beside the dynamics, one
-        common design effect then suits both.
+        common design effect then suits both. ``summed``: of all windows in one.
 
         But for delays, residuals are linear in the sensors' parameters, r(beta) = r - T beta, so that with A = T'T, b = T'r and c = r'r at the null values
         b(beta) = b - A beta and c(beta) = c - beta'(b + b(beta)). A factor s makes the measured velocity 1 + s times the true one; the residual is one of the
         measured velocity, of which the fault is s / (1 + s), with derivative 1 / (1 + s)^2. Columns without a signature are zero.
         """
-        null, m, k = self._about_delays(beta), len(self.equations.c), len(columns)
+        null = self._about_delays(beta).summed() if summed else self._about_delays(beta)
+        m, k = len(null.c), len(columns)
         given = np.where(self.is_delay, 0.0, beta[list(null.columns)])
         taken = np.where(self.is_factor, given / (1.0 + given), given)
         slope = np.where(self.is_factor, (1.0 + given) ** -2, 1.0)

@@ -28,6 +28,7 @@ from rovval.plant.codegen.text import render
 from rovval.storage import lock
 
 ROOT = Path(__file__).parent
+WORTH_A_THREAD = 2_000  # steps of a block, some 5 ms: a thread costs a tenth of a millisecond
 
 
 def cache_folder() -> Path:
@@ -108,12 +109,12 @@ def threads() -> int:
 _compiled: set[str] = set()
 
 
-def run(spec: Spec, blocks: int, arguments: tuple[Any, ...]) -> None:
-    """Run the kernel over all blocks; ``arguments`` are those of `rovval.plant.codegen.kernel.run` after ``first, last``."""
+def run(spec: Spec, blocks: int, steps: int, arguments: tuple[Any, ...]) -> None:
+    """Run the kernel over all blocks, ``steps`` of integration each; ``arguments`` are those of `rovval.plant.codegen.kernel.run` after ``first, last``."""
     function = module(spec).run
     if spec.name not in _compiled:
         _compile(function, spec, arguments)
-    workers = min(threads(), blocks)
+    workers = min(threads(), blocks, blocks * steps // WORTH_A_THREAD)
     if workers <= 1:
         function(0, blocks, *arguments)
         return
