@@ -26,6 +26,7 @@ class Posterior:
         whitened: linearisation of each run in the metric of the likelihood; empty where it was dropped.
         dynamics, total: normal equations without and with parity.
         precision: of each column's prior (k,), times the tempering.
+        tempering: what squared residuals are divided by (`problem.Problem.tempering`).
         departure: of each column from the mean of its prior (k,).
         bound_side: -1 and 1 for a column on its lower and upper bound, else 0 (k,).
         tangent_only: columns that are moved in the linearisation and not in the simulation (k,).
@@ -38,6 +39,7 @@ class Posterior:
     dynamics: NormalEquations
     total: NormalEquations
     precision: Array
+    tempering: float
     departure: Array
     bound_side: Array
     tangent_only: np.ndarray
@@ -80,7 +82,7 @@ class Posterior:
     def standardised_departures(self) -> Array:
         """Standardised departure of each coefficient within tolerance, in standard deviations of its prior, one linear step ahead."""
         step = self.solve(self.curvature, self.descent)
-        return np.asarray((self.departure + step)[self.effect_count :] * np.sqrt(self.precision[self.effect_count :]))
+        return np.asarray((self.departure + step)[self.effect_count :] * np.sqrt(self.precision[self.effect_count :] / self.tempering))
 
     def largest_departure(self) -> float:
         """Largest absolute standardised departure; 0 without tolerances."""

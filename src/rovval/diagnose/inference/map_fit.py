@@ -136,7 +136,8 @@ def _point(problem: Problem, beta: Array, own: int, there: tuple[Whitened, ...])
     side = np.array([float(x >= p.high) - float(x <= p.low) for x, p in zip(at, parameters, strict=True)])
     sensors = tangent_slots(problem.plant)
     still = np.array([i >= own and s in sensors for i, s in enumerate(columns)], dtype=bool)
-    return Posterior(beta, columns, own, there, dynamic, data, problem.tempering / width**2, at - problem.prior_mean[list(columns)], side, still)
+    tempering, departure = problem.tempering, at - problem.prior_mean[list(columns)]
+    return Posterior(beta, columns, own, there, dynamic, data, tempering / width**2, tempering, departure, side, still)
 
 
 def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...]) -> Posterior | None:
