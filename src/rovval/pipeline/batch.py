@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from datetime import UTC, datetime
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -66,7 +67,7 @@ def run(
                 progress(f"{number} of {len(todo.todo)} logs, {task.log.name}", number / len(todo.todo))
         except UsageProblem as problem:
             stop = problem
-        records = finished + todo.done + todo.kept + todo.postponed
+        records = Packed(chain(finished, todo.done, todo.kept, todo.postponed))
         damaged, unusual, unwritten = _entered(pipeline, records, finished)
         before = read_json(pipeline.reports / SUMMARY)
         stop, seconds = stop or unwritten, time.monotonic() - began
@@ -106,7 +107,7 @@ def _publish(pipeline: Pipeline, summary: dict[str, Any], records: Packed) -> No
 
     reports = pipeline.reports
     try:
-        write_all(reports, {SUMMARY: json_text(summary), INDEX: batch_html.text(summary, records, trends(pipeline))})
+        write_all(reports, {SUMMARY: json_text(summary), INDEX: batch_html.pieces(summary, records, trends(pipeline))})
     except Unwritable as error:
         stopped = {**summary, "exit_code": STOPPED, "stopped_by": {"reason": error.message, "next": error.hint}}
         short = {key: [] if isinstance(value, list) else value for key, value in stopped.items()}

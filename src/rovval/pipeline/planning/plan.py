@@ -72,7 +72,7 @@ class Plan:
 
     ``missing`` are sources of which no log is there, with the reason; ``kept`` the records of the logs that they had. ``postponed`` are the records
     of logs that older code of rovval has judged and that a later night judges anew; ``folders`` are the names of
-    those of the reports of every log.
+    those of the reports of every log, where reports on a former content of a log are removed (`keep_replaced_days`).
     """
 
     todo: tuple[Task, ...]
@@ -112,7 +112,8 @@ class _Sorting:
             self.waiting.append((log, f"changed less than {self.pipeline.settle_s:g} s ago (settle_s): a later run takes it"))
             return
         task = _task(self.pipeline, source, log, self.hashes.of(log), method)
-        self.folders[str(log)] = (*self.folders.get(str(log), ()), task.folder.name)
+        if self.pipeline.keep_replaced_days is not None:
+            self.folders[str(log)] = (*self.folders.get(str(log), ()), task.folder.name)
         if (twin := self.seen.setdefault(task.key, str(log))) != str(log):
             self.waiting.append((log, f"same content as {twin}"))
         elif record := _finished(task, self.hashes.afresh):
