@@ -112,7 +112,7 @@ def _new(rows: Iterable[Mapping[str, Any]], old: pl.DataFrame, now: datetime) ->
     for part in iter(lambda: list(islice(left, AT_ONCE)), []):
         given = pl.DataFrame(part, schema=schema).join(known, on=same, how="left").with_columns(pl.col("evaluated").fill_null(now))
         given = given.with_columns(current=pl.lit(True), year=pl.col("date").dt.year()).select(list(COLUMNS))
-        new.append(given.filter(~given.hash_rows().is_in(there)))
+        new.append(given.filter(~given.hash_rows().is_in(there.implode())))
     return pl.concat(new)
 
 
