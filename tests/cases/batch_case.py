@@ -54,6 +54,13 @@ def deadly(task: Task) -> Outcome:
     return work(task)
 
 
+def deadly_at_its_end(task: Task) -> Outcome:
+    """Work that is killed when all of it is done and nobody knows it yet."""
+    work(task)
+    os.kill(os.getpid(), signal.SIGKILL)
+    raise AssertionError
+
+
 def slow(task: Task) -> Outcome:
     """Work that never ends on the log named hanger."""
     if task.log.stem == "hanger":

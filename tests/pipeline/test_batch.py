@@ -121,6 +121,18 @@ def test_a_quarantined_log_is_not_tried_again_until_it_changes(site):
     assert counts(batch.run(path, workers=1)) == {"done": 1, "unchanged": 3}
 
 
+def test_a_log_that_is_done_is_not_set_aside_when_its_worker_is_killed_before_it_says_so(site, monkeypatch):
+    """Nor does the record of an earlier night, in which it was, outlast a worker that was killed before it had removed it."""
+    path = batch_case.write_pipeline(site)
+    monkeypatch.setattr(batch, "work", batch_case.deadly_at_its_end)
+    assert counts(batch.run(path, workers=1)) == {"done": 3}
+    stale = site / "reports" / "quarantine" / next((site / "reports").glob("*/record.json")).parent.with_suffix(".json").name
+    stale.parent.mkdir(exist_ok=True)
+    stale.write_text("{}")
+    assert len(batch.dry_run(path).done) == 3 and stale.exists()
+    assert counts(batch.run(path, workers=1)) == {"unchanged": 3} and not stale.exists()
+
+
 def test_kill_9_in_the_middle_and_start_again(site):
     """Nothing half-written is taken for a result, and what was finished is not done again."""
     for number in range(3):

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from datetime import UTC, datetime
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,7 @@ from rovval.pipeline.keeping.trends import trends
 from rovval.pipeline.planning import config
 from rovval.pipeline.planning.config import Pipeline
 from rovval.pipeline.planning.packed import Packed
-from rovval.pipeline.planning.plan import Plan, Task, plan
+from rovval.pipeline.planning.plan import Plan, Task, finished, plan
 from rovval.pipeline.planning.records import brief
 from rovval.report.batch.terminal import reasons
 from rovval.storage import archive, lock
@@ -54,7 +55,10 @@ def run(
         todo = plan(pipeline, path.resolve().parent, retry, verify)
         why = todo.why  # before the work changes it
         progress(reasons(why) or "plan", 0.0)
-        finished = Packed()
+        for settled in todo.settled:
+            with suppress(OSError):
+                settled.unlink()
+        done = Packed()
         aside = list(todo.set_aside)
         stop: UsageProblem | None = None
         try:
@@ -62,16 +66,16 @@ def run(
                 still_ours()
                 if outcome["status"] == "stopped":
                     raise UsageProblem(outcome["record"]["reason"], f"{outcome['record']['next']}; the next run goes on from here")
-                finished.append(brief(outcome["record"], pipeline.tolerances)) if outcome["status"] == "done" else aside.append(outcome["record"])
+                done.append(brief(outcome["record"], pipeline.tolerances)) if outcome["status"] == "done" else aside.append(outcome["record"])
                 progress(f"{number} of {len(todo.todo)} logs, {task.log.name}", number / len(todo.todo))
         except UsageProblem as problem:
             stop = problem
-        records = finished + todo.done + todo.kept + todo.postponed
-        damaged, unusual, unwritten = _entered(pipeline, records, finished)
+        records = Packed(chain(done, todo.done, todo.kept, todo.postponed))
+        damaged, unusual, unwritten = _entered(pipeline, records, done)
         before = read_json(pipeline.reports / SUMMARY)
         stop, seconds = stop or unwritten, time.monotonic() - began
         document = summary.summarise(
-            pipeline.name, finished, todo.done, aside, todo.waiting, pipeline.tolerances, seconds, why, todo.missing, stop, unusual, damaged
+            pipeline.name, done, todo.done, aside, todo.waiting, pipeline.tolerances, seconds, why, todo.missing, stop, unusual, damaged
         )
         document["counts"]["postponed"] = len(todo.postponed)
         document["removed"] = [] if stop else retention.sweep(pipeline, todo.folders)
@@ -106,7 +110,7 @@ def _publish(pipeline: Pipeline, summary: dict[str, Any], records: Packed) -> No
 
     reports = pipeline.reports
     try:
-        write_all(reports, {SUMMARY: json_text(summary), INDEX: batch_html.text(summary, records, trends(pipeline))})
+        write_all(reports, {SUMMARY: json_text(summary), INDEX: batch_html.pieces(summary, records, trends(pipeline))})
     except Unwritable as error:
         stopped = {**summary, "exit_code": STOPPED, "stopped_by": {"reason": error.message, "next": error.hint}}
         short = {key: [] if isinstance(value, list) else value for key, value in stopped.items()}
@@ -141,7 +145,10 @@ def run_only(path: Path, identity: str, retry: bool = False) -> Outcome | None:
 
 
 def died(task: Task, why: str) -> Outcome:
-    """A task whose worker did not survive it."""
+    """A task whose worker did not survive it: done, where the worker had come to its end and could not say so any more; else set aside."""
+    if record := finished(task, digests=True):
+        task.quarantine.unlink(missing_ok=True)
+        return {"status": "done", "record": dict(record)}
     return set_aside(
         task, "crash", why, 70, hint="it is tried again by the next run; look at the log's size and the memory there is"
     )

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from itertools import islice
 from pathlib import Path
@@ -43,14 +43,16 @@ COLUMNS: Mapping[str, Any] = {
     "vehicle": pl.String, "year": pl.Int32,
 }  # fmt: skip
 PARTITIONS = ("vehicle", "year")
-AT_ONCE = 1000  # rows that are made into columns
+CONTENT = ("pipeline", "sha256")  # a pipeline has one row of each content
+AT_ONCE = 100  # rows that are made into columns, and compared with those that are there
 OURS = ("current", "evaluated", "year")  # columns that the catalogue fills itself
 
 
-def load(archive: Path) -> pl.DataFrame:
-    """The whole table, by date; without rows where there is none. Raises `BadInput` for a file that is damaged."""
+def load(archive: Path, columns: Sequence[str] = tuple(COLUMNS)) -> pl.DataFrame:
+    """The table, or some of its ``columns`` (date and log among them), by date; without rows where there is none. Raises `BadInput` for a file that
+    is damaged."""
     files = sorted((places.place(archive) / FOLDER).glob("*/*/*.parquet"))
-    return pl.concat([_empty(), *map(_read, files)]).sort("date", "log")
+    return pl.concat([_empty().select(columns), *(_read(file, columns) for file in files)]).sort("date", "log")
 
 
 def find(archive: Path, where: str = "", since: datetime | None = None) -> list[dict[str, Any]]:
@@ -77,11 +79,8 @@ def update(archive: Path, rows: Iterable[Mapping[str, Any]], now: datetime) -> l
     Returns what had to be set aside: files of the catalogue that are damaged. Raises `UsageProblem` where it cannot be written.
     """
     old, damaged = _readable(archive)
-    given = _table(rows)
-    same = ["pipeline", "sha256", "vehicle", "method"]
-    known = old.select(*same, "evaluated").unique(same)
-    new = given.join(known, on=same, how="left").with_columns(pl.col("evaluated").fill_null(now))
-    table = _merged(old, new)
+    new = _new(rows, old, now)
+    table = _merged(old, new) if len(new) else old
     parts, before = (t.partition_by(*PARTITIONS, as_dict=True) for t in (table, old))
     for key, part in parts.items():
         if key not in before or not part.equals(before[key]):
@@ -102,20 +101,27 @@ def faults(archive: Path) -> dict[Path, str]:
     return found
 
 
-def _table(rows: Iterable[Mapping[str, Any]]) -> pl.DataFrame:
-    """Rows as a table, some at a time: as columns they take a fifth of the memory."""
+def _new(rows: Iterable[Mapping[str, Any]], old: pl.DataFrame, now: datetime) -> pl.DataFrame:
+    """``rows`` as they will stand in the table, without those that stand there so already: of most nights a few are left, and the memory does not grow
+    with the others."""
     schema = {name: kind for name, kind in COLUMNS.items() if name not in OURS}
-    left = iter(rows)
-    return pl.concat([pl.DataFrame(schema=schema), *(pl.DataFrame(part, schema=schema) for part in iter(lambda: list(islice(left, AT_ONCE)), []))])
+    same = ["pipeline", "sha256", "vehicle", "method"]
+    known = old.select(*same, "evaluated").unique(same)
+    there = old.hash_rows()
+    left, new = iter(rows), [_empty()]
+    for part in iter(lambda: list(islice(left, AT_ONCE)), []):
+        given = pl.DataFrame(part, schema=schema).join(known, on=same, how="left").with_columns(pl.col("evaluated").fill_null(now))
+        given = given.with_columns(current=pl.lit(True), year=pl.col("date").dt.year()).select(list(COLUMNS))
+        new.append(given.filter(~given.hash_rows().is_in(there.implode())))
+    return pl.concat(new)
 
 
 def _merged(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
     """Old and new rows as one table, by date."""
-    kept = old.join(new, on=["pipeline", "sha256"], how="anti")
+    kept = old.join(new, on=CONTENT, how="anti")
     replaced = kept.join(new, on=["pipeline", "log"], how="semi").with_columns(current=pl.lit(False))
     untouched = kept.join(new, on=["pipeline", "log"], how="anti")
-    added = new.with_columns(current=pl.lit(True), year=pl.col("date").dt.year()).select(list(COLUMNS))
-    return pl.concat([untouched, replaced, added]).sort("date", "log", "evaluated")
+    return pl.concat([untouched, replaced, new]).sort("date", "log", "evaluated")
 
 
 def _readable(archive: Path) -> tuple[pl.DataFrame, list[Path]]:
@@ -130,12 +136,13 @@ def _readable(archive: Path) -> tuple[pl.DataFrame, list[Path]]:
     return pl.concat(tables), damaged
 
 
-def _read(file: Path) -> pl.DataFrame:
+def _read(file: Path, columns: Sequence[str] = tuple(COLUMNS)) -> pl.DataFrame:
     vehicle, year = (part.name.partition("=")[2] for part in (file.parent.parent, file.parent))
     try:
         named = {"vehicle": unquote(vehicle), "year": int(year)}
-        table = pl.read_parquet(io.BytesIO(file.read_bytes()), hive_partitioning=False)
-        return table.with_columns(*(pl.lit(value).alias(name) for name, value in named.items())).select(list(COLUMNS)).cast(pl.Schema(COLUMNS))
+        table = pl.read_parquet(io.BytesIO(file.read_bytes()), hive_partitioning=False, columns=[name for name in columns if name not in PARTITIONS])
+        schema = pl.Schema({name: COLUMNS[name] for name in columns})
+        return table.with_columns(*(pl.lit(value).alias(name) for name, value in named.items())).select(list(columns)).cast(schema)
     except (OSError, ValueError, pl.exceptions.PolarsError) as error:
         raise BadInput(f"{file}: damaged: {str(error).splitlines()[0]}", "`rovval archive repair` sets it aside, and the next batch writes it anew") from None
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import tracemalloc
 from typing import Any
 
 import report_cases
@@ -49,10 +50,32 @@ def test_a_batch_holds_records_packed_and_gives_them_back_as_they_are():
     text = json.dumps({"log": "d.csv", "run": "d-ab", "steps": {"ingest": {"key": "k", "outputs": ["a", "r.html"], "code": "c", "files": {"a": {"bytes": 9}}}}})
     one = brief(json.loads(text))
     assert one == {"log": "d.csv", "run": "d-ab", "steps": {"ingest": {"outputs": ["r.html"], "code": "c"}}}
-    packed = Packed([one]) + Packed([{**one, "duration_s": 0.1 + 0.2, "vehicle": None, "findings": ["\u00e9\udcff"]}])
-    for _ in range(2):
-        assert list(packed) == [one, {**one, "duration_s": 0.1 + 0.2, "vehicle": None, "findings": ["\u00e9\udcff"]}] and len(packed) == 2
-    assert one in packed and {} not in packed
+    other = {**one, "duration_s": 0.1 + 0.2, "vehicle": None, "findings": ["\u00e9\udcff"]}
+    for many in (0, 1, 99, 100, 250):  # with and without records that are compressed together
+        records = [{**other, "log": f"{number}.csv"} for number in range(many)]
+        packed = Packed([one, *records])
+        assert len(packed) == many + 1 and list(packed) == [one, *records] and list(packed) == [one, *records]
+        assert packed[-1] == packed[many] == [one, *records][-1] and packed[1:] == records
+        assert one in packed and {} not in packed
+
+
+def test_ten_thousand_records_are_held_in_two_megabytes():
+    """As bytes, one each, they took 7 MB."""
+    tracemalloc.start()
+    try:
+        began = tracemalloc.get_traced_memory()[0]
+        packed = Packed(comparison_of(number) for number in range(10_000))
+        assert tracemalloc.get_traced_memory()[0] - began < 2e6 and packed[9_999] == comparison_of(9_999)
+    finally:
+        tracemalloc.stop()
+
+
+def comparison_of(number: int) -> dict[str, Any]:
+    """A record as `brief` leaves it, with digests and numbers that only it has."""
+    sha = hashlib.sha256(str(number).encode()).hexdigest()
+    axes = {axis: {"rms": int(sha[8 * k : 8 * k + 8], 16) / 2**34, "unit": "m/s"} for k, axis in enumerate(("surge", "sway", "heave", "yaw"))}
+    compared = {"code": "c" * 12, "outputs": [f"{number}-{sha[:8]}/comparison/report.html"], "comparison": {"vehicle": "merlin", "window": {"axes": axes}}}
+    return {"log": f"/data/logs/{number}.csv", "sha256": sha, "run": f"{number}-{sha[:10]}", "model": "fossen", "steps": {"compare": compared}}
 
 
 def test_a_record_is_as_it_was_written_or_none(tmp_path):

@@ -1,6 +1,7 @@
 """The page of a batch: what needs attention first, a row a run, light with thousands, and as new as its summary."""
 
 import json
+import re
 from typing import Any
 
 import batch_case
@@ -66,6 +67,15 @@ def test_thousands_of_runs_stay_light_and_the_largest_gaps_stand_out():
     assert "and 4799 more: see summary.json" in text
 
 
+def test_the_page_is_made_in_pieces_in_the_order_of_the_logs():
+    """However many runs there are, no piece is longer than a page without runs and some rows."""
+    records = [record(n) for n in range(1000)]
+    document = summary.summarise("nightly", records, (), (), (), (), 3.0, {})
+    pieces = list(batch_html.pieces(document, records[::-1]))
+    assert max(map(len, pieces[1:])) < 100_000 and len(pieces[0]) < 100_000
+    assert re.findall(r">(d\d{4})-ab<", "".join(pieces)) == [f"d{n:04}" for n in range(1000)]
+
+
 @pytest.mark.parametrize("steps", ['["ingest"]', '["ingest", "simulate", "compare"]'])
 def test_a_batch_leaves_its_page_also_when_nothing_is_new(tmp_path, steps):
     batch_case.write_log(tmp_path / "logs" / "a.csv")
@@ -86,6 +96,6 @@ def test_an_empty_batch_has_a_page():
 
 
 def test_folders_are_told_from_where_all_logs_lie_unless_they_have_no_such_place():
-    assert folders(["/logs/a/1.csv", "/logs/a/2.csv", "/logs/b/c/3.csv", "/logs/4.csv"]) == ["a", "a", "b/c", ""]
-    assert folders(["/logs/a/1.csv", "s3://dives/2.csv"]) == ["/logs/a", "s3://dives"]
-    assert folders([]) == []
+    assert folders({"/logs/a", "/logs/b/c", "/logs"}) == {"/logs/a": "a", "/logs/b/c": "b/c", "/logs": ""}
+    assert folders({"/logs/a", "s3://dives"}) == {"/logs/a": "/logs/a", "s3://dives": "s3://dives"}
+    assert folders({"/logs"}) == {"/logs": ""} and folders(()) == {}

@@ -55,7 +55,7 @@ def rows_of(pipeline: Pipeline) -> list[dict[str, Any]]:
     from rovval.storage import catalogue
     from rovval.trend.series import COLUMNS
 
-    return catalogue.load(pipeline.archive).filter(pipeline=pipeline.name).select(COLUMNS).to_dicts()
+    return catalogue.load(pipeline.archive, COLUMNS).filter(pipeline=pipeline.name).to_dicts()
 
 
 def _row(pipeline: str, reports: str, record: Record) -> dict[str, Any]:

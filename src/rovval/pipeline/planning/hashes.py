@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Sequence
 from functools import cache
@@ -25,23 +26,24 @@ class Hashes:
 
     def __init__(self, path: Path, afresh: bool = False) -> None:
         self.path = path
-        self.known = {log: entry for log, entry in (read_json(path) or {}).items() if _whole(entry)}
-        self.used: dict[str, Any] = {}
+        self.known: dict[str, str] = {log: entry for log, entry in (read_json(path) or {}).items() if _whole(entry)}
+        self.used: dict[str, str] = {}  # by log: digest and stamp, as text, which is the smallest
         self.afresh = afresh
 
     def of(self, log: Path) -> str:
         """That of a log's content, read only if the log has changed. Raises OSError for one that cannot be read."""
         stamp = _stamp(log)
-        entry = self.known.get(str(log))
-        sha: str = entry["sha256"] if entry and entry["stamp"] == stamp and not self.afresh else sha256(log)
-        self.used[str(log)] = {"stamp": stamp, "sha256": sha}
-        return sha
+        entry = self.known.get(str(log), "")
+        if entry.partition(" ")[2] != stamp or self.afresh:
+            entry = f"{sha256(log)} {stamp}"
+        self.used[str(log)] = entry
+        return entry.partition(" ")[0]
 
     def below(self, folders: Sequence[Path]) -> list[tuple[Path, str]]:
         """The logs that were in ``folders`` the last time, and their digests; they stay known."""
         were = {log: entry for log, entry in self.known.items() if any(places.is_inside(places.place(log), folder) for folder in folders)}
         self.used = were | self.used
-        return [(places.place(log), entry["sha256"]) for log, entry in were.items()]
+        return [(places.place(log), entry.partition(" ")[0]) for log, entry in were.items()]
 
     def save(self) -> None:
         """Keep those that were asked for."""
@@ -49,13 +51,13 @@ class Hashes:
             write_json(self.path, self.used)
 
 
-def _stamp(log: Path) -> list[list[Any]]:
-    return [places.stamp(part) for part in files_of(log)]
+def _stamp(log: Path) -> str:
+    return json.dumps([places.stamp(part) for part in files_of(log)])
 
 
 def _whole(entry: Any) -> bool:
     """Whether an entry of the file is one: the file may have been damaged."""
-    return isinstance(entry, dict) and re.fullmatch(r"[0-9a-f]{64}", str(entry.get("sha256"))) is not None and "stamp" in entry
+    return isinstance(entry, str) and re.match(r"[0-9a-f]{64} ", entry) is not None
 
 
 def code_on_disk() -> str:

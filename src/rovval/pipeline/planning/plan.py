@@ -6,7 +6,7 @@ import hashlib
 import json
 import time
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -72,7 +72,8 @@ class Plan:
 
     ``missing`` are sources of which no log is there, with the reason; ``kept`` the records of the logs that they had. ``postponed`` are the records
     of logs that older code of rovval has judged and that a later night judges anew; ``folders`` are the names of
-    those of the reports of every log.
+    those of the reports of every log, where reports on a former content of a log are removed (`keep_replaced_days`). ``settled`` are the places of
+    quarantine records of logs that are done: whoever did them was killed before it could remove them.
     """
 
     todo: tuple[Task, ...]
@@ -83,6 +84,7 @@ class Plan:
     kept: Packed = field(default_factory=Packed)
     postponed: Packed = field(default_factory=Packed)
     folders: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    settled: tuple[Path, ...] = ()
 
     @property
     def why(self) -> Mapping[str, int]:
@@ -105,6 +107,8 @@ class _Sorting:
     kept: Packed = field(default_factory=Packed)
     seen: dict[str, str] = field(default_factory=dict)
     folders: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    settled: list[Path] = field(default_factory=list)
+    quarantined: Set[Path] = frozenset()
 
     def log(self, log: Path, source: Source, method: _Method) -> None:
         """Put one log where it belongs."""
@@ -112,11 +116,14 @@ class _Sorting:
             self.waiting.append((log, f"changed less than {self.pipeline.settle_s:g} s ago (settle_s): a later run takes it"))
             return
         task = _task(self.pipeline, source, log, self.hashes.of(log), method)
-        self.folders[str(log)] = (*self.folders.get(str(log), ()), task.folder.name)
+        if self.pipeline.keep_replaced_days is not None:
+            self.folders[str(log)] = (*self.folders.get(str(log), ()), task.folder.name)
         if (twin := self.seen.setdefault(task.key, str(log))) != str(log):
             self.waiting.append((log, f"same content as {twin}"))
-        elif record := _finished(task, self.hashes.afresh):
+        elif record := finished(task, self.hashes.afresh):
             self.done.append(brief(record, self.pipeline.tolerances))
+            if task.quarantine in self.quarantined:
+                self.settled.append(task.quarantine)
         elif (record := read_quarantine(task.quarantine)) and record["key"] == task.key and record["kind"] not in RETRIED and not self.retry:
             self.aside.append(record)
         else:
@@ -125,7 +132,7 @@ class _Sorting:
     def nothing_of(self, source: Source, base: Path, method: _Method) -> None:
         """No log of a source is there: what is known of those that were there is kept."""
         for log, sha in self.hashes.below([discover.fixed(pattern, base) for pattern in source.logs]):
-            record = None if log.exists() else _finished(_task(self.pipeline, source, log, sha, method), False)
+            record = None if log.exists() else finished(_task(self.pipeline, source, log, sha, method), False)
             if record:
                 self.kept.append(brief(record, self.pipeline.tolerances))
         gone = discover.absent(source.logs, base)
@@ -141,6 +148,7 @@ def plan(pipeline: Pipeline, base: Path, retry: bool = False, verify: bool = Fal
     Raises `UsageProblem` where the folder of a pattern does not exist and no log of it was ever there.
     """
     sorting = _Sorting(pipeline, Hashes(pipeline.reports / HASHES, afresh=verify), retry)
+    sorting.quarantined = set((pipeline.reports / QUARANTINE).glob("*.json"))
     made_by = code_on_disk()
     for source in pipeline.source:
         method = _method(pipeline, source, made_by)
@@ -160,6 +168,7 @@ def plan(pipeline: Pipeline, base: Path, retry: bool = False, verify: bool = Fal
     todo, postponed = _in_a_night(sorting.todo, pipeline)
     return Plan(
         tuple(todo), sorting.done, tuple(sorting.aside), tuple(sorting.waiting), tuple(sorting.missing), sorting.kept, Packed(postponed), sorting.folders,
+        tuple(sorting.settled),
     )  # fmt: skip
 
 
@@ -262,7 +271,9 @@ def _content(source: Source) -> tuple[str, str]:
     return numbers, profile.sha256 if profile else ""
 
 
-def _finished(task: Task, digests: bool) -> Mapping[str, Any] | None:
+def finished(task: Task, digests: bool) -> Mapping[str, Any] | None:
+    """The record of a task of which nothing is left to do: all steps are done, with these keys, and their outputs are whole, by size, and by content if
+    ``digests``. None for any other."""
     record = read_record(task.folder)
     if record is None or any(record["steps"].get(step, {}).get("key") != key for step, key in task.keys):
         return None

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import islice
 from typing import Any
+
+from markupsafe import Markup
 
 from rovval.report.batch import nights, sparklines, table
 from rovval.report.batch.row import Record, Row, row
@@ -14,27 +17,52 @@ from rovval.report.common.versions import foot
 from rovval.trend import Trend
 
 MOST_LISTED = 200  # rows of a list above the table; summary.json has all
+AT_ONCE = 100  # rows of the table that are written together
+ROWS = "<!-- rows -->"  # in the page, where they go; what is no markup of ours is escaped
 FAILED = ("crash", "internal")  # kinds of a quarantine record that are no refusal
 
 
-def text(summary: Mapping[str, Any], records: Iterable[Record], trends: Sequence[Trend] = ()) -> str:
+def text(summary: Mapping[str, Any], records: Sequence[Record], trends: Sequence[Trend] = ()) -> str:
+    """The whole page; see `pieces`."""
+    return "".join(pieces(summary, records, trends))
+
+
+def pieces(summary: Mapping[str, Any], records: Sequence[Record], trends: Sequence[Trend] = ()) -> Iterator[str]:
     """The page of a batch's summary (rovval.summary/1), of the records of its runs (rovval.batch/1), new and unchanged, and of the trends of
-    their vehicles."""
-    rows, aside = _rows(summary, records), summary["quarantined"]
+    their vehicles. Its rows come some at a time, and each is made twice, since what the columns are depends on all of them."""
+    seen = table.Seen()
+    beyond, stopped = [], []
+    for run in _rows(summary, records):
+        seen.add(run)
+        if run.beyond:
+            beyond.append({"run": run, "said": ["; ".join(run.beyond)]})
+        if run.stops:
+            stopped.append({"run": run, "said": [_stops(run)]})
+    columns = seen.columns()
+    before, _, after = _page(summary, trends, beyond, stopped, seen, columns).partition(ROWS)
+    yield before
+    rows, folders = _rows(summary, records), table.folders(seen.parents)
+    while some := [replace(run, folder=folders[table.parent(run.log)]) for run in islice(rows, AT_ONCE)]:
+        yield render("batch_rows.html", rows=some, columns=columns)
+    yield after
+
+
+def _page(
+    summary: Mapping[str, Any], trends: Sequence[Trend], beyond: Sequence[Any], stopped: Sequence[Any], seen: table.Seen, columns: Sequence[table.Column]
+) -> str:
+    """All of it but for the rows of the runs, with `ROWS` in their place."""
+    aside = summary["quarantined"]
     refused, failed = ([_aside(q) for q in aside if (q["kind"] in FAILED) == fails] for fails in (False, True))
-    beyond = [{"run": r, "said": ["; ".join(r.beyond)]} for r in rows if r.beyond]
-    stopped = [{"run": r, "said": [_stops(r)]} for r in rows if r.stops]
     absent, halted = summary.get("missing_sources", ()), [s for s in [summary.get("stopped_by")] if s]
     attention: dict[str, Any] = {"stop before its end": halted, "source without a log": absent}
     attention |= {"beyond a tolerance": beyond, "failed": failed, "quarantined": refused, "left sane limits in the simulation": stopped}
-    columns = table.columns(rows)
     return render(
         "batch.html",
         title=f"{summary['pipeline']} · rovval batch",
         eyebrow="Batch",
         name=summary["pipeline"],
         banner="",
-        said=[_verdict(len(rows), attention)],
+        said=[_verdict(seen.runs, attention)],
         facts=_facts(summary),
         stopped_by=[{"log": summary["pipeline"], "said": [s["reason"], s["next"]]} for s in halted],
         missing=[{"log": m["logs"], "said": [m["why"]]} for m in absent],
@@ -47,22 +75,24 @@ def text(summary: Mapping[str, Any], records: Iterable[Record], trends: Sequence
         nights=nights.compared(summary),
         vehicles=sparklines.vehicles(trends),
         trend_axes=sparklines.axes(trends),
-        rows=rows,
-        lead=table.lead(rows),
+        runs=seen.runs,
+        place_of_rows=Markup(ROWS),
+        lead=seen.lead(),
         columns=columns,
         left=[j for j, column in enumerate(columns) if column.words],
         footer=foot("the same for programs: summary.json"),
     )
 
 
-def _rows(summary: Mapping[str, Any], records: Iterable[Record]) -> list[Row]:
-    """In the order of the logs."""
+def _rows(summary: Mapping[str, Any], records: Sequence[Record]) -> Iterator[Row]:
+    """In the order of the logs, made one by one."""
     new = {done["log"] for done in summary["done"]}
     beyond: dict[str, list[str]] = {}
     for exceeded in summary["tolerances_exceeded"]:
         beyond.setdefault(exceeded["log"], []).append(exceeded["limit"])
-    rows = sorted((row(r, r["log"] in new, beyond.get(r["log"], ())) for r in records), key=lambda r: r.log)
-    return [replace(r, folder=folder) for r, folder in zip(rows, table.folders([r.log for r in rows]), strict=True)]
+    logs = [record["log"] for record in records]
+    for number in sorted(range(len(logs)), key=logs.__getitem__):
+        yield row(records[number], logs[number] in new, beyond.get(logs[number], ()))
 
 
 def _verdict(runs: int, attention: Mapping[str, Sequence[Any]]) -> str:

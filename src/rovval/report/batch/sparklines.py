@@ -17,7 +17,7 @@ from rovval.report.drawings.drawing import Curve, Dot, Drawing, Line, Shape
 from rovval.trend import Trend
 
 WIDTH, HEIGHT, EDGE = 110.0, 30.0, 3.0
-MOST_POINTS = 110  # one a pixel; of more dives the median of as many neighbours each
+MOST_POINTS = 110  # one a pixel; of more dives the median of as many neighbours each, under the name of the first
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,9 +75,10 @@ def _spark(trend: Trend) -> Spark:
     shapes = (*marks, Curve(tuple(zip(x.tolist(), down.tolist(), strict=True)), "spark"), Dot(float(x[-1]), float(down[-1]), 2.0, "dot"))
     label = f"{series.name} of {series.vehicle}: {words.said(trend)}"
     factor, unit = in_degrees(1.0, series.unit)
+    first = [int(part[0]) for part in parts]
     values = {
-        "dive": columns.words(series.runs),
-        "date": columns.words([f"{date:%Y-%m-%d}" for date in series.dates]),
-        f"gap in {series.name}, {unit}": columns.numbers(factor * np.array(series.values)),
+        "dive": columns.words([series.runs[i] for i in first]),
+        "date": columns.words([f"{series.dates[i]:%Y-%m-%d}" for i in first]),
+        f"gap in {series.name}, {unit}": columns.numbers(factor * np.array([series.value_of(value) for value in y])),
     }
     return Spark(Drawing(WIDTH, HEIGHT, label, shapes, values), quantity(words.now(trend), series.unit, 2))
