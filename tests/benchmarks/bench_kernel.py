@@ -61,9 +61,9 @@ def ours(plant: Plant, beta) -> tuple[str, float]:
     """Name of the kernel and steps/s of one core, the kernel alone."""
     kept: dict[str, Any] = {}
 
-    def spy(spec, blocks, arguments):
+    def spy(spec, blocks, steps, arguments):
         kept.update(spec=spec, blocks=blocks, arguments=arguments)
-        real(spec, blocks, arguments)
+        real(spec, blocks, steps, arguments)
 
     real, kernel.run = kernel.run, spy
     try:
