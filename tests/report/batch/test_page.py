@@ -43,6 +43,14 @@ def test_a_run_has_a_row_with_its_gap_its_cause_and_links_to_its_pages():
     assert "sway" not in text and "Nothing needs attention. 1 run in" in text
 
 
+def test_a_long_list_leaves_room_for_the_table():
+    """Ten of thirty are seen, twenty are opened, and none is missing."""
+    text = said([record(i) for i in range(31)])
+    listed = text[text.index("Tolerance exceeded (30)") : text.index("Runs (31)")]
+    seen, _, opened = listed.partition("<details><summary>20 more</summary>")
+    assert (seen.count("is above the limit"), opened.count("is above the limit")) == (10, 20)
+
+
 def test_what_needs_attention_comes_first():
     aside = [
         {"log": "/logs/bad.csv", "kind": "refused", "reason": "/logs/bad.csv: no <rows>", "next": "look"},

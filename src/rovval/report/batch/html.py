@@ -16,6 +16,7 @@ from rovval.report.common.page import render
 from rovval.report.common.versions import foot
 from rovval.trend import Trend
 
+FIRST_LISTED = 10  # rows of a list above the table that are seen at once (chosen: half a screen)
 MOST_LISTED = 200  # rows of a list above the table; summary.json has all
 AT_ONCE = 100  # rows of the table that are written together
 ROWS = "<!-- rows -->"  # in the page, where they go; what is no markup of ours is escaped
@@ -71,6 +72,7 @@ def _page(
         refused=refused,
         stopped=stopped,
         waiting=[{"log": w["log"], "said": [w["why"]]} for w in summary["waiting"]],
+        first=FIRST_LISTED,
         most=MOST_LISTED,
         nights=nights.compared(summary),
         vehicles=sparklines.vehicles(trends),
