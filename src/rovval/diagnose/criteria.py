@@ -1,7 +1,7 @@
 """Every number of the diagnosis that decides anything: name, value, unit, what it means and where it comes from.
 
-The sections follow the rooms of `diagnose`, from the ground up. "Chosen" is a judgement of the authors without a published source; "opened sets" are
-development logs with a known answer (`rovval blind`). What belongs to one effect stands in that effect's file.
+The sections follow the rooms of `diagnose`, from the ground up. How hard it looks for models stands in `effort`. "Chosen" is a judgement of the authors
+without a published source; "opened sets" are development logs with a known answer (`rovval blind`). What belongs to one effect stands in that effect's file.
 """
 
 # -- windows: what of a log is measurement, and how it is cut -----------------------------------------------------------------------
@@ -55,27 +55,13 @@ OUT_OF_TOLERANCE = 5.0  # standard deviations of tolerance from which a coeffici
 HELD_OUT_RUNS = 3  # runs from which one is held out at a time; of fewer, windows are (chosen)
 HELD_OUT_FOLDS = 5  # folds of windows (Hastie, Tibshirani and Friedman 2009, 7.10: five to ten)
 HELD_OUT_BLOCK = 2  # neighbouring windows that are held out together: 20 s, beyond the memory of hull and thrusters
-NOISE_MODEL_ROUNDS = 5  # of disturbance, form error and fit in turn: sizes then change by a few per cent
-INITIAL_DESIGN_EFFECT = 10.0  # of the first fit of the library, before anything is known of the residuals' autocorrelation (chosen)
 FORM_ERROR_SMOOTHING = 11  # samples, 1 s at 10 Hz: over which the variance of model-form error is smoothed along the window (chosen)
-DISTURBANCE_SEGMENTS = 12  # of a window, in each of which a force is constant: 0.8 s of 10 s, well below the period at which a small ROV rolls
-DISTURBANCE_ROUNDS = 10  # of expectation and maximisation (chosen)
-INITIAL_DISTURBANCE = 0.1  # of the thrusters' rms on an axis: rms of a disturbance, from which the estimate begins (chosen),
-INITIAL_MEMORY_S = 1.0  # s: and its correlation time (chosen)
 DISTURBANCE_WINDOWS = 6  # in fewer windows a steady force and a disturbance cannot be told apart, and none is fitted
 STEADY_FORCE_SD = 0.1  # prior of a steady force of the environment, as a share of the thrusters' rms on its axis
 SEGMENT_CORRELATION = (0.02, 0.98)  # limits of a disturbance's correlation from one segment of a window to the next
 COVERED_BY_NOISE = 0.05  # of the noise's variance: a component of a disturbance that does less than this changes no weight
-MAP_STEPS, QUICK_STEPS = 5, 3  # damped steps of a MAP fit, and of one that only has to show whether it is worth more
-STEP_SHARES = (1.0, 0.4, 0.1)  # of the Gauss-Newton step, that are tried in turn until one gains (chosen)
-STEP_WORTH = 1.0  # twice the log posterior: for a smaller gain no further step is taken
-RELINEARISED_FROM, RELINEARISED_TIMES = 10.0, 2  # twice the log posterior gained, from which frozen sensitivities are made anew; and how often at most
-PROGRESSIVE_S = (2.5, 5.0)  # s of each window that are fitted before the whole of it (chosen)
-ONSET_SHIFTS_S = (-12.0, -6.0, -3.0, -1.5, 1.5, 3.0, 6.0, 12.0)  # s by which a fitted onset is moved in turn, kept where that is better (chosen)
-BOOTSTRAP_RESAMPLES = 500  # of an interval's 5 % and 95 % quantiles (chosen; Efron and Tibshirani 1993 advise some 1000 for such)
 INTERVAL_PROBABILITY = 0.90  # of every interval that is stated
 HARMED_AXIS = 0.05  # an axis whose squared error grows by this share is named (chosen)
-MOST_REFITS = 5  # fits without a part of the logs: of more logs than that, a fifth is left out at a time
 IDENTIFIABLE_ALONE = 3.0  # standard errors with which a typical size shows while nothing else moves (chosen)
 IDENTIFIABLE_JOINTLY = 1.5  # the same while all that is tuned, and every tolerance, moves with it (chosen: a 90 % interval within a typical size)
 WIDEST_INTERVAL = 2.0  # typical sizes: a half interval beyond it, at the fitted point, is no answer (chosen)
@@ -89,26 +75,11 @@ FEW_WINDOWS = 6  # windows: fewer are too few to average model-form error over (
 
 OBSERVABLE_SIGMA = 3.0  # standard errors with which an effect of typical size must show in a log for its absence to mean anything (chosen)
 LARGE_SIZE = 3.0  # typical sizes: an effect so large must show as much, or it does not compete (chosen); in few windows a typical one must
-MOST_STARTS = 12  # initial points of a hypothesis with several parameters that no slope shows (chosen: each is a column of the linearisation),
-WHOLE_STARTS = 36  # and of one that begins with all of its size, at one simulation for each initial point (chosen)
-ONSET_STARTS = 9  # initial points for an onset, evenly inside the log (chosen)
-CHANGE_STARTS = 2  # change points of the gap that an onset begins from (chosen)
-PERIOD_STARTS = 3  # periods of the residual that an effect begins from (chosen)
-LEVER_SHARE = 0.7  # of the furthest thruster's distance from the origin: where a force may act ahead or astern (chosen)
-DATUM_QUANTILES = (0.25, 0.5, 0.75)  # of a log's depth, where what changes with depth may have its datum (chosen)
 CHANGE_FALSE_ALARM = 0.01  # rate at which a log without a change of level is split all the same (chosen)
 CHANGE_LEAST_WINDOWS = 3  # windows on each side of a change point (chosen)
 CHANGE_LEAST_TESTED = 10  # windows that a part of a log needs to be tested for a change of level (chosen)
-GAP_CHANGE_SPLITS = 2  # times that the gap is split: three change points at most (chosen)
 SHORTEST_PERIOD_S = 2.0  # s: the shortest period of an effect of the library; ten samples of it are enough
-WAVE_LINES = 3  # periods about which waves are looked for (chosen)
-WAVE_TRAINS = 3  # periods in one direction that waves begin from, as many trains as the effect has
-TRAIN_START = 0.1  # of a typical size: amplitude of further trains at first (a log of the outside development set: more of a wrong phase leads astray)
-WAVE_DOPPLER = 0.15  # relative shift of frequency within which they are: omega v / g is 0.14 at 0.9 m/s and a period of 4 s
-SPRING_STARTS = 4  # springs that the fit of what holds the vehicle begins from (chosen)
-SPRING_APART_S = 10.0  # s between their onsets, at least (chosen)
 SPRING_LEAST_STIFFNESS = 5.0  # N/m: half of what is typical of `tether_snag`; softer is an even pull (opened sets: snags 8 to 900, an even pull 0 to 3)
-SPRING_EVIDENT_SHARE = 0.2  # of the gap, from which a spring is fitted in any case (opened sets: eight snags 0.22 to 0.82; of 82 others three)
 
 
 # -- search and decision: prior masses, what is fitted, something else ---------------------------------------------------------------
@@ -124,27 +95,10 @@ FILE_WIDTH = 10.0  # times the tolerance: prior standard deviation of a number o
 LEAST_EVIDENCE = 6.0  # evidence that is called strong (Kass and Raftery 1995)
 VARIATIONS = (0.2, 0.8)  # of its size, from window to window: by how much a cause that is not constant varies (chosen)
 GROUP_PROBABILITY = 0.90  # of a confusion group
-NEGLIGIBLE = 0.01  # probability of a model beside the best one, below which it is not sought after (chosen)
 MOST_CAUSES = 3  # at once (chosen)
-SETS_WEIGHED = 3  # sets of causes, the most probable, beside which something else or further numbers of the file are weighed (chosen)
-MOST_CANDIDATES = 10  # hypotheses that are re-simulated in a step (chosen)
-SCREENED_EVIDENCE = 0.15  # share of the best linearised evidence: with less, a hypothesis is not re-simulated (chosen),
-LEAST_SCREENED = 4  # unless it is among so many of the first (chosen)
-SCREENED_ANYWAY = 20.0  # and has so much evidence by itself (chosen)
-STARTS_TRIED = 3  # initial points from which a hypothesis with local minima is fitted (chosen)
-COHERENT = 0.85  # coherence of sensitivities from which a hypothesis is re-simulated beside the best candidate whatever the screen said (chosen)
-MOST_COHERENT = 4  # of those (chosen)
-TANGENT_KEPT = 0.5  # share of the linearised evidence that a quick fit must keep, else it is made with care (chosen)
-MOST_REFITTED = 2  # fits that are (chosen)
-REFITTED_EVIDENCE = 0.25  # share of the best's evidence that their tangent must promise (chosen: what gains little is found again beside the best)
-MOST_RELINEARISED = 4  # candidates that are fitted again with sensitivities made at their own point (chosen)
-SERIOUS_EVIDENCE = 0.5  # share of the best evidence from which a candidate's gain counts (chosen)
 FURTHER_GAIN = 0.18  # share of what causes leave of the gap, that a recalibration of the file must take away beyond them (opened sets)
-MOST_ALTERNATIVES = 2  # candidates against which a cause is weighed again in the end (chosen)
 WINDOWS_BEFORE_ONSET = 3  # windows without what begins during a log, at least (chosen),
 WINDOWS_AFTER_ONSET = 6  # and with it (chosen)
-ONSETS_TRIED = 12  # first windows with it that are tried, evenly spread, before those about the best of them (chosen)
-ONSET_SEARCHED = 0.2  # share of the evidence of the best on the whole log: with less, linearised, no part is searched (opened logs: 0.25 of a true one)
 OWN_FORCE = 0.05  # of what a generic force does, that nothing else does: with less it is not one of its own (opened logs: one on speed beside drag 0.02)
 MOST_FORCES = 4  # generic forces that stand for something else (chosen)
 GENERIC_SIZES = (0.01, 0.1, 1.0)  # prior sizes of a generic force that are tried, in the rms of the thrusters' own on that axis (chosen)
@@ -179,6 +133,5 @@ PARAMETER_FORM_ERROR = 0.10  # of a parameter's departure, one standard error: e
 GROUP_NAMES = 3  # chosen: members told of a confusion group
 BUSY_QUANTILE, BUSY_LEAST = 0.98, 0.2  # chosen: quantile of a thruster's speed that counts as the most it does, and its least share of the busiest one's peak
 EXPERIMENT_WINDOW_S = 10.0  # s: windows in which a simulated manoeuvre is judged, as those of a log
-RECALIBRATION_ROUNDS = 6  # of setting coefficients free that depart, which may make others depart
 RECALIBRATION_LEAST = 3  # chosen: coefficients; one or two are what an effect of the library, or its nearest relative, leaves
 SURELY_BEYOND = 1.0  # tolerances: a coefficient whose whole interval is further off is surely beyond what a healthy file has

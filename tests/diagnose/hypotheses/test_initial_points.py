@@ -9,7 +9,7 @@ import pytest
 from diagnose_case import foreign, merlin, own, posed, slot
 
 from rovval.diagnose import diagnose
-from rovval.diagnose.criteria import LEVER_SHARE
+from rovval.diagnose.effort import LEVER_SHARE
 from rovval.diagnose.hypotheses.hypothesis import prior_of
 from rovval.diagnose.hypotheses.initial_points import Hints
 from rovval.diagnose.hypotheses.library import hypotheses

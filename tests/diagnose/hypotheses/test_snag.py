@@ -11,7 +11,7 @@ from diagnose_case import foreign, merlin, own
 
 from rovval.core.frames import rotation_from_euler
 from rovval.diagnose import diagnose
-from rovval.diagnose.criteria import SPRING_EVIDENT_SHARE
+from rovval.diagnose.effort import SPRING_EVIDENT_SHARE
 from rovval.diagnose.hypotheses.initial_points import Hints
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.hypotheses.snag import MissingWrench, fitted_spring

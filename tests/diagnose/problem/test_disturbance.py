@@ -18,7 +18,7 @@ from rovval.blind.plant.scales import scales
 from rovval.blind.plant.spec import stream
 from rovval.core.channels import AXES
 from rovval.diagnose import diagnose
-from rovval.diagnose.criteria import DISTURBANCE_SEGMENTS
+from rovval.diagnose.effort import DISTURBANCE_SEGMENTS
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.problem.disturbance import (

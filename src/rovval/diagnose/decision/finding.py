@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import ONSET_SEARCHED
 from rovval.diagnose.decision.verdict import Decision
+from rovval.diagnose.effort import ONSET_SEARCHED
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.sensor_faults import FittedFault
 from rovval.diagnose.search.forward import Selection

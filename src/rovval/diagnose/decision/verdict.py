@@ -9,13 +9,13 @@ from typing import Literal
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import NEGLIGIBLE, SETS_WEIGHED
 from rovval.diagnose.decision.consistency import inconsistencies
 from rovval.diagnose.decision.constancy import variation
 from rovval.diagnose.decision.indications import Indications, indications
 from rovval.diagnose.decision.miscalibration import file_evidence
 from rovval.diagnose.decision.posterior import Names, Probabilities, probabilities
 from rovval.diagnose.decision.unexplained import Accounted, Unexplained, accounted, open_gap, unexplained
+from rovval.diagnose.effort import NEGLIGIBLE, SETS_WEIGHED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.gap import weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit

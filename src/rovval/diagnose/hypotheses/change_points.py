@@ -12,7 +12,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import CHANGE_FALSE_ALARM, CHANGE_LEAST_TESTED, CHANGE_LEAST_WINDOWS, GAP_CHANGE_SPLITS
+from rovval.diagnose.criteria import CHANGE_FALSE_ALARM, CHANGE_LEAST_TESTED, CHANGE_LEAST_WINDOWS
+from rovval.diagnose.effort import GAP_CHANGE_SPLITS
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.windows.windows import Windows
 

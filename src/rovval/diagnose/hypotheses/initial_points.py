@@ -13,7 +13,7 @@ from itertools import product
 import numpy as np
 
 from rovval import effects
-from rovval.diagnose.criteria import (
+from rovval.diagnose.effort import (
     CHANGE_STARTS,
     DATUM_QUANTILES,
     LEVER_SHARE,

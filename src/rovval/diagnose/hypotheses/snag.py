@@ -17,7 +17,8 @@ from scipy.optimize import minimize
 from rovval.core.channels import AXES
 from rovval.core.data import Array
 from rovval.core.frames import rotation_from_euler
-from rovval.diagnose.criteria import SPRING_APART_S, SPRING_EVIDENT_SHARE, SPRING_LEAST_STIFFNESS, SPRING_STARTS
+from rovval.diagnose.criteria import SPRING_LEAST_STIFFNESS
+from rovval.diagnose.effort import SPRING_APART_S, SPRING_EVIDENT_SHARE, SPRING_STARTS
 from rovval.diagnose.hypotheses.hypothesis import START_SCALE, Hypothesis, displaced
 from rovval.diagnose.hypotheses.spectrum import interpolated
 from rovval.diagnose.problem.disturbance import segment_indicators

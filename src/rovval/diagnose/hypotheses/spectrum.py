@@ -15,7 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.data import Array, Flags
-from rovval.diagnose.criteria import SHORTEST_PERIOD_S, WAVE_DOPPLER, WAVE_LINES, WAVE_TRAINS
+from rovval.diagnose.criteria import SHORTEST_PERIOD_S
+from rovval.diagnose.effort import WAVE_DOPPLER, WAVE_LINES, WAVE_TRAINS
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.normal_equations import Linearisation

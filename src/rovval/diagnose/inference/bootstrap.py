@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import BOOTSTRAP_RESAMPLES
+from rovval.diagnose.effort import BOOTSTRAP_RESAMPLES
 
 
 def shrinkage_interval(before: Array, after: Array, seed: int, block: int = 2) -> tuple[float, float, float]:

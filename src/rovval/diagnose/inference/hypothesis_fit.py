@@ -13,7 +13,8 @@ import numpy as np
 from scipy import stats
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import INTERVAL_PROBABILITY, ONSET_SHIFTS_S, QUICK_STEPS
+from rovval.diagnose.criteria import INTERVAL_PROBABILITY
+from rovval.diagnose.effort import ONSET_SHIFTS_S, QUICK_STEPS
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import map_fit, moved_to
 from rovval.diagnose.problem.cross_validation import Fold

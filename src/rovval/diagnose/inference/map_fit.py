@@ -12,9 +12,9 @@ import numpy as np
 
 from rovval import effects
 from rovval.core.data import Array
-from rovval.diagnose.criteria import (
+from rovval.diagnose.criteria import PRIOR_WIDTH
+from rovval.diagnose.effort import (
     MAP_STEPS,
-    PRIOR_WIDTH,
     PROGRESSIVE_S,
     QUICK_STEPS,
     RELINEARISED_FROM,

@@ -14,7 +14,8 @@ import numpy as np
 
 from rovval.core.data import Array
 from rovval.core.large_arrays import taken
-from rovval.diagnose.criteria import HARMED_AXIS, MOST_REFITS
+from rovval.diagnose.criteria import HARMED_AXIS
+from rovval.diagnose.effort import MOST_REFITS
 from rovval.diagnose.inference.bootstrap import shrinkage_interval
 from rovval.diagnose.inference.gap import noise_floor_loss, squared_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, held_out_steps

@@ -19,15 +19,8 @@ from scipy.linalg import block_diag
 from rovval.core.channels import AXES
 from rovval.core.data import Array
 from rovval.core.large_arrays import LARGE_ALONE, zeros
-from rovval.diagnose.criteria import (
-    COVERED_BY_NOISE,
-    DISTURBANCE_ROUNDS,
-    DISTURBANCE_SEGMENTS,
-    INITIAL_DISTURBANCE,
-    INITIAL_MEMORY_S,
-    SEGMENT_CORRELATION,
-    STEADY_FORCE_SD,
-)
+from rovval.diagnose.criteria import COVERED_BY_NOISE, SEGMENT_CORRELATION, STEADY_FORCE_SD
+from rovval.diagnose.effort import DISTURBANCE_ROUNDS, DISTURBANCE_SEGMENTS, INITIAL_DISTURBANCE, INITIAL_MEMORY_S
 from rovval.diagnose.residuals.external_forces import force_sensitivities, generic_force_responses, typical_wrench
 from rovval.diagnose.residuals.normal_equations import Linearisation, NormalEquations, concatenated, normal_equations
 from rovval.diagnose.residuals.nuisances import initial_state_sd

@@ -14,13 +14,8 @@ import numpy as np
 
 from rovval.core.data import Array
 from rovval.core.large_arrays import side_by_side
-from rovval.diagnose.criteria import (
-    DISTURBANCE_WINDOWS,
-    FORM_ERROR_SMOOTHING,
-    INITIAL_DESIGN_EFFECT,
-    LEAST_NOISE,
-    NOISE_MODEL_ROUNDS,
-)
+from rovval.diagnose.criteria import DISTURBANCE_WINDOWS, FORM_ERROR_SMOOTHING, LEAST_NOISE
+from rovval.diagnose.effort import INITIAL_DESIGN_EFFECT, NOISE_MODEL_ROUNDS
 from rovval.diagnose.problem.cross_validation import Fold, FoldSums, cross_validate
 from rovval.diagnose.problem.disturbance import (
     Disturbance,

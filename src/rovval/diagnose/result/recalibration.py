@@ -20,10 +20,10 @@ from rovval.diagnose.criteria import (
     OUT_OF_TOLERANCE,
     PARAMETER_FORM_ERROR,
     RECALIBRATION_LEAST,
-    RECALIBRATION_ROUNDS,
     SURELY_BEYOND,
 )
 from rovval.diagnose.decision.verdict import Decision
+from rovval.diagnose.effort import RECALIBRATION_ROUNDS
 from rovval.diagnose.inference.hypothesis_fit import (
     HypothesisFit,
     confidence_interval,

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import QUICK_STEPS
+from rovval.diagnose.effort import QUICK_STEPS
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.bootstrap import shrinkage_interval
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit

@@ -8,14 +8,14 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import (
+from rovval.diagnose.criteria import OUT_OF_TOLERANCE
+from rovval.diagnose.effort import (
     COHERENT,
     LEAST_SCREENED,
     MOST_CANDIDATES,
     MOST_COHERENT,
     MOST_REFITTED,
     MOST_RELINEARISED,
-    OUT_OF_TOLERANCE,
     REFITTED_EVIDENCE,
     SCREENED_ANYWAY,
     SCREENED_EVIDENCE,

@@ -12,7 +12,8 @@ from math import log
 
 import numpy as np
 
-from rovval.diagnose.criteria import MOST_CAUSES, NEGLIGIBLE
+from rovval.diagnose.criteria import MOST_CAUSES
+from rovval.diagnose.effort import NEGLIGIBLE
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import refit_healthy

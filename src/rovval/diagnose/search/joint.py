@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from rovval.diagnose.criteria import MOST_ALTERNATIVES
+from rovval.diagnose.effort import MOST_ALTERNATIVES
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, fit_hypothesis, fit_quickly
 from rovval.diagnose.problem.problem import Problem

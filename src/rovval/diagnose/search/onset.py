@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import ONSETS_TRIED, WINDOWS_AFTER_ONSET, WINDOWS_BEFORE_ONSET
+from rovval.diagnose.criteria import WINDOWS_AFTER_ONSET, WINDOWS_BEFORE_ONSET
+from rovval.diagnose.effort import ONSETS_TRIED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, only_places
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
