@@ -35,7 +35,9 @@ ROOMS = (
 )
 # The same inside a room; "" are the files that lie in the room itself.
 INSIDE = {
-    "diagnose": (("",), ("result",), ("decision",), ("search",), ("hypotheses",), ("inference",), ("problem",), ("residuals",), ("windows",), ("criteria", "effort")),
+    "diagnose": (
+        ("",), ("result",), ("decision",), ("search",), ("hypotheses",), ("inference",), ("problem",), ("residuals",), ("windows",), ("criteria", "effort"),
+    ),
     "blind": (("",), ("scoring",), ("sealed",), ("baselines", "cases"), ("second",), ("planted",), ("missions",), ("plant",)),
     "report": (("scenario",), ("",), ("recording",), ("batch", "blind", "diagnosis", "flight"), ("comparison",), ("common",), ("drawings",)),
     "effects": (("library",), ("",)),
