@@ -70,10 +70,10 @@ def rotation_from_quaternion(q: Array) -> Array:
 
 def euler_from_quaternion(q: Array) -> Array:
     """Euler zyx angles of a unit quaternion; at pitch +-90 degrees roll and yaw share one rotation and roll takes it."""
-    r = rotation_from_quaternion(q)
-    theta = np.arcsin(np.clip(-r[..., 2, 0], -1.0, 1.0))
-    phi = np.arctan2(r[..., 2, 1], r[..., 2, 2])
-    psi = np.arctan2(r[..., 1, 0], r[..., 0, 0])
+    w, x, y, z = np.moveaxis(np.asarray(q, dtype=float), -1, 0)  # the five elements of `rotation_from_quaternion` that it takes
+    theta = np.arcsin(np.clip(-2 * (x * z - y * w), -1.0, 1.0))
+    phi = np.arctan2(2 * (y * z + x * w), 1 - 2 * (x * x + y * y))
+    psi = np.arctan2(2 * (x * y + z * w), 1 - 2 * (y * y + z * z))
     return np.stack([phi, theta, psi], axis=-1)
 
 

@@ -16,6 +16,7 @@ def delayed(true: Array, late: Array) -> Array:
         lanes = np.flatnonzero(late == delay)
         x = np.clip(sample - delay, 0.0, last)
         low = np.minimum(x.astype(np.int64), max(last - 1, 0))
-        before, after = true[lanes][:, low], true[lanes][:, np.minimum(low + 1, last)]
+        own = true[lanes]
+        before, after = own[:, low], own[:, np.minimum(low + 1, last)]
         seen[lanes] = before + (after - before) * (x - low)[:, None]
     return seen

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from diagnose_case import posed
 
@@ -25,3 +27,12 @@ def test_nothing_promises_much_on_a_healthy_log():
     p, library = posed(seconds=100.0)
     promised = screened(p, linearised(p, library, healthy_fit(p)), library, ())
     assert max(promised.values()) < 6.0
+
+
+def test_what_no_window_shows_promises_nothing_to_the_last_bit():
+    p, library = posed(seconds=100.0)
+    data = linearised(p, library, healthy_fit(p))
+    unseen = next(h for h in library if not set(h.columns) & set(p.tolerance.sd))
+    at, A, b = data.place(unseen.columns), data.A.copy(), data.b.copy()
+    A[:, at], A[:, :, at], b[:, at] = 0.0, 0.0, 0.0
+    assert screened(p, replace(data, A=A, b=b), [unseen], ()) == {unseen.label: 0.0}

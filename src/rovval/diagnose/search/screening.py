@@ -24,11 +24,16 @@ def linearised(problem: Problem, library: Iterable[Hypothesis], base: Posterior)
 
 
 def screened(problem: Problem, data: NormalEquations, library: Iterable[Hypothesis], chosen: tuple[int, ...]) -> dict[str, float]:
-    """Twice the log Bayes factor of each initial point of a library, by label, over coefficients within tolerance and the slots ``chosen`` before."""
+    """Twice the log Bayes factor of each initial point of a library, by label, over coefficients within tolerance and the slots ``chosen`` before.
+
+    A column that no window shows anything of adds nothing, to the last bit: its rounding must not decide.
+    """
     base = problem.tolerance.widened(wide_prior(problem, chosen))
     A, b = data.A.sum(axis=0), data.b.sum(axis=0)
+    shown = {column for column, information in zip(data.columns, np.diag(A), strict=True) if information > 0.0}
     ground = _evidence(data, A, b, base, problem.tempering)
-    return {h.label: _evidence(data, A, b, base.widened(prior_of(problem, h)), problem.tempering) - ground for h in library}
+    own = {h.label: Prior({c: sd for c, sd in prior_of(problem, h).sd.items() if c in shown}) for h in library}
+    return {label: _evidence(data, A, b, base.widened(prior), problem.tempering) - ground for label, prior in own.items()}
 
 
 def _evidence(data: NormalEquations, A: Array, b: Array, prior: Prior, tempering: float) -> float:

@@ -63,15 +63,17 @@ def lower(lanes: Lanes, p: Mapping[str, Array]) -> Lanes:
 
 def observe(log: Log, p: Mapping[str, Array]) -> Log:
     """Velocities of the velocity log, attitude and rates of the attitude sensor, and depth, of their ``delay`` ago."""
+    state = np.concatenate([log.nu, log.eta], axis=-1)
     for (parameter,), columns in LATE.items():
-        if p[parameter].any():
-            late, state = p[parameter] / log.dt, np.concatenate([log.nu, log.eta], axis=-1)
-            state[..., columns] = delayed(state[..., columns], late)
+        lanes = np.flatnonzero(p[parameter])
+        if len(lanes):
+            late, true = p[parameter][lanes] / log.dt, state[lanes]
+            true[..., columns] = delayed(true[..., columns], late)
             if set(columns) & set(ANGLES):
-                q = delayed(smooth_quaternions(log.eta[..., 3:]), late)
-                state[..., ANGLES] = euler_from_quaternion(q / np.linalg.norm(q, axis=-1, keepdims=True))
-            log = replace(log, nu=state[..., :6], eta=state[..., 6:])
-    return log
+                q = delayed(smooth_quaternions(state[lanes][..., ANGLES]), late)
+                true[..., ANGLES] = euler_from_quaternion(q / np.linalg.norm(q, axis=-1, keepdims=True))
+            state[lanes] = true
+    return replace(log, nu=state[..., :6], eta=state[..., 6:])
 
 
 def unobserve(nu: Array, eta: Array, p: Mapping[str, Array]) -> tuple[Array, Array]:
