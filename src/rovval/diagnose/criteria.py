@@ -90,6 +90,7 @@ PRIOR_CAUSES = (0.30, 0.10, 0.03)  # of one, two and three causes of the library
 PRIOR_FILE = 0.02  # of a file that is off in many numbers at once (chosen),
 PRIOR_SOMETHING_ELSE = 0.05  # and of something that the library does not hold (chosen)
 LIBRARY_ALIKE = 2.0 / 3.0  # share of what the library lacks that looks like something of it (opened and development sets of three plants: 11 of 16)
+VARYING_ALIKE = 2.0 / 9.0  # share of causes that seem to vary along a log which are what the library lacks (opened sets: 1 of 7; rule of succession)
 FORM_ALIKE = 0.25  # prior probability that the form error of causes looks like one more (development logs: of 18 further names on three plants 10 are right)
 FILE_WIDTH = 10.0  # times the tolerance: prior standard deviation of a number of such a file (chosen: 50 % where the tolerance is 5 %)
 LEAST_EVIDENCE = 6.0  # evidence that is called strong (Kass and Raftery 1995)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from rovval.diagnose.criteria import GROUP_PROBABILITY
+from rovval.diagnose.criteria import GROUP_PROBABILITY, VARYING_ALIKE
 from rovval.diagnose.decision.posterior import Probabilities, probabilities
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.search.model import Model, ModelPrior
@@ -85,9 +85,10 @@ def test_something_beside_the_causes_leaves_them_at_work():
 
 
 def test_a_cause_that_would_have_to_vary_may_be_something_else():
-    """Or that cause in another form, with something else beside it: the log has nothing for the one or the other."""
+    """Or that cause in another form, with something else beside it: the log has nothing for the one or the other, so that the share of each is its prior's."""
     found = belief({("waves",): 80.0}, varying=30.0)
-    assert found.something_else > found.causes > 0.4 and found.varying == pytest.approx(0.5, abs=1e-4)
+    assert [found.varying, found.something_else] == pytest.approx([VARYING_ALIKE] * 2, abs=1e-4)
+    assert [found.of("waves"), found.causes] == pytest.approx([1.0 - VARYING_ALIKE] * 2, abs=1e-4)
     assert found.partly(frozenset({"waves"})) and found.best == {"waves"}
 
 

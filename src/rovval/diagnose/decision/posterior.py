@@ -7,7 +7,7 @@ beside causes (model discrepancy: Kennedy and O'Hagan 2001).
 No log tells two explanations apart that predict the same; they share its probability by their priors. Most of what the library lacks looks like something of
 it (`LIBRARY_ALIKE`): so something else has a part of the mass of every set of causes, and no cause is ever certain. And what the equations of causes are off
 by may look like one more cause (`FORM_ALIKE`): so the probability that a cause is at work shares the mass of each set with the set without the cause that
-adds least. A cause that would have to vary along the log may be that cause in another form, or something else that comes near it: the two are as likely.
+adds least. A cause that would have to vary along the log may be that cause in another form, or something else that comes near it (`VARYING_ALIKE`).
 
 The set that is named has as many causes as is most probable, and of such sets it is the one that the true one is expected to share the most causes with
 (centroid estimator: Carvalho and Lawrence 2008). The most probable single set may hold a cause that most of the others do without.
@@ -19,8 +19,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, log
 
-import numpy as np
-
 from rovval.diagnose.criteria import (
     FORM_ALIKE,
     GROUP_PROBABILITY,
@@ -29,6 +27,7 @@ from rovval.diagnose.criteria import (
     PRIOR_FILE,
     PRIOR_HEALTHY,
     PRIOR_SOMETHING_ELSE,
+    VARYING_ALIKE,
 )
 from rovval.diagnose.search.model import Model
 
@@ -129,7 +128,7 @@ def probabilities(
             of causes.
         forces: evidence of something else on the healthy vehicle, over it; its prior among such forces included.
         beside: the same of something else beside sets of causes, over these.
-        varying: the same of a cause that varies along the log, over the set that it is of; half of it is something else, half that cause in another form.
+        varying: the same of a cause that varies along the log, over the set that it is of; a part of it is something else, the rest that cause in another form.
     """
     best = _best_of_each_set(models)
     doubt = log(PRIOR_SOMETHING_ELSE / PRIOR_HEALTHY)
@@ -139,15 +138,16 @@ def probabilities(
     filed = log(PRIOR_FILE / PRIOR_HEALTHY)
     known |= {("filed", names): best[names].log_prior + filed + 0.5 * evidence for names, evidence in file.items()}
     known["else", frozenset()] = nothing.log_posterior + doubt + 0.5 * forces
-    for names, more in varying.items():  # as likely that cause in another form, something else beside it, as what only comes near it
-        half = best[names].log_posterior + doubt + 0.5 * more - log(2.0)
-        known["varying", names] = half
-        known["beside", names] = float(np.logaddexp(known.get(("beside", names), -np.inf), half))
+    for names, more in varying.items():  # what only comes near a cause, or that cause in another form
+        whole = best[names].log_posterior + doubt + 0.5 * more
+        known["varying", names], known["form", names] = whole + log(VARYING_ALIKE), whole + log(1.0 - VARYING_ALIKE)
     top = max(known.values())
     weight = {key: exp(value - top) for key, value in known.items()}
     total = sum(weight.values())
     believed = {key: value / total for key, value in weight.items()}
     share = {(kind, names): p * (1.0 - LOOKS_ALIKE) if names and kind in CAUSES else p for (kind, names), p in believed.items()}
+    for names in varying:
+        share["beside", names] = share.get(("beside", names), 0.0) + share.pop(("form", names))
     inconstant = sum(p for (kind, _), p in share.items() if kind == "varying")
     return Probabilities(
         sets={names: p for (kind, names), p in share.items() if kind == "sets"},
