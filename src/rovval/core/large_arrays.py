@@ -15,14 +15,13 @@ import numpy as np
 from rovval.core.data import Array
 from rovval.core.long_columns import no_room
 
-LARGE = 1 << 24  # bytes, 16 MB: below, it is not worth a file, though many are kept
-LARGE_ALONE = 1 << 27  # bytes, 128 MB, of arrays of which few are there at a time: sensitivities of ten minutes (a page of a file costs four of memory)
+LARGE = 1 << 24  # bytes, 16 MB: the sensitivities of a minute of log to every effect of the library; below, it is not worth a file
 
 
-def zeros(*shape: int, large: int = LARGE) -> Array:
-    """An array of zeros: in memory, or one of ``large`` bytes or more in a file. Raises `BadInput` where there is no room for it."""
+def zeros(*shape: int) -> Array:
+    """An array of zeros: in memory, or a large one in a file. Raises `BadInput` where there is no room for it."""
     size = int(np.prod(shape)) * np.dtype(float).itemsize
-    if size < large:
+    if size < LARGE:
         return np.zeros(shape)
     try:
         with tempfile.TemporaryFile(prefix="rovval-") as file:
@@ -55,7 +54,7 @@ def joined(*parts: Array) -> Array:
 
 def columns_first(m: int, *shape: int, columns: int) -> Array:
     """Zeros (m, ..., columns) in which each column of a row is contiguous, since columns are written and read one by one."""
-    return np.moveaxis(zeros(m, columns, *shape, large=LARGE_ALONE), 1, -1)
+    return np.moveaxis(zeros(m, columns, *shape), 1, -1)
 
 
 def side_by_side(a: Array, b: Array) -> Array:

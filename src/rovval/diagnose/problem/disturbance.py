@@ -18,7 +18,7 @@ from scipy.linalg import block_diag
 
 from rovval.core.channels import AXES
 from rovval.core.data import Array
-from rovval.core.large_arrays import LARGE_ALONE, zeros
+from rovval.core.large_arrays import zeros
 from rovval.diagnose.criteria import COVERED_BY_NOISE, SEGMENT_CORRELATION, STEADY_FORCE_SD
 from rovval.diagnose.effort import DISTURBANCE_ROUNDS, DISTURBANCE_SEGMENTS, INITIAL_DISTURBANCE, INITIAL_MEMORY_S
 from rovval.diagnose.residuals.external_forces import force_sensitivities, generic_force_responses, typical_wrench
@@ -158,4 +158,4 @@ def _covariance(share: Array, correlation: Array) -> Array:
 
 def _times(response: Array, root: Array) -> Array:
     """Responses (m, n, c, d) to forces that are ``root`` (d, d) times independent ones, to those."""
-    return np.matmul(response, root, out=zeros(*response.shape, large=LARGE_ALONE))
+    return np.matmul(response, root, out=zeros(*response.shape))

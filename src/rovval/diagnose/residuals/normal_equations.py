@@ -13,7 +13,7 @@ import numpy as np
 from scipy.linalg import solve_triangular
 
 from rovval.core.data import Array
-from rovval.core.large_arrays import LARGE_ALONE, columns_first, joined, zeros
+from rovval.core.large_arrays import columns_first, joined, zeros
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,7 +141,7 @@ def normal_equations(linear: Linearisation, ok: np.ndarray, variance: Array, spr
 def whiten(linear: Linearisation, ok: np.ndarray, variance: Array, spread: Array) -> Whitened:
     """A linearisation in the metric, kept for normal equations with further residuals; arguments as of `normal_equations`."""
     m, n, k = len(linear.r), linear.r[0].size, linear.S.shape[-1]
-    root, q, x = np.empty((m, n)), zeros(m, n, len(spread), large=LARGE_ALONE), columns_first(m, n, columns=k)
+    root, q, x = np.empty((m, n)), zeros(m, n, len(spread)), columns_first(m, n, columns=k)
     y, A = np.empty((m, len(spread), k)), zeros(m, k, k)
     for w in range(m):
         root[w], q[w], x[w], y[w] = _window(linear, w, ok, variance, spread)
