@@ -26,7 +26,7 @@ from rovval.pipeline.planning.plan import Task
 pytestmark = pytest.mark.benchmark
 
 FEW, MANY = 10, int(os.environ.get("ROVVAL_BENCH_LOGS", "10000"))
-SIDE_BY_SIDE = 200  # logs of the comparisons of workers and Dask: the start of a worker, some 4 s, must not decide them
+SIDE_BY_SIDE = 400  # logs of the comparisons of workers and Dask: the start of a worker, some 4 s, must not decide them
 SECONDS = 10.0  # of a log: one window of a comparison
 STEPS = '["ingest", "simulate", "compare"]'
 WITHIN, AGAIN_S_PER_1000, TWO_WORKERS, DASK_WITHIN, MEMORY_MB_PER_1000 = 0.10, 1.0, 1.8, 0.15, 10.0  # what the batch is held to

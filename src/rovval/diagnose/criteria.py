@@ -93,6 +93,7 @@ LIBRARY_ALIKE = 2.0 / 3.0  # share of what the library lacks that looks like som
 VARYING_ALIKE = 2.0 / 9.0  # share of causes that seem to vary along a log which are what the library lacks (opened sets: 1 of 7; rule of succession)
 FORM_ALIKE = 0.25  # prior probability that the form error of causes looks like one more (development logs: of 18 further names on three plants 10 are right)
 FILE_WIDTH = 10.0  # times the tolerance: prior standard deviation of a number of such a file (chosen: 50 % where the tolerance is 5 %)
+EVEN_ODDS = 0.5  # probability above which causes are named, or no gap is claimed: a wrong name costs what silence does (decision theory, equal losses)
 LEAST_EVIDENCE = 6.0  # evidence that is called strong (Kass and Raftery 1995)
 VARIATIONS = (0.2, 0.8)  # of its size, from window to window: by how much a cause that is not constant varies (chosen)
 GROUP_PROBABILITY = 0.90  # of a confusion group

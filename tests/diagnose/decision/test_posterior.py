@@ -119,3 +119,13 @@ def test_the_set_that_is_named_holds_what_most_of_the_probability_holds():
     found = belief({("thrust_lag",): 70.0, ("dvl_scale",): 380.0, ("cross_drag",): 30.0, ("waves",): 30.0, **pairs}, weighed=list(pairs))
     assert found.ranked[0] == {"thrust_lag", "waves"} and found.of("dvl_scale") > found.of("waves")
     assert found.best == {"thrust_lag", "dvl_scale"}
+
+
+def test_what_is_said_is_likelier_than_not():
+    """A healthy log was blamed on a cause at 0.44, the most probable of three answers."""
+    assert belief({("waves",): 40.0}).likelier_than_not == "causes"
+    assert belief({("waves",): -40.0}).likelier_than_not == "healthy"
+    split = [belief({("waves",): worth}, forces=forces) for worth in np.linspace(0.0, 10.0, 21) for forces in np.linspace(0.0, 8.0, 17)]
+    assert all((one.causes > 0.5) == (one.likelier_than_not == "causes") for one in split)
+    undecided = [one for one in split if one.likelier_than_not is None]
+    assert undecided and any(one.causes > max(one.healthy, one.something_else) for one in undecided)

@@ -18,8 +18,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, log
+from typing import Literal
 
 from rovval.diagnose.criteria import (
+    EVEN_ODDS,
     FORM_ALIKE,
     GROUP_PROBABILITY,
     LIBRARY_ALIKE,
@@ -68,6 +70,11 @@ class Probabilities:
     def causes(self) -> float:
         """Of causes, whatever is beside them."""
         return sum(self._whole().values())
+
+    @property
+    def likelier_than_not(self) -> Literal["causes", "healthy"] | None:
+        """What is said: causes, or a healthy vehicle; None where neither has even odds (`EVEN_ODDS`), though it may be the most probable of several."""
+        return "causes" if self.causes > EVEN_ODDS else "healthy" if self.healthy > EVEN_ODDS else None
 
     @property
     def best(self) -> Names:

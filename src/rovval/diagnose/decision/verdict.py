@@ -1,4 +1,7 @@
-"""The verdict: explained, partly explained, unknown, or no gap: the most probable of the models that were compared. It is decided here and nowhere else."""
+"""The verdict: explained, partly explained, unknown, or no gap. It is decided here and nowhere else.
+
+What is said is more likely than not: causes, or a healthy vehicle, that are only the most probable of several answers are not (unknown).
+"""
 
 from __future__ import annotations
 
@@ -81,10 +84,10 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
     generic = max(evidence, 0.0), max(more.get(best.names, 0.0), 0.0)
     found = Decision("no_gap", belief, (), None, {}, {}, {}, over, *generic, selection.healthy.largest_departure(), known, None)
     contradicted = any(h.effect.place != "sensor" for h in best.causes) and _contradicted(problem, residuals)
-    if best.fit and belief.causes > max(belief.healthy, belief.file, belief.something_else) and not contradicted:
+    if best.fit and belief.likelier_than_not == "causes" and not contradicted:
         return _named(problem, selection, found, best, best.fit, beside[best.names])
     found = replace(found, indications=indications(selection.steps[0] if selection.steps else (), known, faults))
-    if belief.healthy > max(belief.file, belief.something_else, belief.causes):
+    if belief.likelier_than_not == "healthy":
         rest = open_gap(problem, replace(known, departure=0.0), residuals)  # it is believed, so what its coefficients account for counts
         return replace(found, verdict="unknown" if rest else "no_gap", unexplained=rest)
     inconstant = [h.name for h in best.causes] if belief.varying > 0.5 * belief.something_else else []

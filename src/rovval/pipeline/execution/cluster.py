@@ -1,7 +1,7 @@
 """Tasks over the workers of a Dask cluster (`rovval run --scheduler tcp://host:8786`): same tasks, same outcomes.
 
-Every worker must see logs, archive and reports under the same paths, and have this version of rovval. No more tasks are with the scheduler than
-there are threads of workers, so that a task begins when it is submitted, and neither tasks nor results pile up there.
+Every worker must see logs, archive and reports under the same paths, and have this version of rovval. No more than `AHEAD` tasks are with the scheduler
+for each thread of a worker: one that it is at, and the next, so that no thread waits for the batch, and neither tasks nor results pile up there.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from rovval.pipeline.execution.worker import Outcome
 from rovval.pipeline.planning.plan import Task
 
 PATIENCE_S = 60.0  # workers of a cluster are started beside the scheduler, some seconds after it
+AHEAD = 2  # tasks with the scheduler for each thread: a second one takes away the wait for the batch between two logs, more take nothing
 LOOK_S = 0.5  # how often the cluster is looked at while nothing ends: a fraction of what the shortest log takes
 
 
@@ -43,14 +44,15 @@ def execute(
         ) from None
     with client:
         team = _Team(client, address)
+        client.subscribe_topic(team.topic, team.began)  # type: ignore[no-untyped-call,unused-ignore]
         waiting = list(reversed(tasks))
         while waiting or team.running:
-            for _ in range(team.idle()):
+            for _ in range(team.wanted()):
                 if waiting:
                     team.submit(work, waiting.pop())
             team.bell.wait(LOOK_S)
             team.bell.clear()
-            yield from team.ended(died)
+            yield from team.ended(work, died)
             yield from team.late(died, timeout_s)
 
 
@@ -60,17 +62,28 @@ class _Team:
 
     client: Any
     address: str
-    running: dict[Any, tuple[Task, float]] = field(default_factory=dict)  # by future: the task, and when it was submitted
+    running: dict[Any, Task] = field(default_factory=dict)  # by future
+    since: dict[str, float] = field(default_factory=dict)  # by the future's key: when a worker last began it
+    spared: set[str] = field(default_factory=set)  # ids of tasks that were submitted once more
     alone_since: float | None = None
     bell: threading.Event = field(default_factory=threading.Event)  # rung when a task ends
 
-    def idle(self) -> int:
-        """Threads of workers that have nothing to do. Raises `UsageProblem` where the scheduler is lost, or has had no worker for too long: the batch
+    @property
+    def topic(self) -> str:
+        """Under which workers tell of tasks of this batch that they begin."""
+        return f"rovval began, for {self.client.id}"
+
+    def began(self, event: tuple[float, str]) -> None:
+        """A worker has begun the task of a key; again, where the worker before died."""
+        self.since[event[1]] = time.monotonic()
+
+    def wanted(self) -> int:
+        """Tasks that the workers' threads still lack. Raises `UsageProblem` where the scheduler is lost, or has had no worker for too long: the batch
         would wait for ever without a word."""
         threads: int = sum(self._asked(self.client.nthreads).values())
         if threads:
             self.alone_since = None
-            return max(0, threads - len(self.running))
+            return max(0, AHEAD * threads - len(self.running))
         self.alone_since = self.alone_since or time.monotonic()
         if time.monotonic() - self.alone_since > PATIENCE_S:
             why = f"the Dask scheduler at {self.address} has had no worker for {PATIENCE_S:g} s"
@@ -79,32 +92,42 @@ class _Team:
 
     def submit(self, work: Callable[[Task], Outcome], task: Task) -> None:
         """Hand a task to the scheduler."""
-        future = self._asked(lambda: self.client.submit(work, task, pure=False))
-        self.running[future] = (task, time.monotonic())
+        future = self._asked(lambda: self.client.submit(_told, work, task, self.topic, pure=False))
+        self.running[future] = task
         future.add_done_callback(lambda _: self.bell.set())
 
-    def ended(self, died: Callable[[Task, str], Outcome]) -> Iterator[tuple[Task, Outcome]]:
-        """The tasks that have ended since, each with its outcome."""
+    def ended(self, work: Callable[[Task], Outcome], died: Callable[[Task, str], Outcome]) -> Iterator[tuple[Task, Outcome]]:
+        """The tasks that have ended since, each with its outcome. One that only waited on workers that died of others is submitted once more."""
         from distributed import KilledWorker
 
         for future in [future for future in self.running if future.done()]:
-            task, _ = self.running.pop(future)
+            begun, task = future.key in self.since, self._taken(future)
             try:
                 yield task, future.result()
             except KilledWorker as error:
+                if not begun and task.id not in self.spared:
+                    self.spared.add(task.id)
+                    self.submit(work, task)
+                    continue
                 yield task, died(task, f"worker process died: {error}")
             except CancelledError:
                 raise self._lost() from None
 
     def late(self, died: Callable[[Task, str], Outcome], timeout_s: float | None) -> Iterator[tuple[Task, Outcome]]:
         """The tasks that took longer than ``timeout_s``, taken from their workers."""
-        over = [future for future, (_, since) in self.running.items() if timeout_s is not None and time.monotonic() - since > timeout_s]
+        now = time.monotonic()
+        over = [future for future in self.running if timeout_s is not None and now - self.since.get(future.key, now) > timeout_s]
         for future in over:
-            task, _ = self.running.pop(future)
+            task = self._taken(future)
             at_it = [worker for worker, keys in self._asked(self.client.processing).items() if future.key in keys]
             self._asked(future.cancel)
             self._start_anew(at_it)
             yield task, died(task, f"took longer than timeout_s = {timeout_s:g} s")
+
+    def _taken(self, future: Any) -> Task:
+        """The task of a future, which is forgotten."""
+        self.since.pop(future.key, None)
+        return self.running.pop(future)
 
     def _start_anew(self, workers: list[str]) -> None:
         """End the process of each worker, as its thread cannot be ended; its nanny, or whoever started it without one, starts it again."""
@@ -124,3 +147,12 @@ class _Team:
 
     def _lost(self) -> UsageProblem:
         return UsageProblem(f"the Dask scheduler at {self.address} was lost", "start it again with its workers; the next run goes on from here")
+
+
+def _told(work: Callable[[Task], Outcome], task: Task, topic: str) -> Outcome:
+    """Do a task on a worker, which tells the batch that it begins: what waits behind another log is not slow."""
+    from distributed import get_worker
+
+    worker = get_worker()  # type: ignore[no-untyped-call,unused-ignore]
+    worker.log_event(topic, worker.get_current_task())
+    return work(task)
