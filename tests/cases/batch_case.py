@@ -54,6 +54,13 @@ def deadly(task: Task) -> Outcome:
     return work(task)
 
 
+def deadly_after_a_while(task: Task) -> Outcome:
+    """As `deadly`, when others wait behind it by then."""
+    if task.log.stem == "killer":
+        time.sleep(2.0)
+    return deadly(task)
+
+
 def deadly_at_its_end(task: Task) -> Outcome:
     """Work that is killed when all of it is done and nobody knows it yet."""
     work(task)
