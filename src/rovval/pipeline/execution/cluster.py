@@ -1,7 +1,8 @@
 """Tasks over the workers of a Dask cluster (`rovval run --scheduler tcp://host:8786`): same tasks, same outcomes.
 
 Every worker must see logs, archive and reports under the same paths, and have this version of rovval. No more than `AHEAD` tasks are with the scheduler
-for each thread of a worker: one that it is at, and the next, so that no thread waits for the batch, and neither tasks nor results pile up there.
+for each thread of a worker: one that it is at, and the next, so that no thread waits for the batch, and neither tasks nor results pile up there. Dask gives
+up every task that was with too many workers that died, whichever killed them: such a task is done again by itself when all others have ended.
 """
 
 from __future__ import annotations
@@ -46,13 +47,15 @@ def execute(
         team = _Team(client, address)
         client.subscribe_topic(team.topic, team.began)  # type: ignore[no-untyped-call,unused-ignore]
         waiting = list(reversed(tasks))
-        while waiting or team.running:
+        while waiting or team.running or team.doubtful:
             for _ in range(team.wanted()):
                 if waiting:
                     team.submit(work, waiting.pop())
+            if team.doubtful and not (waiting or team.running):
+                team.submit(work, team.doubtful.pop(), alone=True)
             team.bell.wait(LOOK_S)
             team.bell.clear()
-            yield from team.ended(work, died)
+            yield from team.ended(died)
             yield from team.late(died, timeout_s)
 
 
@@ -64,7 +67,8 @@ class _Team:
     address: str
     running: dict[Any, Task] = field(default_factory=dict)  # by future
     since: dict[str, float] = field(default_factory=dict)  # by the future's key: when a worker last began it
-    spared: set[str] = field(default_factory=set)  # ids of tasks that were submitted once more
+    doubtful: list[Task] = field(default_factory=list)  # they were with workers that died, and wait to be done alone
+    alone: set[str] = field(default_factory=set)  # ids of those that were
     alone_since: float | None = None
     bell: threading.Event = field(default_factory=threading.Event)  # rung when a task ends
 
@@ -90,26 +94,27 @@ class _Team:
             raise UsageProblem(why, f"start one with `dask worker {self.address}`")
         return 0
 
-    def submit(self, work: Callable[[Task], Outcome], task: Task) -> None:
-        """Hand a task to the scheduler."""
+    def submit(self, work: Callable[[Task], Outcome], task: Task, alone: bool = False) -> None:
+        """Hand a task to the scheduler; ``alone`` if there is no other."""
+        if alone:
+            self.alone.add(task.id)
         future = self._asked(lambda: self.client.submit(_told, work, task, self.topic, pure=False))
         self.running[future] = task
         future.add_done_callback(lambda _: self.bell.set())
 
-    def ended(self, work: Callable[[Task], Outcome], died: Callable[[Task, str], Outcome]) -> Iterator[tuple[Task, Outcome]]:
-        """The tasks that have ended since, each with its outcome. One that only waited on workers that died of others is submitted once more."""
+    def ended(self, died: Callable[[Task, str], Outcome]) -> Iterator[tuple[Task, Outcome]]:
+        """The tasks that have ended since, each with its outcome; those whose workers died are `doubtful` first."""
         from distributed import KilledWorker
 
         for future in [future for future in self.running if future.done()]:
-            begun, task = future.key in self.since, self._taken(future)
+            task = self._taken(future)
             try:
                 yield task, future.result()
             except KilledWorker as error:
-                if not begun and task.id not in self.spared:
-                    self.spared.add(task.id)
-                    self.submit(work, task)
-                    continue
-                yield task, died(task, f"worker process died: {error}")
+                if task.id in self.alone:
+                    yield task, died(task, f"worker process died: {error}")
+                else:
+                    self.doubtful.append(task)
             except CancelledError:
                 raise self._lost() from None
 
