@@ -36,7 +36,8 @@ def scheduler_of(made: dask_case.Cluster) -> fault_case.Strike:
     def strike(night: subprocess.Popen[bytes], _chance: random.Random) -> bool:
         assert made.scheduler
         dask_case.kill(made.scheduler)
-        assert night.wait(fault_case.PATIENCE_S) in (0, 2), "the batch says that the scheduler was lost, or had all its results"
+        code = night.wait(fault_case.PATIENCE_S)
+        assert code in (0, 2), f"{code}, not that the scheduler was lost, or all results: {night.stderr and night.stderr.read().decode()}"
         workers, made.workers[:] = list(made.workers), []
         for worker in workers:
             dask_case.kill(worker)

@@ -49,8 +49,7 @@ def run(
     pipeline = config.load(path)
     began = time.monotonic()
     with reached(), lock.held(pipeline.reports) as still_ours:
-        sweep(pipeline.reports)
-        archive.sweep(pipeline.archive)
+        _tidy(pipeline)
         progress("plan", 0.0)
         todo = plan(pipeline, path.resolve().parent, retry, verify)
         why = todo.why  # before the work changes it
@@ -70,6 +69,8 @@ def run(
                 progress(f"{number} of {len(todo.todo)} logs, {task.log.name}", number / len(todo.todo))
         except UsageProblem as problem:
             stop = problem
+        if todo.todo:
+            _tidy(pipeline)  # a worker that died may have left something, and another may have done its log since
         records = Packed(chain(done, todo.done, todo.kept, todo.postponed))
         damaged, unusual, unwritten = _entered(pipeline, records, done)
         before = read_json(pipeline.reports / SUMMARY)
@@ -84,6 +85,12 @@ def run(
     if stop:
         raise stop
     return document
+
+
+def _tidy(pipeline: Pipeline) -> None:
+    """Remove what a kill left half-written; hold the lock of the reports."""
+    sweep(pipeline.reports)
+    archive.sweep(pipeline.archive)
 
 
 def _spread(pipeline: Pipeline, tasks: Sequence[Task], workers: int | None, scheduler: str | None) -> Iterator[tuple[Task, Outcome]]:

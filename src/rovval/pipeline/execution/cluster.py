@@ -45,7 +45,7 @@ def execute(
         ) from None
     with client:
         team = _Team(client, address)
-        client.subscribe_topic(team.topic, team.began)  # type: ignore[no-untyped-call,unused-ignore]
+        team.listen()
         waiting = list(reversed(tasks))
         while waiting or team.running or team.doubtful:
             for _ in range(team.wanted()):
@@ -76,6 +76,10 @@ class _Team:
     def topic(self) -> str:
         """Under which workers tell of tasks of this batch that they begin."""
         return f"rovval began, for {self.client.id}"
+
+    def listen(self) -> None:
+        """Hear from now on which tasks the workers begin."""
+        self._asked(lambda: self.client.subscribe_topic(self.topic, self.began))
 
     def began(self, event: tuple[float, str]) -> None:
         """A worker has begun the task of a key; again, where the worker before died."""
@@ -143,11 +147,13 @@ class _Team:
 
     def _asked(self, question: Callable[[], Any]) -> Any:
         """The cluster's answer. Raises `UsageProblem` where the scheduler is lost."""
+        from distributed.client import ClosedClientError
+
         if self.client.status != "running":
             raise self._lost()
         try:
             return question()
-        except OSError:
+        except (OSError, ClosedClientError, CancelledError):  # the latter two where it was lost this moment
             raise self._lost() from None
 
     def _lost(self) -> UsageProblem:
