@@ -69,8 +69,8 @@ def run(
                 progress(f"{number} of {len(todo.todo)} logs, {task.log.name}", number / len(todo.todo))
         except UsageProblem as problem:
             stop = problem
-        if todo.todo:
-            _tidy(pipeline)  # a worker that died may have left something, and another may have done its log since
+        if todo.todo and not stop:  # else a worker may be at work still, whose scheduler was lost
+            _tidy(pipeline)  # one that died may have left something, and another may have done its log since
         records = Packed(chain(done, todo.done, todo.kept, todo.postponed))
         damaged, unusual, unwritten = _entered(pipeline, records, done)
         before = read_json(pipeline.reports / SUMMARY)
