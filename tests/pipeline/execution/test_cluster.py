@@ -64,25 +64,23 @@ def test_a_log_that_takes_too_long_is_set_aside(site, dask, nanny):
 
 
 @pytest.mark.slow
-def test_a_worker_that_dies_of_a_log_takes_only_it_with_it(site, dask):
+@pytest.mark.parametrize(
+    ("deadly", "environment"),
+    [
+        (batch_case.deadly, {}),
+        # Dask holds every task of a worker that died for suspicious, also those that it had not begun.
+        (batch_case.deadly_after_a_while, {"DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "0"}),
+    ],
+    ids=["at_once", "while_others_wait"],
+)
+def test_a_worker_that_dies_of_a_log_takes_only_it_with_it(site, dask, monkeypatch, deadly, environment):
+    for name, value in environment.items():
+        monkeypatch.setenv(name, value)
     for number, name in enumerate(("killer", "z1", "z2")):
         batch_case.write_log(site / "logs" / f"{name}.csv", seed=50 + number)
     tasks = tasks_of(batch_case.write_pipeline(site))
     with dask_case.cluster(1) as made:
-        ended = stems(cluster.execute(tasks, batch_case.deadly, batch.died, made.address))
-    assert {name for name, outcome in ended.items() if outcome["status"] == "done"} == {"a", "b", "c", "z1", "z2"}
-    assert "worker process died" in ended["killer"]["record"]["reason"]
-
-
-@pytest.mark.slow
-def test_a_log_that_waits_behind_one_that_kills_is_done(site, dask, monkeypatch):
-    """Dask holds every task of a worker that died for suspicious, also those that it had not begun."""
-    monkeypatch.setenv("DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES", "0")
-    for number, name in enumerate(("killer", "z1", "z2")):
-        batch_case.write_log(site / "logs" / f"{name}.csv", seed=50 + number)
-    tasks = tasks_of(batch_case.write_pipeline(site))
-    with dask_case.cluster(1) as made:
-        ended = stems(cluster.execute(tasks, batch_case.deadly_after_a_while, batch.died, made.address))
+        ended = stems(cluster.execute(tasks, deadly, batch.died, made.address))
     assert {name for name, outcome in ended.items() if outcome["status"] == "done"} == {"a", "b", "c", "z1", "z2"}
     assert "worker process died" in ended["killer"]["record"]["reason"]
 
