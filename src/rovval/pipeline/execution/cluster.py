@@ -69,6 +69,8 @@ class _Team:
     since: dict[str, float] = field(default_factory=dict)  # by the future's key: when a worker last began it
     doubtful: list[Task] = field(default_factory=list)  # they were with workers that died, and wait to be done alone
     alone: set[str] = field(default_factory=set)  # ids of those that were
+    threads: int = 0  # of all workers, when last looked
+    looked: float = -LOOK_S
     alone_since: float | None = None
     bell: threading.Event = field(default_factory=threading.Event)  # rung when a task ends
 
@@ -88,12 +90,14 @@ class _Team:
     def wanted(self) -> int:
         """Tasks that the workers' threads still lack. Raises `UsageProblem` where the scheduler is lost, or has had no worker for too long: the batch
         would wait for ever without a word."""
-        threads: int = sum(self._asked(self.client.nthreads).values())
-        if threads:
+        now = time.monotonic()
+        if now - self.looked >= LOOK_S:
+            self.threads, self.looked = sum(self._asked(self.client.nthreads).values()), now
+        if self.threads:
             self.alone_since = None
-            return max(0, AHEAD * threads - len(self.running))
-        self.alone_since = self.alone_since or time.monotonic()
-        if time.monotonic() - self.alone_since > PATIENCE_S:
+            return max(0, AHEAD * self.threads - len(self.running))
+        self.alone_since = self.alone_since or now
+        if now - self.alone_since > PATIENCE_S:
             why = f"the Dask scheduler at {self.address} has had no worker for {PATIENCE_S:g} s"
             raise UsageProblem(why, f"start one with `dask worker {self.address}`")
         return 0
