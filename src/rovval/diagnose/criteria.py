@@ -108,7 +108,8 @@ GENERIC_SIZES = (0.01, 0.1, 1.0)  # prior sizes of a generic force that are trie
 
 # -- decision: consistency, indications, what is left ---------------------------------------------------------------------------------
 
-OPEN_GAP = 2.0 / 3.0  # share of a gap that neither noise nor tolerance accounts for, from which "no gap" would say too much (healthy logs: 0.51 at most)
+OPEN_GAP_RIGHT = 0.06  # mean open gap where the equations are right (healthy development logs of two plants and three vehicles: 0.03 to 0.1),
+OPEN_GAP_ELSE = 1.0  # and median where something else is at work: as large as what noise and tolerances make (chosen)
 INCONSISTENT_SHARE = 0.1  # of what causes reduce most (opened sets: right ones 0.005 at most, a real run 0.05; a gyro that clips as inertia 0.22)
 INCONSISTENT_DRIFT = 0.01  # rad within a window: an AHRS errs by less, as its tolerance says
 INDICATED_GAIN, INDICATED_EVIDENCE = 0.3, 2.0  # chosen: an effect with as much gain, and evidence at all, is mentioned though it is not named,

@@ -18,7 +18,7 @@ NAMES = ("waves", "dvl_scale", "thrust_lag", "time_offset", "cross_drag")
 
 def belief(
     evidence: dict[tuple[str, ...], float], file: float = -100.0, forces: float = -np.inf, beside: float = -np.inf, varying: float = -np.inf,
-    filed: float | None = None, weighed: Sequence[tuple[str, ...]] = (),
+    filed: float | None = None, weighed: Sequence[tuple[str, ...]] = (), open_gap: float = 0.0,
 ) -> Probabilities:  # fmt: skip
     """Probabilities where sets of causes have some evidence over the healthy vehicle."""
     prior = ModelPrior.of([Hypothesis(n, n, (), (), ()) for n in NAMES])
@@ -29,7 +29,7 @@ def belief(
     best = max(models, key=lambda m: m.log_posterior)
     files = {frozenset[str](): file} | ({best.names: filed} if filed is not None else {})
     alone = {frozenset(names): beside for names in weighed} or ({best.names: beside} if best.causes else {})
-    return probabilities(models, files, forces, alone, {best.names: varying} if best.causes else {})
+    return probabilities(models, files, forces, alone, {best.names: varying} if best.causes else {}, open_gap)
 
 
 @pytest.mark.parametrize("worth", [0.0, 8.0, 40.0, 4000.0])
@@ -76,7 +76,17 @@ def test_no_cause_is_certain(worth: float):
 
 
 def test_a_healthy_vehicle_may_be_certain():
-    assert belief({("waves",): -60.0}).healthy > 0.999
+    assert belief({("waves",): -60.0}, open_gap=-20.0).healthy > 0.999
+
+
+def test_a_gap_that_no_model_explains_is_something_else_and_beside_causes_too():
+    """It tells healthy from something else, and no cause from another."""
+    pair: dict[tuple[str, ...], float] = {("waves",): 40.0, ("dvl_scale",): 38.0}
+    assert belief({("waves",): -60.0}, open_gap=30.0).something_else > 0.99
+    closed, left = belief(pair), belief(pair, open_gap=30.0)
+    assert left.partly(frozenset({"waves"})) and not closed.partly(frozenset({"waves"}))
+    assert [left.of(n) for n in ("waves", "dvl_scale")] == pytest.approx([closed.of(n) for n in ("waves", "dvl_scale")], abs=0.02)
+    assert dict(left.group("waves")) == pytest.approx(dict(closed.group("waves")))
 
 
 def test_something_beside_the_causes_leaves_them_at_work():

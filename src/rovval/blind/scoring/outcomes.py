@@ -2,7 +2,8 @@
 
 An answer says one of: a cause (the first named), ``healthy``, ``something_else`` or ``file``. A cause is right where it, and nothing of another kind, was
 planted; ``healthy`` where nothing was; ``something_else`` where the library lacks what was, or it was taken out; ``file``, many coefficients off at
-once, is planted by no plant and never right. Logs with effects that nobody could see in them are counted apart: neither answer is wrong there.
+once, is planted by no plant and never right. Logs with effects that nobody could see in them (known ones by the fit of their own form, `oracle`, others by
+the same flight without them, `twin`) are counted apart: neither answer is wrong there.
 """
 
 from __future__ import annotations
@@ -51,8 +52,9 @@ def true_kind(row: Row) -> str:
 
 
 def visible(row: Row, best: Mapping[str, float]) -> bool:
-    """Whether what was planted could be seen: each known effect's own fit closes `SEEN` of the gap above noise, surely. True where none is known."""
-    if true_kind(row) != "causes":
+    """Whether what was planted could be seen: each known effect's own fit closes `SEEN` of the gap above noise, surely, or the twin without what the library
+    lacks has so much less of a gap. True where nothing was planted, or no twin was asked."""
+    if true_kind(row) == "healthy" or (true_kind(row) != "causes" and not best):
         return True
     above = 1.0 - float(row.get("noise") or 0.0)
     closed = best.get("each", 0.0) if len(row["truth"]) > 1 else best.get("seen", 0.0)

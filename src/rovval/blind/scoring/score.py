@@ -13,6 +13,7 @@ from rovval.blind.scoring import ground_truth, history, outcomes, tables
 from rovval.blind.scoring.oracle import oracle
 from rovval.blind.scoring.rules import score_log
 from rovval.blind.scoring.strata import strata
+from rovval.blind.scoring.twin import Flown, made_by_effect
 from rovval.blind.sealed import sealing
 from rovval.blind.sealed.answer import one_thread_each
 from rovval.blind.sealed.folder import Folder, write
@@ -65,7 +66,7 @@ def score_set(
     sealed = json.loads(sealing.unseal(place.labels.read_bytes(), secret))
     labels = sealed["logs"]
     answers = {row["log"]: row for row in (json.loads(p.read_text(encoding="utf-8")) for p in place.answer_files())}
-    best = _oracles(place, manifest, labels, commit, workers, say)
+    best = _oracles(place, manifest, sealed, commit, workers, say)
     result = score_logs(labels, answers, best, manifest["vehicle"])
     result = {
         "schema": SCHEMA, "opened": opened, "seed": sealed["seed"], "size": sealed["size"], "vehicle": sealed["vehicle"],
@@ -150,24 +151,28 @@ def _open(place: Folder, commit: Mapping[str, Any]) -> str:
 
 
 def _oracles(
-    place: Folder, manifest: Mapping[str, Any], labels: Mapping[str, Any], commit: Mapping[str, Any], workers: int, say: Say
+    place: Folder, manifest: Mapping[str, Any], sealed: Mapping[str, Any], commit: Mapping[str, Any], workers: int, say: Say
 ) -> dict[str, dict[str, float]]:
-    """The oracle of every log with known effects; kept beside the score, since it does not depend on the answers."""
+    """The oracle of every log with known effects, and of every log of one that the library lacks what its twin says of it; kept beside the score, since
+    they do not depend on the answers."""
     kept = place.root / "oracle.json"
-    if kept.is_file() and (found := json.loads(kept.read_text(encoding="utf-8")))["engine"] == commit["engine"]:
-        return dict(found["logs"])
-    done: dict[str, dict[str, float]] = {}
+    found = json.loads(kept.read_text(encoding="utf-8")) if kept.is_file() else {}
+    done: dict[str, dict[str, float]] = dict(found["logs"]) if found.get("engine") == commit["engine"] else {}
     asked = {name: commit[name] for name in ("model", "window_s", "calibration_slop")}
     with one_thread_each(), ProcessPoolExecutor(workers, mp_context=get_context("forkserver")) as pool:
         jobs = {}
-        for name, label in labels.items():
+        for name, label in ((name, label) for name, label in sealed["logs"].items() if label["effects"] and name not in done):
             effects = [e for e in label["effects"] if not ground_truth.foreign(e)]
             onsets = {ground_truth.name(e): e["onset_s"] for e in effects if e["onset_s"] is not None}
             true = list(dict.fromkeys(ground_truth.name(e) for e in effects))
             if true:
-                jobs[pool.submit(oracle, place.logs / name, manifest["vehicle"], true, onsets, asked)] = name
+                job = pool.submit(oracle, place.logs / name, manifest["vehicle"], true, onsets, asked)
+            else:
+                flown = Flown(label["mission"], label["seed"], label["duration_s"], label["slop"], sealed.get("plant", "a"))
+                job = pool.submit(made_by_effect, place.logs / name, manifest["vehicle"], flown, asked)
+            jobs[job] = name
         for job in as_completed(jobs):
             done[jobs[job]] = job.result()
-            say(f"oracle {len(done)} of {len(jobs)}", len(done) / len(jobs))
+            say(f"oracle {len(done)} of {len(sealed['logs'])}", len(done) / len(sealed["logs"]))
     write(kept, {"engine": commit["engine"], "logs": done})
     return done

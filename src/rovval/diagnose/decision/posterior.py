@@ -17,8 +17,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from math import exp, log
+from math import exp, inf, log
 from typing import Literal
+
+import numpy as np
 
 from rovval.diagnose.criteria import (
     EVEN_ODDS,
@@ -51,6 +53,7 @@ class Probabilities:
             to vary along the log.
         varying: the latter part of it.
         at_work: of each cause, that it is at work, and not a form error that looks like it.
+        weighed: sets of causes beside which generic forces were looked for.
     """
 
     sets: Mapping[Names, float]
@@ -60,6 +63,7 @@ class Probabilities:
     something_else: float
     varying: float
     at_work: Mapping[str, float]
+    weighed: frozenset[Names]
 
     @property
     def healthy(self) -> float:
@@ -80,7 +84,7 @@ class Probabilities:
     def best(self) -> Names:
         """The set of causes that is named where causes are believed: as many as is most probable, and those of which the true set is then expected to hold the
         most, of the sets that were weighed with something else beside them (of all where none was); empty where there is none."""
-        weighed = [names for names in self.ranked if names in self.beside] or self.ranked
+        weighed = [names for names in self.ranked if names in self.weighed] or self.ranked
         whole = self._whole()
         count = max((len(names) for names in weighed), key=lambda n: sum(p for names, p in whole.items() if len(names) == n), default=0)
         return max((names for names in weighed if len(names) == count), key=lambda names: sum(map(self.of, names)), default=frozenset())
@@ -125,7 +129,8 @@ class Probabilities:
 
 
 def probabilities(
-    models: Sequence[Model], file: Mapping[Names, float], forces: float, beside: Mapping[Names, float], varying: Mapping[Names, float]
+    models: Sequence[Model], file: Mapping[Names, float], forces: float, beside: Mapping[Names, float], varying: Mapping[Names, float],
+    open_gap: float = 0.0,
 ) -> Probabilities:
     """Probabilities of the models that a search met.
 
@@ -136,15 +141,16 @@ def probabilities(
         forces: evidence of something else on the healthy vehicle, over it; its prior among such forces included.
         beside: the same of something else beside sets of causes, over these.
         varying: the same of a cause that varies along the log, over the set that it is of; a part of it is something else, the rest that cause in another form.
+        open_gap: the same of something else, beside whatever cause, by how much no model explains (`open_gap.evidence_of_something_else`).
     """
     best = _best_of_each_set(models)
     doubt = log(PRIOR_SOMETHING_ELSE / PRIOR_HEALTHY)
     nothing = best[frozenset()]
     known = {("sets", names): m.log_posterior for names, m in best.items()}
-    known |= {("beside", names): best[names].log_posterior + doubt + 0.5 * more for names, more in beside.items()}
+    known |= {("beside", names): m.log_posterior + doubt + _something_else(beside.get(names, -inf), open_gap) for names, m in best.items() if names}
     filed = log(PRIOR_FILE / PRIOR_HEALTHY)
     known |= {("filed", names): best[names].log_prior + filed + 0.5 * evidence for names, evidence in file.items()}
-    known["else", frozenset()] = nothing.log_posterior + doubt + 0.5 * forces
+    known["else", frozenset()] = nothing.log_posterior + doubt + _something_else(forces, open_gap)
     for names, more in varying.items():  # what only comes near a cause, or that cause in another form
         whole = best[names].log_posterior + doubt + 0.5 * more
         known["varying", names], known["form", names] = whole + log(VARYING_ALIKE), whole + log(1.0 - VARYING_ALIKE)
@@ -162,8 +168,14 @@ def probabilities(
         filed={names: p for (kind, names), p in share.items() if kind == "filed" and names},
         file=share.get(("filed", frozenset()), 0.0), varying=inconstant,
         something_else=share["else", frozenset()] + inconstant + sum(believed.values()) - sum(share.values()),
-        at_work=_at_work(share, best),
+        at_work=_at_work(share, best), weighed=frozenset(beside),
     )  # fmt: skip
+
+
+def _something_else(forces: float, open_gap: float) -> float:
+    """Log Bayes factor of something else, by both of what tells it: it is as likely to go with the motion (generic ``forces``) as with nothing that was
+    logged, and either leaves an ``open_gap``."""
+    return float(np.logaddexp(0.5 * forces, 0.0)) - log(2.0) + 0.5 * open_gap
 
 
 def _at_work(share: Mapping[tuple[str, Names], float], best: Mapping[Names, Model]) -> dict[str, float]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from rovval.core.channels import AXES
 from rovval.core.data import Array
-from rovval.diagnose.criteria import ACTING_FORCE, MOST_ACTING, MOST_VARYING, OPEN_GAP, OUT_OF_TOLERANCE, VARYING_FORCE
+from rovval.diagnose.criteria import ACTING_FORCE, MOST_ACTING, MOST_VARYING, OUT_OF_TOLERANCE, VARYING_FORCE
 from rovval.diagnose.inference.gap import noise_floor_loss, weighted_errors
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem
@@ -75,10 +75,7 @@ def unexplained(problem: Problem, forces: GenericForces, point: Posterior, incon
     return Unexplained(tuple(axes), tuple(depends), forces.held_out_gain(problem.folds), departed, tuple(inconstant))
 
 
-def open_gap(problem: Problem, known: Accounted, residuals: list[Array]) -> Unexplained | None:
-    """A gap of which noise and tolerance account for too little to call it none, though no model explains it; None where they account for enough.
-    ``residuals`` are the nominal vehicle's residuals."""
-    if 1.0 - known.share <= OPEN_GAP:
-        return None
+def unexplained_by_any(problem: Problem, known: Accounted, residuals: list[Array]) -> Unexplained:
+    """A gap that goes with nothing that was logged: the axis of its largest part. ``residuals`` are the nominal vehicle's."""
     weight = weighted_errors(problem, residuals)
     return Unexplained((max(axis_channels(problem.runs[0]), key=lambda axis: weight[axis]),), accounted=known.share)

@@ -16,8 +16,9 @@ from rovval.diagnose.decision.consistency import inconsistencies
 from rovval.diagnose.decision.constancy import variation
 from rovval.diagnose.decision.indications import Indications, indications
 from rovval.diagnose.decision.miscalibration import file_evidence
+from rovval.diagnose.decision.open_gap import evidence_of_something_else, open_gap
 from rovval.diagnose.decision.posterior import Names, Probabilities, probabilities
-from rovval.diagnose.decision.unexplained import Accounted, Unexplained, accounted, open_gap, unexplained
+from rovval.diagnose.decision.unexplained import Accounted, Unexplained, accounted, unexplained, unexplained_by_any
 from rovval.diagnose.effort import NEGLIGIBLE, SETS_WEIGHED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.gap import weighted_errors
@@ -77,7 +78,8 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
     more = {names: forces.sparse()[0] for names, forces in beside.items()}
     varies = {one.names: variation(problem, one.fit.posterior, one.causes) for one in leading if one.fit}
     evidence = instead.sparse()[0]
-    belief = probabilities(selection.models, file, evidence, more, varies)
+    left = open_gap(problem, [selection.healthy, *(m.fit.posterior for m in [*selection.models, *leading] if m.fit)])
+    belief = probabilities(selection.models, file, evidence, more, varies, evidence_of_something_else(left))
     best = next((one for one in leading if one.names == belief.best), selection.models[0])
     known = accounted(problem, selection.healthy)
     over = best.evidence - selection.models[0].evidence
@@ -88,9 +90,10 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
         return _named(problem, selection, found, best, best.fit, beside[best.names])
     found = replace(found, indications=indications(selection.steps[0] if selection.steps else (), known, faults))
     if belief.likelier_than_not == "healthy":
-        rest = open_gap(problem, replace(known, departure=0.0), residuals)  # it is believed, so what its coefficients account for counts
-        return replace(found, verdict="unknown" if rest else "no_gap", unexplained=rest)
+        return found
     inconstant = [h.name for h in best.causes] if belief.varying > 0.5 * belief.something_else else []
+    if belief.something_else > max(belief.healthy, belief.causes) and evidence <= 0.0 and not inconstant:
+        return replace(found, verdict="unknown", unexplained=unexplained_by_any(problem, known, residuals))
     return replace(found, verdict="unknown", unexplained=unexplained(problem, nominal_forces(problem), selection.healthy, inconstant))
 
 

@@ -33,7 +33,7 @@ def unknown(d: Diagnosis) -> str:
     if opposed and likely in ("causes", ""):
         return f"No cause is named, because the log contradicts itself: {opposed[0].channel} {opposed[0].detail}."
     if d.left and d.left.accounted is not None:
-        return f"There is a gap that nothing here explains: {known(d)} account for only {per_cent(d.left.accounted)} of it, and no effect for the rest."
+        return f"There is a gap that nothing here explains{sure}: {known(d)} account for only {per_cent(d.left.accounted)} of it, and no effect for the rest."
     if likely == "file":
         return f"No single cause: many numbers of the vehicle's file seem to be off at once{sure}."
     return f"There is a gap, and no effect of the library is its cause: something else is at work{sure}{_acting(d)}."

@@ -1,0 +1,40 @@
+"""The open gap: what no model of a log explains, beside what the noise of its sensors and a vehicle within its tolerances make.
+
+Forces that nobody logged are a nuisance of every model, as large as the log shows them (`problem.disturbance`), so that the likelihood alone never calls
+them too large. How large they are has a prior: small about a vehicle of which the equations are right, of any size where something else is at work. It says
+how likely something else is, and nothing of which cause it is beside: the gap that the best of all models leaves open is the same for each of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import log
+
+import numpy as np
+
+from rovval.diagnose.criteria import OPEN_GAP_ELSE, OPEN_GAP_RIGHT
+from rovval.diagnose.inference.gap import noise_floor_loss
+from rovval.diagnose.inference.laplace import Posterior
+from rovval.diagnose.problem.problem import Problem
+
+
+def open_gap(problem: Problem, models: Iterable[Posterior]) -> float:
+    """Squared gap that the best of ``models`` leaves, beyond noise, over what noise and tolerances are expected to make (1); 0 at least.
+
+    Tolerances make what coefficients and sensors do that are off by one standard deviation of their prior, each by itself.
+    """
+    gap = problem.gap.dynamics
+    whole, noise = float(gap.c.sum()), float(noise_floor_loss(problem).sum())
+    left = min(float(point.dynamics_loss().sum()) for point in models) / float(problem.likelihood.dynamics.c.sum())
+    columns, sd = tuple(problem.tolerance.sd), np.array(list(problem.tolerance.sd.values()))
+    tolerated = float((gap.A.sum(axis=0).diagonal()[gap.place(columns)] * sd**2).sum())
+    return max(0.0, (left * whole - noise) / (noise + tolerated))
+
+
+def evidence_of_something_else(gap: float) -> float:
+    """Twice the log Bayes factor of something else over the equations that are right, by the size of an open gap (1).
+
+    It is exponential, of mean `OPEN_GAP_RIGHT`, where they are right; else log-logistic, of median `OPEN_GAP_ELSE`, which excludes no size.
+    """
+    something_else = log(OPEN_GAP_ELSE) - 2.0 * log(OPEN_GAP_ELSE + gap)
+    return 2.0 * (something_else + log(OPEN_GAP_RIGHT) + gap / OPEN_GAP_RIGHT)
