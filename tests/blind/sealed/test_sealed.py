@@ -59,6 +59,11 @@ def test_the_folder_tells_nothing(sealed: Folder):
         assert path.is_dir() or b"buoyancy_error" not in path.read_bytes()
 
 
+def test_a_set_holds_its_vehicle(copy: Folder):
+    """It can be answered and scored where the file that it was made with is not."""
+    assert copy.vehicle().parent == copy.root and copy.vehicle().read_bytes() == MERLIN.read_bytes()
+
+
 def test_a_set_is_never_made_over_another(sealed: Folder, tmp_path: Path):
     with pytest.raises(UsageProblem, match="is not empty"):
         make_set(sealed.root, MERLIN, 3, asked=QUESTIONS)

@@ -66,8 +66,8 @@ def score_set(
     sealed = json.loads(sealing.unseal(place.labels.read_bytes(), secret))
     labels = sealed["logs"]
     answers = {row["log"]: row for row in (json.loads(p.read_text(encoding="utf-8")) for p in place.answer_files())}
-    best = _oracles(place, manifest, sealed, commit, workers, say)
-    result = score_logs(labels, answers, best, manifest["vehicle"])
+    best = _oracles(place, sealed, commit, workers, say)
+    result = score_logs(labels, answers, best, str(place.vehicle()))
     result = {
         "schema": SCHEMA, "opened": opened, "seed": sealed["seed"], "size": sealed["size"], "vehicle": sealed["vehicle"],
         "plant": sealed.get("plant", "a"),
@@ -151,14 +151,14 @@ def _open(place: Folder, commit: Mapping[str, Any]) -> str:
 
 
 def _oracles(
-    place: Folder, manifest: Mapping[str, Any], sealed: Mapping[str, Any], commit: Mapping[str, Any], workers: int, say: Say
+    place: Folder, sealed: Mapping[str, Any], commit: Mapping[str, Any], workers: int, say: Say
 ) -> dict[str, dict[str, float]]:
     """The oracle of every log with known effects, and of every log of one that the library lacks what its twin says of it; kept beside the score, since
     they do not depend on the answers."""
     kept = place.root / "oracle.json"
     found = json.loads(kept.read_text(encoding="utf-8")) if kept.is_file() else {}
     done: dict[str, dict[str, float]] = dict(found["logs"]) if found.get("engine") == commit["engine"] else {}
-    asked = {name: commit[name] for name in ("model", "window_s", "calibration_slop")}
+    asked, vehicle = {name: commit[name] for name in ("model", "window_s", "calibration_slop")}, str(place.vehicle())
     with one_thread_each(), ProcessPoolExecutor(workers, mp_context=get_context("forkserver")) as pool:
         jobs = {}
         for name, label in ((name, label) for name, label in sealed["logs"].items() if label["effects"] and name not in done):
@@ -166,10 +166,10 @@ def _oracles(
             onsets = {ground_truth.name(e): e["onset_s"] for e in effects if e["onset_s"] is not None}
             true = list(dict.fromkeys(ground_truth.name(e) for e in effects))
             if true:
-                job = pool.submit(oracle, place.logs / name, manifest["vehicle"], true, onsets, asked)
+                job = pool.submit(oracle, place.logs / name, vehicle, true, onsets, asked)
             else:
                 flown = Flown(label["mission"], label["seed"], label["duration_s"], label["slop"], sealed.get("plant", "a"))
-                job = pool.submit(made_by_effect, place.logs / name, manifest["vehicle"], flown, asked)
+                job = pool.submit(made_by_effect, place.logs / name, vehicle, flown, asked)
             jobs[job] = name
         for job in as_completed(jobs):
             done[jobs[job]] = job.result()

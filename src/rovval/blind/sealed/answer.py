@@ -42,12 +42,12 @@ def answer_set(
     if place.commit.is_file():
         return place.committed()
     engine, asked = engine_hash(), {"calibration_slop": 0.05, "window_s": 10.0, "model": manifest["model"], "floors": baselines}
-    done = _done(place, engine)
+    done, vehicle = _done(place, engine), str(place.vehicle())
     left = [name for name in manifest["logs"] if name not in done]
     began = time.monotonic()
     with one_thread_each(), ProcessPoolExecutor(workers, mp_context=get_context("forkserver")) as pool:
         jobs = {
-            pool.submit(one, place.logs / name, manifest["vehicle"], manifest["logs"][name]["without"], asked): name
+            pool.submit(one, place.logs / name, vehicle, manifest["logs"][name]["without"], asked): name
             for name in left
         }
         for count, job in enumerate(as_completed(jobs), 1):

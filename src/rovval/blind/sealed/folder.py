@@ -1,6 +1,6 @@
 """The folder of a sealed set, what lies where in it, and in which order things may happen to it.
 
-make -> ``manifest.json``, ``labels.sealed``, ``logs/``; answer -> ``answers/``, then ``answers.sha256`` commits them; score ->
+make -> ``manifest.json``, the vehicle's file, ``labels.sealed``, ``logs/``; answer -> ``answers/``, then ``answers.sha256`` commits them; score ->
 ``opened.json`` first, then the labels are read. What was committed before the seal was opened is all that is ever scored.
 """
 
@@ -66,6 +66,10 @@ class Folder:
         if found.get("schema") != MANIFEST:
             raise BadInput(f"{path} is not a manifest of this version", "make the set again with this version of rovval")
         return found
+
+    def vehicle(self) -> Path:
+        """The vehicle's file as it was when the set was made: beside the logs, so that a set is whole wherever it is taken."""
+        return self.root / str(self.manifest()["vehicle"])
 
     def check_logs(self) -> None:
         """Logs and labels are those that were sealed. Raises `BadInput` naming the first that is not."""

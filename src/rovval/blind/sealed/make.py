@@ -6,6 +6,7 @@ import datetime
 import json
 import os
 import secrets
+import shutil
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from multiprocessing import get_context
@@ -60,13 +61,14 @@ def make_set(
     flown = {name: label for name, label in sorted(labels.items()) if "failed" not in label}
     if not flown:
         raise UsageProblem(f"{root}: every flight failed: {next(iter(labels.values()))['failed']}", "check the vehicle file")
+    shutil.copyfile(vehicle, root / vehicle.name)
     _equalise([place.logs / name for name in flown])
     text = {"schema": "rovval.blind-labels/1", "vehicle": vehicle.stem, "plant": plant, "seed": drawn, "size": size, "logs": flown}
     text["failed"] = [label for label in labels.values() if "failed" in label]
     place.labels.write_bytes(sealing.seal(json.dumps(text).encode(), secret))
     rows = {name: {"sha256": sealing.digest(place.logs / name), "without": label["without"]} for name, label in flown.items()}
     write(root / "manifest.json", {
-        "schema": MANIFEST, "made": now(), "vehicle": str(vehicle), "plant": plant, "model": "fossen", "count": len(rows),
+        "schema": MANIFEST, "made": now(), "vehicle": vehicle.name, "plant": plant, "model": "fossen", "count": len(rows),
         "labels_sha256": sealing.digest(place.labels), "logs": rows,
     })  # fmt: skip
     return place
