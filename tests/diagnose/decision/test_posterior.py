@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from rovval.diagnose.criteria import GROUP_PROBABILITY, VARYING_ALIKE
+from rovval.diagnose.decision.open_gap import evidence_of_something_else
 from rovval.diagnose.decision.posterior import Probabilities, probabilities
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.search.model import Model, ModelPrior
@@ -77,6 +78,7 @@ def test_no_cause_is_certain(worth: float):
 
 def test_a_healthy_vehicle_may_be_certain():
     assert belief({("waves",): -60.0}, open_gap=-20.0).healthy > 0.999
+    assert belief({("waves",): -60.0}, open_gap=evidence_of_something_else(0.0)).healthy > 0.99  # as sure as any log makes it
 
 
 def test_a_gap_that_no_model_explains_is_something_else_and_beside_causes_too():

@@ -9,11 +9,12 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
+from rovval.blind.cases.grid import Case
 from rovval.blind.scoring import ground_truth, history, outcomes, tables
 from rovval.blind.scoring.oracle import oracle
 from rovval.blind.scoring.rules import score_log
 from rovval.blind.scoring.strata import strata
-from rovval.blind.scoring.twin import Flown, made_by_effect
+from rovval.blind.scoring.twin import made_by_effect
 from rovval.blind.sealed import sealing
 from rovval.blind.sealed.answer import one_thread_each
 from rovval.blind.sealed.folder import Folder, write
@@ -66,8 +67,9 @@ def score_set(
     sealed = json.loads(sealing.unseal(place.labels.read_bytes(), secret))
     labels = sealed["logs"]
     answers = {row["log"]: row for row in (json.loads(p.read_text(encoding="utf-8")) for p in place.answer_files())}
-    best = _oracles(place, sealed, commit, workers, say)
-    result = score_logs(labels, answers, best, str(place.vehicle()))
+    vehicle = str(place.vehicle())
+    best = _oracles(place, vehicle, sealed, commit, workers, say)
+    result = score_logs(labels, answers, best, vehicle)
     result = {
         "schema": SCHEMA, "opened": opened, "seed": sealed["seed"], "size": sealed["size"], "vehicle": sealed["vehicle"],
         "plant": sealed.get("plant", "a"),
@@ -151,28 +153,29 @@ def _open(place: Folder, commit: Mapping[str, Any]) -> str:
 
 
 def _oracles(
-    place: Folder, sealed: Mapping[str, Any], commit: Mapping[str, Any], workers: int, say: Say
+    place: Folder, vehicle: str, sealed: Mapping[str, Any], commit: Mapping[str, Any], workers: int, say: Say
 ) -> dict[str, dict[str, float]]:
     """The oracle of every log with known effects, and of every log of one that the library lacks what its twin says of it; kept beside the score, since
     they do not depend on the answers."""
     kept = place.root / "oracle.json"
     found = json.loads(kept.read_text(encoding="utf-8")) if kept.is_file() else {}
     done: dict[str, dict[str, float]] = dict(found["logs"]) if found.get("engine") == commit["engine"] else {}
-    asked, vehicle = {name: commit[name] for name in ("model", "window_s", "calibration_slop")}, str(place.vehicle())
+    wanted = {name: label for name, label in sealed["logs"].items() if label["effects"] and name not in done}
+    asked = {name: commit[name] for name in ("model", "window_s", "calibration_slop")}
     with one_thread_each(), ProcessPoolExecutor(workers, mp_context=get_context("forkserver")) as pool:
         jobs = {}
-        for name, label in ((name, label) for name, label in sealed["logs"].items() if label["effects"] and name not in done):
+        for name, label in wanted.items():
             effects = [e for e in label["effects"] if not ground_truth.foreign(e)]
             onsets = {ground_truth.name(e): e["onset_s"] for e in effects if e["onset_s"] is not None}
             true = list(dict.fromkeys(ground_truth.name(e) for e in effects))
             if true:
                 job = pool.submit(oracle, place.logs / name, vehicle, true, onsets, asked)
             else:
-                flown = Flown(label["mission"], label["seed"], label["duration_s"], label["slop"], sealed.get("plant", "a"))
-                job = pool.submit(made_by_effect, place.logs / name, vehicle, flown, asked)
+                without_it = Case(label["mission"], (), label["seed"], label["duration_s"], label["slop"], sealed.get("plant", "a"))
+                job = pool.submit(made_by_effect, place.logs / name, vehicle, without_it, asked)
             jobs[job] = name
-        for job in as_completed(jobs):
+        for count, job in enumerate(as_completed(jobs), 1):
             done[jobs[job]] = job.result()
-            say(f"oracle {len(done)} of {len(sealed['logs'])}", len(done) / len(sealed["logs"]))
+            say(f"oracle {count} of {len(jobs)}", count / len(jobs))
     write(kept, {"engine": commit["engine"], "logs": done})
     return done

@@ -7,7 +7,6 @@ flights part, since the pilot sees the effect too: they are compared in the mean
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -16,7 +15,7 @@ import numpy as np
 
 from rovval.blind.cases.generate import make
 from rovval.blind.cases.grid import Case
-from rovval.blind.plant.spec import Array, PlantName
+from rovval.blind.plant.spec import Array
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.inference.map_fit import healthy_fit
@@ -24,26 +23,15 @@ from rovval.diagnose.problem.problem import gap_equations_at, pose
 from rovval.diagnose.windows.multiple_shooting import cut_run
 
 
-@dataclass(frozen=True, slots=True)
-class Flown:
-    """How a log was made, but for its effects."""
-
-    mission: str
-    seed: int
-    duration_s: float
-    slop: float
-    plant: PlantName
-
-
-def made_by_effect(log: Path, vehicle: str, flown: Flown, asked: Mapping[str, Any]) -> dict[str, float]:
-    """``seen``: share of the log's squared gap to the healthy vehicle, coefficients fitted within tolerance, that its twin without effects does not have,
-    of the dynamics or with the kinematic checks, whichever is larger; ``sure``: the standard errors of that difference. Empty where no twin can be
-    flown, or a log has no usable window."""
+def made_by_effect(log: Path, vehicle: str, without_it: Case, asked: Mapping[str, Any]) -> dict[str, float]:
+    """``seen``: share of the log's squared gap to the healthy vehicle, coefficients fitted within tolerance, that its twin, the case ``without_it``, does
+    not have, of the dynamics or with the kinematic checks, whichever is larger; ``sure``: the standard errors of that difference. Empty where no twin can
+    be flown, or a log has no usable window."""
     from rovval.core.errors import RovvalError
 
     with TemporaryDirectory() as folder:
         twin = Path(folder) / "twin.csv"
-        if "failed" in make(Path(vehicle), Case(flown.mission, (), flown.seed, flown.duration_s, flown.slop, flown.plant), twin):
+        if "failed" in make(Path(vehicle), without_it, twin):
             return {}
         try:
             with_it, without = (_gap(path, vehicle, **asked) for path in (log, twin))

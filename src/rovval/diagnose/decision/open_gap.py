@@ -13,7 +13,7 @@ from math import log
 import numpy as np
 
 from rovval.diagnose.criteria import OPEN_GAP_ELSE, OPEN_GAP_RIGHT
-from rovval.diagnose.inference.gap import noise_floor_loss
+from rovval.diagnose.inference.gap import noise_floor_loss, share_left
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem
 
@@ -25,7 +25,7 @@ def open_gap(problem: Problem, models: Iterable[Posterior]) -> float:
     """
     gap = problem.gap.dynamics
     whole, noise = float(gap.c.sum()), float(noise_floor_loss(problem).sum())
-    left = min(float(point.dynamics_loss().sum()) for point in models) / float(problem.likelihood.dynamics.c.sum())
+    left = min(share_left(problem, point) for point in models)
     columns, sd = tuple(problem.tolerance.sd), np.array(list(problem.tolerance.sd.values()))
     tolerated = float((gap.A.sum(axis=0).diagonal()[gap.place(columns)] * sd**2).sum())
     return max(0.0, (left * whole - noise) / (noise + tolerated))

@@ -2,7 +2,7 @@
 
 All are on one scale: prior mass times marginal likelihood, the likelihood tempered for equations that are only nearly right (coarsened posterior:
 Miller and Dunson 2019; `problem.Problem.tempering`). Something else is what no effect of the library is: a few generic forces, on a healthy vehicle or
-beside causes (model discrepancy: Kennedy and O'Hagan 2001).
+beside causes (model discrepancy: Kennedy and O'Hagan 2001), or forces that go with nothing that was logged; either leaves an open gap (`open_gap`).
 
 No log tells two explanations apart that predict the same; they share its probability by their priors. Most of what the library lacks looks like something of
 it (`LIBRARY_ALIKE`): so something else has a part of the mass of every set of causes, and no cause is ever certain. And what the equations of causes are off

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.data import Array
+from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.windows.windows import axis_channels
 
@@ -74,6 +75,11 @@ def weighted_errors(problem: Problem, residuals: Sequence[Array]) -> dict[str, f
         for axis, value in zip(windows.axes, scaled, strict=True):
             weight[axis] = weight.get(axis, 0.0) + float(value)
     return weight
+
+
+def share_left(problem: Problem, point: Posterior) -> float:
+    """Share (1) of the squared error of the dynamics that a fit leaves, in the metric of the likelihood."""
+    return float(point.dynamics_loss().sum()) / float(problem.likelihood.dynamics.c.sum())
 
 
 def noise_floor_loss(problem: Problem) -> Array:
