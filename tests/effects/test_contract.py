@@ -176,6 +176,16 @@ def test_sized_parameters_grow_with_the_vehicle():
     assert typical[0] == pytest.approx(3.0, rel=1e-3) and typical[1] == pytest.approx(3.0 * 2936 * 9.81 / 132.57, rel=1e-3)
 
 
+def test_lengths_grow_with_the_cube_root_of_the_weight_and_searches_begin_within():
+    """Vehicles of one shape: how far above the bottom its own jets are felt goes by their size."""
+    small, large = (Plant(vehicle.load(n)) for n in ("bluerov2_heavy", "merlin"))
+    near, far = (p.slots[p.index["ground_effect.height"]].parameter for p in (small, large))
+    assert far.high / near.high == pytest.approx((2936 * 9.81 / 132.57) ** (1 / 3), rel=1e-3)
+    for p in (near, far):
+        assert p.low <= min(p.starts) < p.null < max(p.starts) <= p.high
+        assert p.starts[0] / p.high == pytest.approx(near.starts[0] / near.high)
+
+
 def test_the_true_heading_is_found_at_the_corners_of_every_deviation_card():
     rng, compass, n = np.random.default_rng(0), effects.module("compass_deviation"), 4000
     p = {part.name: rng.choice([part.low, part.high], n) for part in compass.EFFECT.parameters}

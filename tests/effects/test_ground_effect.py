@@ -40,6 +40,12 @@ def test_near_the_bottom_drag_in_heave_brakes_and_a_gain_lifts():
     assert w["gain=300"] < w["gain=1e-9"] < w["gain=-300"] and 0.0 < w["drag=5"] < w["gain=1e-9"]
 
 
+def test_a_bottom_never_takes_drag_away():
+    """A negative share would be a slip of the hull along the vertical, and imitates a trim that is off."""
+    with pytest.raises(UsageProblem, match=r"ground_effect\.drag = -0\.5, allowed 0 to 30"):
+        sunk("ground_effect:drag=-0.5,seabed=21.5", None)
+
+
 def test_without_altitude_and_seabed_it_is_refused():
     with pytest.raises(UsageProblem, match=r"ground_effect needs altitude, or ground_effect\.seabed"):
         sunk("ground_effect:gain=100", None)

@@ -13,13 +13,15 @@ from typing import Literal, get_args
 from rovval.vehicle.model import Vehicle
 
 Place = Literal["vehicle", "input", "water", "wrench", "sensor"]
-Growth = Literal["", "weight", "drag", "speed"]
+Growth = Literal["", "weight", "length", "drag", "speed"]
 Role = Literal["size", "amplitude", "onset", "period", "further period", "phase", "direction", "datum", "level", "bottom", "extent", "anchor", "lever"]
 Error = Literal["additive", "factor", "delay"]
 Stage = Literal["", "position", "mounting", "scale", "bias", "filter", "delay"]
 Family = Literal["", "drag", "thrust", "allocation", "mass", "trim"]
 TOGETHER = {"translation": ("surge", "sway", "heave"), "rotation": ("roll", "pitch", "yaw")}  # axes that one wrong estimate of a hull has off alike
-GROWS = {"weight": "the weight", "drag": "the drag at 1 m/s ahead", "speed": "the thrusters' speed at 1 m/s ahead"}  # what sized parameters go by
+GROWS = {  # what sized parameters go by
+    "weight": "the weight", "length": "the cube root of the weight", "drag": "the drag at 1 m/s ahead", "speed": "the thrusters' speed at 1 m/s ahead",
+}  # fmt: skip
 STAGES: tuple[str, ...] = get_args(Stage)
 FAMILIES: tuple[str, ...] = get_args(Family)[1:]
 SIZES = ("size", "amplitude", "lever")  # roles of parameters that have a null value of their own; the others only place an effect
@@ -58,7 +60,8 @@ class Parameter:
     - ``name``, ``unit`` (SI, rad), ``source``: where its range comes from.
     - ``low``, ``high``: refused beyond, never clipped. ``null``: the value at which it changes nothing, to the last bit. ``typical``: standard
       deviation of its departure from ``null`` where the effect is at work.
-    - ``sized``: low, high and typical are those of a BlueROV2 and grow with the vehicle's weight, surge drag or thruster speed (`plant.slots`).
+    - ``sized``: low, high, null, typical and starts are those of a BlueROV2 and grow with the vehicle's weight, its length (vehicles of one shape: the cube
+      root of the weight), surge drag or thruster speed (`plant.slots`).
     - ``target`` sets a parameter of an effect that is neither per axis nor per thruster apart, as a hypothesis of its own:
       ``time_offset[velocity]``, ``p["delay[velocity]"]``.
     - ``needs``: the channel without which it does nothing and is refused.

@@ -43,6 +43,7 @@ def sizes(vehicle: Vehicle) -> Mapping[str, float]:
         {
             "": 1.0,
             "weight": vehicle.weight / REFERENCE_WEIGHT,
+            "length": float(np.cbrt(vehicle.weight / REFERENCE_WEIGHT)),
             "drag": reference_drag_force(vehicle) / REFERENCE_DRAG,
             "speed": reference_speed(vehicle) / REFERENCE_SPEED,
         }
@@ -62,14 +63,19 @@ def slots(vehicle: Vehicle, model: str) -> tuple[Slot, ...]:
         for target in targets(effect, vehicle):
             for parameter in effect.parameters:
                 hypothesis = _hypothesis(name, target or parameter.target)
-                f = factor[parameter.sized]
-                sized = replace(parameter, low=parameter.low * f, high=parameter.high * f, null=parameter.null * f, typical=parameter.typical * f)
+                sized = grown(parameter, factor[parameter.sized])
                 if model in effect.absent_in:
                     sized = replace(sized, low=0.0)  # there is nothing to take away
                 if target in effect.groups:
                     sized = replace(sized, tolerance=None)  # it is the axes' own, one by one
                 found.append(Slot(f"{hypothesis}.{parameter.name}", hypothesis, name, target or parameter.target, sized))
     return tuple(found)
+
+
+def grown(parameter: Parameter, factor: float) -> Parameter:
+    """A parameter of a vehicle that is larger by ``factor`` in what it grows with."""
+    low, high, null, typical = (factor * x for x in (parameter.low, parameter.high, parameter.null, parameter.typical))
+    return replace(parameter, low=low, high=high, null=null, typical=typical, starts=tuple(factor * x for x in parameter.starts))
 
 
 def _hypothesis(name: str, target: str) -> str:

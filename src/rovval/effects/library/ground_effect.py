@@ -33,9 +33,10 @@ EFFECT = Effect(
     parameters=(
         Parameter("gain", "N", -60.0, 60.0, 0.0, 6.0, "chosen: up to half of the weight of the water that the jets move", "weight"),
         Parameter(
-            "height", "m", 0.05, 1.5, 0.5, 0.3, "two to three propeller diameters (Bhattacharyya 2016) to 1 m (chosen)", role="extent", starts=(0.2, 0.5, 1.5),
+            "height", "m", 0.01, 0.25, 0.085, 0.05, "up to three propeller diameters (Bhattacharyya 2016)", "length", role="extent",
+            starts=(0.035, 0.085, 0.25),
         ),
-        Parameter("drag", "1", -0.9, 30.0, 0.0, 1.0, "drag of a body that sinks onto a wall, some times that in open water (JMSE 2025)"),
+        Parameter("drag", "1", 0.0, 30.0, 0.0, 1.0, "drag of a body that sinks onto a wall, some times that in open water and never less (JMSE 2025)"),
         Parameter(
             "seabed", "m", -10.0, FARTHEST, FARTHEST, 0.25, "of a flat bottom under the deepest point of the log: a metre below it, and as much off (chosen)",
             role="bottom", needs="z", instead_of="altitude",

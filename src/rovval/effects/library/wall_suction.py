@@ -21,7 +21,7 @@ EFFECT = Effect(
     },
     parameters=(
         Parameter("gain", "N s2/m2", -300.0, 300.0, 0.0, 20.0, "chosen: some tenths of the drag ahead; + for a wall to starboard", "drag"),
-        Parameter("reach", "m", 0.05, 5.0, 0.5, 0.3, "chosen: of the order of the hull's half width", role="extent", starts=(0.3, 1.0)),
+        Parameter("reach", "m", 0.01, 0.85, 0.085, 0.05, "chosen: up to twice the hull's length", "length", role="extent", starts=(0.05, 0.17)),
     ),
     signature="a sideways force that grows with speed ahead, near a wall only",
     confused_with=("current_constant", "cross_drag", "dvl_misalignment"),
