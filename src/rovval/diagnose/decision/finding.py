@@ -56,6 +56,4 @@ def more_probable(late: Finding, whole: Finding, onset: Onset) -> bool:
     if not late.decision.causes or not late.decision.fit or late.is_event:
         return False
     evidence = evidence_with_onset(whole.problem, late.decision.fit, onset.time, whole.selection.healthy) - onset_cost(whole.problem)
-    names = frozenset(h.name for h in late.decision.causes)
-    mass = max(m.log_prior for m in late.selection.models if m.names == names)
-    return mass + 0.5 * evidence > whole.selection.log_posterior
+    return late.selection.prior.log_mass(late.decision.causes) + 0.5 * evidence > whole.selection.log_posterior

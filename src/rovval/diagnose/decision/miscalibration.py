@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rovval.diagnose.criteria import FILE_WIDTH, MOST_CAUSES
-from rovval.diagnose.decision.posterior import Names
 from rovval.diagnose.effort import SETS_WEIGHED
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import map_fit
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.search.forward import Selection
+from rovval.diagnose.search.model import Names
 
 
 def file_evidence(problem: Problem, selection: Selection) -> dict[Names, float]:

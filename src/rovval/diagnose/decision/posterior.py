@@ -4,10 +4,10 @@ All are on one scale: prior mass times marginal likelihood, the likelihood tempe
 Miller and Dunson 2019; `problem.Problem.tempering`). Something else is what no effect of the library is: a few generic forces, on a healthy vehicle or
 beside causes (model discrepancy: Kennedy and O'Hagan 2001), or forces that go with nothing that was logged; either leaves an open gap (`open_gap`).
 
-No log tells two explanations apart that predict the same; they share its probability by their priors. Most of what the library lacks looks like something of
-it (`LIBRARY_ALIKE`): so something else has a part of the mass of every set of causes, and no cause is ever certain. And what the equations of causes are off
-by may look like one more cause (`FORM_ALIKE`): so the probability that a cause is at work shares the mass of each set with the set without the cause that
-adds least. A cause that would have to vary along the log may be that cause in another form, or something else that comes near it (`VARYING_ALIKE`).
+No log tells two explanations apart that predict the same; they share its probability by their priors, and by how much of the gap is left where windows are
+held out (`resemblance`). So something else has a part of the mass of every set of causes, and no cause is ever certain; and the set without the cause that
+adds least has another part, since that cause may be what the equations of the others are off by. A cause that would have to vary along the log may be that
+cause in another form, or something else that comes near it (`VARYING_ALIKE`).
 
 The set that is named has as many causes as is most probable, and of such sets it is the one that the true one is expected to share the most causes with
 (centroid estimator: Carvalho and Lawrence 2008). The most probable single set may hold a cause that most of the others do without.
@@ -18,26 +18,25 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, inf, log
+from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
 
 from rovval.diagnose.criteria import (
     EVEN_ODDS,
-    FORM_ALIKE,
     GROUP_PROBABILITY,
-    LIBRARY_ALIKE,
     PRIOR_CAUSES,
     PRIOR_FILE,
     PRIOR_HEALTHY,
     PRIOR_SOMETHING_ELSE,
     VARYING_ALIKE,
 )
-from rovval.diagnose.search.model import Model
+from rovval.diagnose.decision.resemblance import Left, form_error, left_beyond, none_of_the_library
+from rovval.diagnose.effort import NEGLIGIBLE
+from rovval.diagnose.search.model import Model, Names
 
-Names = frozenset[str]
 CAUSES = ("sets", "beside", "filed")  # kinds of models with causes: these alone, with something else, and with a file that is off in further numbers
-LOOKS_ALIKE = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / (sum(PRIOR_CAUSES) + LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,8 +51,6 @@ class Probabilities:
         something_else: of something else alone, of what looks like a set of causes and is none, or of what comes near to a set of causes whose sizes would have
             to vary along the log.
         varying: the latter part of it.
-        at_work: of each cause, that it is at work, and not a form error that looks like it.
-        weighed: sets of causes beside which generic forces were looked for.
     """
 
     sets: Mapping[Names, float]
@@ -62,8 +59,6 @@ class Probabilities:
     file: float
     something_else: float
     varying: float
-    at_work: Mapping[str, float]
-    weighed: frozenset[Names]
 
     @property
     def healthy(self) -> float:
@@ -83,11 +78,12 @@ class Probabilities:
     @property
     def best(self) -> Names:
         """The set of causes that is named where causes are believed: as many as is most probable, and those of which the true set is then expected to hold the
-        most, of the sets that were weighed with something else beside them (of all where none was); empty where there is none."""
-        weighed = [names for names in self.ranked if names in self.weighed] or self.ranked
+        most, of the sets that are not negligible beside the most probable one (`NEGLIGIBLE`); empty where there is none."""
         whole = self._whole()
-        count = max((len(names) for names in weighed), key=lambda n: sum(p for names, p in whole.items() if len(names) == n), default=0)
-        return max((names for names in weighed if len(names) == count), key=lambda names: sum(map(self.of, names)), default=frozenset())
+        count = max((len(names) for names in whole), key=lambda n: sum(p for names, p in whole.items() if len(names) == n), default=0)
+        alike = {names: p for names, p in whole.items() if len(names) == count}
+        likely = [names for names in self.ranked if alike.get(names, 0.0) >= NEGLIGIBLE * max(alike.values())]
+        return max(likely, key=lambda names: sum(map(self.of, names)), default=frozenset())
 
     @property
     def ranked(self) -> list[Names]:
@@ -101,7 +97,7 @@ class Probabilities:
 
     def of(self, name: str) -> float:
         """That a cause is at work."""
-        return self.at_work.get(name, 0.0)
+        return sum(p for names, p in self._whole().items() if name in names)
 
     def partly(self, names: Names) -> bool:
         """Whether something else is more likely beside these causes than not."""
@@ -130,7 +126,7 @@ class Probabilities:
 
 def probabilities(
     models: Sequence[Model], file: Mapping[Names, float], forces: float, beside: Mapping[Names, float], varying: Mapping[Names, float],
-    open_gap: float = 0.0,
+    open_gap: float = 0.0, left: Left = MappingProxyType({}),
 ) -> Probabilities:
     """Probabilities of the models that a search met.
 
@@ -142,6 +138,7 @@ def probabilities(
         beside: the same of something else beside sets of causes, over these.
         varying: the same of a cause that varies along the log, over the set that it is of; a part of it is something else, the rest that cause in another form.
         open_gap: the same of something else, beside whatever cause, by how much no model explains (`open_gap.evidence_of_something_else`).
+        left: of the explainable gap, what sets of causes leave on held-out windows (`resemblance.gap_left`); where it is empty, priors alone judge.
     """
     best = _best_of_each_set(models)
     doubt = log(PRIOR_SOMETHING_ELSE / PRIOR_HEALTHY)
@@ -158,9 +155,11 @@ def probabilities(
     weight = {key: exp(value - top) for key, value in known.items()}
     total = sum(weight.values())
     believed = {key: value / total for key, value in weight.items()}
-    share = {(kind, names): p * (1.0 - LOOKS_ALIKE) if names and kind in CAUSES else p for (kind, names), p in believed.items()}
+    known_causes = {names: 1.0 - none_of_the_library(names, left) for _, names in believed if names}
+    share = {(kind, names): p * known_causes[names] if names and kind in CAUSES else p for (kind, names), p in believed.items()}
     for names in varying:
         share["beside", names] = share.get(("beside", names), 0.0) + share.pop(("form", names))
+    _move_form_errors(share, best, left)
     inconstant = sum(p for (kind, _), p in share.items() if kind == "varying")
     return Probabilities(
         sets={names: p for (kind, names), p in share.items() if kind == "sets"},
@@ -168,7 +167,6 @@ def probabilities(
         filed={names: p for (kind, names), p in share.items() if kind == "filed" and names},
         file=share.get(("filed", frozenset()), 0.0), varying=inconstant,
         something_else=share["else", frozenset()] + inconstant + sum(believed.values()) - sum(share.values()),
-        at_work=_at_work(share, best), weighed=frozenset(beside),
     )  # fmt: skip
 
 
@@ -178,23 +176,22 @@ def _something_else(forces: float, open_gap: float) -> float:
     return float(np.logaddexp(0.5 * forces, 0.0)) - log(2.0) + 0.5 * open_gap
 
 
-def _at_work(share: Mapping[tuple[str, Names], float], best: Mapping[Names, Model]) -> dict[str, float]:
-    """The probability that each cause is at work: of the mass of a set, a part is that of a form error that looks like the cause that adds least."""
-    mass = dict[Names, float]()
-    for (kind, names), p in share.items():
-        if kind in CAUSES:
-            mass[names] = mass.get(names, 0.0) + p
+def _move_form_errors(share: dict[tuple[str, Names], float], best: Mapping[Names, Model], left: Left) -> None:
+    """Move that part of the mass of each set of two causes or more, of whatever kind, to the set without the cause that adds least, which says that this cause
+    is the form error of the others."""
     for size in range(len(PRIOR_CAUSES), 1, -1):
-        alike = FORM_ALIKE * PRIOR_CAUSES[size - 2]
-        for names in [one for one in mass if len(one) == size]:
-            moved, fewer = mass[names] * alike / (PRIOR_CAUSES[size - 1] + alike), names - {_least(names, best)}
-            mass[names] -= moved
-            mass[fewer] = mass.get(fewer, 0.0) + moved
-    return {name: sum(p for names, p in mass.items() if name in names) for name in {n for names in mass for n in names}}
+        for kind, names in [key for key in share if key[0] in CAUSES and len(key[1]) == size]:
+            least = _least(names, best, left)
+            moved, fewer = share[kind, names] * form_error(least, names, left), (kind, names - {least})
+            share[kind, names] -= moved
+            share[fewer] = share.get(fewer, 0.0) + moved
 
 
-def _least(names: Names, best: Mapping[Names, Model]) -> str:
-    """The cause of a set that adds least evidence to the others; the last that was added where the sets without it were not fitted."""
+def _least(names: Names, best: Mapping[Names, Model], left: Left) -> str:
+    """The cause of a set that adds least to the others: that leaves most of what they leave of the gap, or, where nothing is known of that, adds least
+    evidence; the last that was added where the sets without it were not fitted."""
+    if left:
+        return max(sorted(names), key=lambda name: left_beyond(name, names, left))
     fitted = [name for name in names if names - {name} in best]
     if fitted:
         return max(sorted(fitted), key=lambda name: best[names - {name}].evidence)

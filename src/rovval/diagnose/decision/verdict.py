@@ -7,9 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import log
 from typing import Literal
-
-import numpy as np
 
 from rovval.core.data import Array
 from rovval.diagnose.decision.consistency import inconsistencies
@@ -17,7 +16,8 @@ from rovval.diagnose.decision.constancy import variation
 from rovval.diagnose.decision.indications import Indications, indications
 from rovval.diagnose.decision.miscalibration import file_evidence
 from rovval.diagnose.decision.open_gap import evidence_of_something_else, open_gap
-from rovval.diagnose.decision.posterior import Names, Probabilities, probabilities
+from rovval.diagnose.decision.posterior import Probabilities, probabilities
+from rovval.diagnose.decision.resemblance import gap_left
 from rovval.diagnose.decision.unexplained import Accounted, Unexplained, accounted, unexplained, unexplained_by_any
 from rovval.diagnose.effort import NEGLIGIBLE, SETS_WEIGHED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
@@ -27,8 +27,8 @@ from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.sensor_faults import FittedFault
 from rovval.diagnose.search.discrepancy import GenericForces, generic_forces, nominal_forces
 from rovval.diagnose.search.forward import Selection
-from rovval.diagnose.search.joint import refitted
-from rovval.diagnose.search.model import Model
+from rovval.diagnose.search.joint import joint_fit, refitted
+from rovval.diagnose.search.model import Model, Names
 
 Verdict = Literal["no_gap", "explained", "partly_explained", "unknown"]
 
@@ -73,21 +73,23 @@ class Decision:
 def decide(problem: Problem, selection: Selection, residuals: list[Array], faults: Sequence[FittedFault]) -> Decision:
     """The verdict on what a search met; ``residuals`` are the nominal vehicle's, ``faults`` of sensors those that parity residuals show."""
     instead, file = generic_forces(problem, selection.healthy), file_evidence(problem, selection)
-    leading = _leading(problem, selection, probabilities(selection.models, file, -np.inf, {}, {}))
+    leading = _leading(problem, selection)
     beside = {one.names: generic_forces(problem, one.fit.posterior) for one in leading if one.fit}
     more = {names: forces.sparse()[0] for names, forces in beside.items()}
     varies = {one.names: variation(problem, one.fit.posterior, one.causes) for one in leading if one.fit}
     evidence = instead.sparse()[0]
-    left = open_gap(problem, [selection.healthy, *(m.fit.posterior for m in [*selection.models, *leading] if m.fit)])
-    belief = probabilities(selection.models, file, evidence, more, varies, evidence_of_something_else(left))
-    best = next((one for one in leading if one.names == belief.best), selection.models[0])
+    met = [*selection.models, *leading]
+    unexplained_gap = open_gap(problem, [selection.healthy, *(m.fit.posterior for m in met if m.fit)])
+    left = gap_left(problem, met)
+    belief = probabilities(selection.models, file, evidence, more, varies, evidence_of_something_else(unexplained_gap), left)
+    best = _fitted(problem, selection, leading, belief.best)
     known = accounted(problem, selection.healthy)
     over = best.evidence - selection.models[0].evidence
     generic = max(evidence, 0.0), max(more.get(best.names, 0.0), 0.0)
     found = Decision("no_gap", belief, (), None, {}, {}, {}, over, *generic, selection.healthy.largest_departure(), known, None)
     contradicted = any(h.effect.place != "sensor" for h in best.causes) and _contradicted(problem, residuals)
     if best.fit and belief.likelier_than_not == "causes" and not contradicted:
-        return _named(problem, selection, found, best, best.fit, beside[best.names])
+        return _named(problem, selection, found, best, best.fit, beside.get(best.names) or generic_forces(problem, best.fit.posterior))
     found = replace(found, indications=indications(selection.steps[0] if selection.steps else (), known, faults))
     if belief.likelier_than_not == "healthy":
         return found
@@ -97,11 +99,27 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
     return replace(found, verdict="unknown", unexplained=unexplained(problem, nominal_forces(problem), selection.healthy, inconstant))
 
 
-def _leading(problem: Problem, selection: Selection, belief: Probabilities) -> list[Model]:
+def _leading(problem: Problem, selection: Selection) -> list[Model]:
     """The most probable sets of causes, `SETS_WEIGHED` at most, fitted with care; none where they are not worth a thought (`NEGLIGIBLE`)."""
-    models = (selection.best, *selection.models)  # the best first: its fit has sensitivities, and is not made again
-    found = [max((m for m in models if m.names == names), key=lambda m: m.evidence) for names in belief.ranked[:SETS_WEIGHED]]
-    return [refitted(problem, m) for m in found if belief.of_set(m.names) > NEGLIGIBLE * max(belief.of_set(found[0].names), belief.healthy)]
+    found = dict[Names, Model]()
+    for m in sorted((selection.best, *selection.models), key=lambda m: -m.log_posterior):  # the best first: its fit has sensitivities, and is not made again
+        found.setdefault(m.names, m)
+    least = selection.log_posterior + log(NEGLIGIBLE)
+    return [refitted(problem, m) for m in [m for m in found.values() if m.fit][:SETS_WEIGHED] if m.log_posterior > least]
+
+
+def _fitted(problem: Problem, selection: Selection, leading: Sequence[Model], names: Names) -> Model:
+    """The model of a set of causes fitted with care, from where the causes are in a larger set where the search never fitted them alone; the healthy vehicle
+    where there are none."""
+    if not names:
+        return selection.models[0]
+    if same := [m for m in (*leading, *selection.models) if m.names == names]:
+        return refitted(problem, max(same, key=lambda m: m.evidence))
+    larger = refitted(problem, max((m for m in (*leading, *selection.models) if names < m.names), key=lambda m: m.log_posterior))
+    assert larger.fit is not None
+    causes = tuple(h for h in larger.causes if h.name in names)
+    fit = joint_fit(problem, larger.fit, causes)
+    return refitted(problem, Model(causes, fit.without_sensitivities(), fit.evidence, selection.prior.log_mass(causes)))
 
 
 def _named(problem: Problem, selection: Selection, found: Decision, best: Model, fit: HypothesisFit, beside: GenericForces) -> Decision:

@@ -86,6 +86,16 @@ def shrinkage_of(problem: Problem, loss: Array, after: list[Array], before: list
     )
 
 
+def explainable_left(problem: Problem, fitted: HypothesisFit) -> Array:
+    """Share (2,) of the squared error above noise that effects leave on held-out windows, above 1 where they add to it: of the dynamics alone, and of these
+    with the parity residuals."""
+    gap, noise = problem.gap, float(noise_floor_loss(problem).sum())
+    checked = sum(float(check.noise_loss(problem.design_effect).sum()) for check in problem.parity)
+    before = np.array([gap.dynamics.c.sum(), gap.total.c.sum()])
+    after, floor = np.array([fitted.dynamics_loss.sum(), fitted.loss.sum()]), np.array([noise, noise + checked])
+    return np.asarray((after - floor) / np.maximum(before - floor, 1e-12))
+
+
 def worsened_axes(reduction: GapReduction) -> dict[str, float]:
     """Relative growth of the squared error on each axis where it grows by more than `HARMED_AXIS` with the effects added."""
     return {axis: -share for axis, share in reduction.axes.items() if share < -HARMED_AXIS}

@@ -79,6 +79,11 @@ class ParityResiduals:
             signatures[..., self.columns.index(column)] = self._scaled(slope[..., keep])
         return self.rows - self._scaled(caused[..., keep]), signatures
 
+    def noise_loss(self, design_effect: float) -> Array:
+        """Squared residual of each window (m,) that noise alone makes, in the units of `normal_equations`."""
+        checked = np.abs(self.rows).max(axis=1, initial=0.0) > 0.0
+        return np.asarray(np.where(checked, design_effect / self.design_effect * self.rows.shape[1], 0.0))
+
     def normal_equations(self, beta: Array, columns: tuple[int, ...], design_effect: float, summed: bool = False) -> NormalEquations:
         """Normal equations of the parity residuals about ``beta`` (p,) in ``columns``, times ``design_effect`` over their own: beside the dynamics, one
         common design effect then suits both. ``summed``: of all windows in one.

@@ -42,6 +42,7 @@ class Selection:
         ranking: every hypothesis with the reduction of the gap that it makes by itself, held out: the causes first, then by that.
         steps: candidates of each step that had any.
         onset: from when on something seems to be at work that was not there before; None where nothing does.
+        prior: prior mass of any set of causes.
     """
 
     models: tuple[Model, ...]
@@ -50,6 +51,7 @@ class Selection:
     ranking: tuple[tuple[str, float], ...]
     steps: tuple[tuple[Row, ...], ...]
     onset: Onset | None
+    prior: ModelPrior
 
     @property
     def log_posterior(self) -> float:
@@ -87,7 +89,7 @@ def search(
     progress("weighing the causes beside each other", 0.7)
     healthy, models, best = _reconsidered(problem, prior, healthy, models, best, tried)
     rows = tuple(tuple((c.hypothesis.name, c.evidence, c.gain) for c in step) for step in tried)
-    return Selection(tuple(models), best, healthy, _ranking(problem, library, best, rows), rows, onset)
+    return Selection(tuple(models), best, healthy, _ranking(problem, library, best, rows), rows, onset, prior)
 
 
 def _extended(

@@ -15,6 +15,8 @@ from rovval.diagnose.criteria import PRIOR_CAUSES, PRIOR_HEALTHY
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 
+Names = frozenset[str]  # of a set of causes
+
 
 @dataclass(frozen=True, slots=True)
 class Model:
@@ -33,7 +35,7 @@ class Model:
     log_prior: float
 
     @property
-    def names(self) -> frozenset[str]:
+    def names(self) -> Names:
         """Names of the causes."""
         return frozenset(h.name for h in self.causes)
 

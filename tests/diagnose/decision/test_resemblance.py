@@ -1,0 +1,69 @@
+"""Resemblance: what is left of the gap tells causes from what only looks like them, and a further cause from the form error of the others."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from diagnose_case import posed
+
+from rovval.core.data import Array
+from rovval.diagnose.criteria import FORM_ALIKE, LIBRARY_ALIKE, PRIOR_CAUSES, PRIOR_SOMETHING_ELSE
+from rovval.diagnose.decision.resemblance import form_error, gap_left, left_beyond, none_of_the_library
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis
+from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
+from rovval.diagnose.search.model import Model, Names
+
+
+def left(**shares: float | tuple[float, float]) -> dict[Names, Array]:
+    """What sets of causes leave, of the dynamics and with parity: ``a_b=0.3`` is that of a and b together."""
+    return {frozenset(names.split("_")): np.broadcast_to(share, (2,)).astype(float) for names, share in shares.items()}
+
+
+AB = frozenset("ab")
+
+
+def test_where_nothing_is_known_priors_alone_judge():
+    odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / sum(PRIOR_CAUSES)
+    assert none_of_the_library(AB, {}) == pytest.approx(odds / (1.0 + odds))
+    alike = FORM_ALIKE * PRIOR_CAUSES[0]
+    assert form_error("b", AB, {}) == pytest.approx(alike / (PRIOR_CAUSES[1] + alike))
+
+
+def test_both_distributions_are_distributions():
+    """Odds over a grid of shares, times the density where causes are right, integrate to the prior odds: the uniform density is one."""
+    share = (np.arange(2000) + 0.5) / 2000.0
+    odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / sum(PRIOR_CAUSES)
+    p = np.array([none_of_the_library(AB, left(a=s)) for s in share])
+    assert np.mean(odds * (1.0 - p) / p) == pytest.approx(1.0, abs=1e-3)
+    q = np.array([form_error("b", AB, left(a=1.0, a_b=s)) for s in share])
+    assert np.mean(q / (1.0 - q)) == pytest.approx(FORM_ALIKE * PRIOR_CAUSES[0] / PRIOR_CAUSES[1], abs=1e-3)
+
+
+def test_a_set_is_judged_by_its_best_part():
+    """A further cause that predicts nothing does not speak against the others."""
+    assert none_of_the_library(AB, left(a=0.1, a_b=0.9)) == none_of_the_library(frozenset("a"), left(a=0.1))
+    assert none_of_the_library(frozenset("b"), left(a=0.1, b=0.9)) > 0.5
+
+
+def test_a_sensor_is_judged_with_parity():
+    """A compass that deviates moves no vehicle: the dynamics are as wrong with it as without."""
+    assert none_of_the_library(frozenset("a"), left(a=(1.0, 0.1))) < 0.05
+    assert form_error("b", AB, left(a=(0.1, 0.9), a_b=(0.1, 0.2))) < 0.05
+
+
+def test_a_further_cause_that_adds_to_the_gap_is_none():
+    assert left_beyond("b", AB, left(a=0.3, a_b=0.6)) == pytest.approx(2.0)
+    assert form_error("b", AB, left(a=0.3, a_b=0.6)) == 1.0 > form_error("b", AB, left(a=0.3, a_b=0.29)) > form_error("b", AB, left(a=0.3, a_b=0.15))
+
+
+def test_what_a_fit_leaves_is_measured_on_held_out_windows():
+    """The effect that was planted leaves next to nothing; another one of the same axis, fitted as well, leaves much."""
+    problem, _ = posed(("inflow_loss:loss=0.3",))
+    models = []
+    for name in ("inflow_loss", "added_mass[surge]"):
+        slots = tuple(i for i, s in enumerate(problem.plant.slots) if s.hypothesis == name)
+        fit = fit_hypothesis(problem, problem.origin, slots)
+        models.append(Model((Hypothesis(name, name, slots, (), ()),), fit, fit.evidence, 0.0))
+    shares = gap_left(problem, models)
+    planted, other = (shares[frozenset({name})] for name in ("inflow_loss", "added_mass[surge]"))
+    assert planted.max() < 0.1 < 0.5 < other.min()
