@@ -15,7 +15,7 @@ The set that is named has as many causes as is most probable, and of such sets i
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, inf, log
 from types import MappingProxyType
@@ -34,7 +34,7 @@ from rovval.diagnose.criteria import (
 )
 from rovval.diagnose.decision.resemblance import Left, form_error, left_beyond, none_of_the_library
 from rovval.diagnose.effort import NEGLIGIBLE
-from rovval.diagnose.search.model import Model, Names
+from rovval.diagnose.search.model import Model, Names, best_of_each_set
 
 CAUSES = ("sets", "beside", "filed")  # kinds of models with causes: these alone, with something else, and with a file that is off in further numbers
 
@@ -140,7 +140,7 @@ def probabilities(
         open_gap: the same of something else, beside whatever cause, by how much no model explains (`open_gap.evidence_of_something_else`).
         left: of the explainable gap, what sets of causes leave on held-out windows (`resemblance.gap_left`); where it is empty, priors alone judge.
     """
-    best = _best_of_each_set(models)
+    best = best_of_each_set(models)
     doubt = log(PRIOR_SOMETHING_ELSE / PRIOR_HEALTHY)
     nothing = best[frozenset()]
     known = {("sets", names): m.log_posterior for names, m in best.items()}
@@ -180,11 +180,13 @@ def _move_form_errors(share: dict[tuple[str, Names], float], best: Mapping[Names
     """Move that part of the mass of each set of two causes or more, of whatever kind, to the set without the cause that adds least, which says that this cause
     is the form error of the others."""
     for size in range(len(PRIOR_CAUSES), 1, -1):
-        for kind, names in [key for key in share if key[0] in CAUSES and len(key[1]) == size]:
+        for names in dict.fromkeys(names for kind, names in share if kind in CAUSES and len(names) == size):
             least = _least(names, best, left)
-            moved, fewer = share[kind, names] * form_error(least, names, left), (kind, names - {least})
-            share[kind, names] -= moved
-            share[fewer] = share.get(fewer, 0.0) + moved
+            part = form_error(least, names, left)
+            for kind in (kind for kind in CAUSES if (kind, names) in share):
+                moved, fewer = share[kind, names] * part, (kind, names - {least})
+                share[kind, names] -= moved
+                share[fewer] = share.get(fewer, 0.0) + moved
 
 
 def _least(names: Names, best: Mapping[Names, Model], left: Left) -> str:
@@ -196,12 +198,3 @@ def _least(names: Names, best: Mapping[Names, Model], left: Left) -> str:
     if fitted:
         return max(sorted(fitted), key=lambda name: best[names - {name}].evidence)
     return best[names].causes[-1].name if names in best else max(names)
-
-
-def _best_of_each_set(models: Iterable[Model]) -> dict[Names, Model]:
-    """Of models of one set of causes that were fitted from different starts, the one with the most evidence."""
-    found = dict[Names, Model]()
-    for m in models:
-        if m.names not in found or m.evidence > found[m.names].evidence:
-            found[m.names] = m
-    return found

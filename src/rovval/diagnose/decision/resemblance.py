@@ -29,39 +29,44 @@ NOTHING_LEFT = 1e-3  # share of the gap: rounding of a ratio to what is left
 
 def gap_left(problem: Problem, models: Iterable[Model]) -> dict[Names, Array]:
     """What each set of causes that was fitted leaves (2,); of several fits of a set, the least."""
+    fits = [(m.names, m.fit) for m in models if m.fit]
     found = dict[Names, Array]()
-    for m in models:
-        if m.fit:
-            found[m.names] = np.minimum(np.maximum(explainable_left(problem, m.fit), NOTHING_LEFT), found.get(m.names, np.inf))
+    for (names, _), share in zip(fits, explainable_left(problem, [fit for _, fit in fits]), strict=True):
+        found[names] = np.minimum(np.maximum(share, NOTHING_LEFT), found.get(names, np.inf))
     return found
 
 
 def none_of_the_library(names: Names, left: Left) -> float:
     """Probability that what looks like the causes ``names`` is none of the library; by the priors alone where nothing is known of what they leave."""
     odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / sum(PRIOR_CAUSES)
-    share = _least(left, lambda part: part <= names)
-    freedom = 1.0 / CAUSES_LEAVE - 1.0  # Beta(1, b), of mean 1 / (1 + b)
-    right = freedom * (1.0 - min(1.0, float(share.min()))) ** (freedom - 1.0) if left else 1.0
+    right = 1.0
+    if left:
+        share = float(_least_left(left, lambda part: part <= names).min())
+        freedom = 1.0 / CAUSES_LEAVE - 1.0  # Beta(1, b), of mean 1 / (1 + b)
+        right = freedom * (1.0 - min(1.0, share)) ** (freedom - 1.0)
     return odds / (odds + right)
 
 
 def form_error(name: str, names: Names, left: Left) -> float:
     """Probability that the cause ``name`` of ``names`` is the form error of the others; by the priors alone where nothing is known of what they leave."""
     odds = FORM_ALIKE * PRIOR_CAUSES[len(names) - 2] / PRIOR_CAUSES[len(names) - 1]
-    freedom = FORM_LEAVES / (1.0 - FORM_LEAVES)  # Beta(a, 1), of mean a / (a + 1)
-    beyond = left_beyond(name, names, left)
-    if left and beyond >= 1.0:
-        return 1.0
-    odds *= freedom * beyond ** (freedom - 1.0) if left else 1.0
+    if left:
+        beyond = left_beyond(name, names, left)
+        if beyond >= 1.0:
+            return 1.0
+        freedom = FORM_LEAVES / (1.0 - FORM_LEAVES)  # Beta(a, 1), of mean a / (a + 1)
+        odds *= freedom * beyond ** (freedom - 1.0)
     return odds / (odds + 1.0)
 
 
 def left_beyond(name: str, names: Names, left: Left) -> float:
     """Share (1) that the cause ``name`` of ``names`` leaves of what the others leave of the gap; above 1 where it adds to it."""
-    own, others = _least(left, lambda part: name in part and part <= names), _least(left, lambda part: name not in part and part <= names)
+    own = _least_left(left, lambda part: name in part and part <= names)
+    others = _least_left(left, lambda part: name not in part and part <= names)
     return float((own / others).min())
 
 
-def _least(left: Left, which: Callable[[Names], bool]) -> Array:
+def _least_left(left: Left, which: Callable[[Names], bool]) -> Array:
     """The least (2,) that is left by the sets ``which``; all of the gap where there is none."""
-    return np.min([share for part, share in left.items() if which(part)], axis=0, initial=np.inf) if any(map(which, left)) else np.ones(2)
+    shares = [share for part, share in left.items() if which(part)]
+    return np.min(shares, axis=0) if shares else np.ones(2)

@@ -28,7 +28,7 @@ from rovval.diagnose.residuals.sensor_faults import FittedFault
 from rovval.diagnose.search.discrepancy import GenericForces, generic_forces, nominal_forces
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.search.joint import joint_fit, refitted
-from rovval.diagnose.search.model import Model, Names
+from rovval.diagnose.search.model import Model, Names, best_of_each_set
 
 Verdict = Literal["no_gap", "explained", "partly_explained", "unknown"]
 
@@ -78,11 +78,11 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
     more = {names: forces.sparse()[0] for names, forces in beside.items()}
     varies = {one.names: variation(problem, one.fit.posterior, one.causes) for one in leading if one.fit}
     evidence = instead.sparse()[0]
-    met = [*selection.models, *leading]
+    met = [*leading, *selection.models]
     unexplained_gap = open_gap(problem, [selection.healthy, *(m.fit.posterior for m in met if m.fit)])
     left = gap_left(problem, met)
     belief = probabilities(selection.models, file, evidence, more, varies, evidence_of_something_else(unexplained_gap), left)
-    best = _fitted(problem, selection, leading, belief.best)
+    best = _fitted(problem, selection, met, belief.best)
     known = accounted(problem, selection.healthy)
     over = best.evidence - selection.models[0].evidence
     generic = max(evidence, 0.0), max(more.get(best.names, 0.0), 0.0)
@@ -101,21 +101,20 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
 
 def _leading(problem: Problem, selection: Selection) -> list[Model]:
     """The most probable sets of causes, `SETS_WEIGHED` at most, fitted with care; none where they are not worth a thought (`NEGLIGIBLE`)."""
-    found = dict[Names, Model]()
-    for m in sorted((selection.best, *selection.models), key=lambda m: -m.log_posterior):  # the best first: its fit has sensitivities, and is not made again
-        found.setdefault(m.names, m)
-    least = selection.log_posterior + log(NEGLIGIBLE)
-    return [refitted(problem, m) for m in [m for m in found.values() if m.fit][:SETS_WEIGHED] if m.log_posterior > least]
+    sets = best_of_each_set((selection.best, *selection.models))  # the best first: its fit has sensitivities, and is not made again
+    found = sorted((m for m in sets.values() if m.fit), key=lambda m: -m.log_posterior)[:SETS_WEIGHED]
+    return [refitted(problem, m) for m in found if m.log_posterior > selection.log_posterior + log(NEGLIGIBLE)]
 
 
-def _fitted(problem: Problem, selection: Selection, leading: Sequence[Model], names: Names) -> Model:
-    """The model of a set of causes fitted with care, from where the causes are in a larger set where the search never fitted them alone; the healthy vehicle
-    where there are none."""
+def _fitted(problem: Problem, selection: Selection, met: Sequence[Model], names: Names) -> Model:
+    """The model of a set of causes fitted with care, from where the causes are in a larger set where none of the models ``met`` has them alone; the healthy
+    vehicle where there are none."""
+    sets = best_of_each_set(met)
     if not names:
         return selection.models[0]
-    if same := [m for m in (*leading, *selection.models) if m.names == names]:
-        return refitted(problem, max(same, key=lambda m: m.evidence))
-    larger = refitted(problem, max((m for m in (*leading, *selection.models) if names < m.names), key=lambda m: m.log_posterior))
+    if names in sets:
+        return refitted(problem, sets[names])
+    larger = refitted(problem, max((m for whole, m in sets.items() if names < whole), key=lambda m: m.log_posterior))
     assert larger.fit is not None
     causes = tuple(h for h in larger.causes if h.name in names)
     fit = joint_fit(problem, larger.fit, causes)

@@ -86,14 +86,14 @@ def shrinkage_of(problem: Problem, loss: Array, after: list[Array], before: list
     )
 
 
-def explainable_left(problem: Problem, fitted: HypothesisFit) -> Array:
-    """Share (2,) of the squared error above noise that effects leave on held-out windows, above 1 where they add to it: of the dynamics alone, and of these
-    with the parity residuals. All of it where there is no error above noise that they could take away."""
+def explainable_left(problem: Problem, fits: Sequence[HypothesisFit]) -> list[Array]:
+    """Share (2,) of the squared error above noise that each of ``fits`` leaves on held-out windows, above 1 where it adds to it: of the dynamics alone, and
+    of these with the parity residuals. All of it where there is no error above noise that could be taken away."""
     gap, noise = problem.gap, float(noise_floor_loss(problem).sum())
     checked = sum(float(check.noise_loss(problem.design_effect).sum()) for check in problem.parity)
     before = np.array([gap.dynamics.c.sum(), gap.total.c.sum()])
-    after, floor = np.array([fitted.dynamics_loss.sum(), fitted.loss.sum()]), np.array([noise, noise + checked])
-    return np.asarray(np.divide(after - floor, before - floor, out=np.ones(2), where=before > floor))
+    floor, after = np.array([noise, noise + checked]), [np.array([fit.dynamics_loss.sum(), fit.loss.sum()]) for fit in fits]
+    return [np.asarray(np.divide(loss - floor, before - floor, out=np.ones(2), where=before > floor)) for loss in after]
 
 
 def worsened_axes(reduction: GapReduction) -> dict[str, float]:

@@ -49,6 +49,15 @@ class Model:
         return replace(self, fit=self.fit.without_sensitivities()) if self.fit else self
 
 
+def best_of_each_set(models: Iterable[Model]) -> dict[Names, Model]:
+    """Of models of one set of causes that were fitted from different starts, the one with the most evidence; of equals the first."""
+    found = dict[Names, Model]()
+    for m in models:
+        if m.names not in found or m.evidence > found[m.names].evidence:
+            found[m.names] = m
+    return found
+
+
 @dataclass(frozen=True, slots=True)
 class ModelPrior:
     """Prior mass of sets of causes: ``effects`` compete, each of ``targets`` axes or thruster by name (1 where it has none)."""
