@@ -132,6 +132,7 @@ class Effect:
     - ``far``: sizes, in typical ones, of initial points well away from the null value, of every parameter in turn.
     - ``competes`` False: a diagnosis never names it; `unnamed` says why.
     - ``wanders``: its value drifts by nature, so that it does not hold still speaks in no way against it.
+    - ``lasts``: it grows for as long as it lasts, so that one that began before the log is still told from its like by that.
     - ``onset_of``: the effect that it is from an onset on.
     - ``held``: it pulls towards a point as a tether does that is caught there, so that its search begins where a spring would hold the vehicle, too.
     - ``continues``: the effect that imitates it as far as that goes, and which it exceeds (a dead thruster is one that is half reversed).
@@ -161,6 +162,7 @@ class Effect:
     far: tuple[float, ...] = ()
     competes: bool = True
     wanders: bool = False
+    lasts: bool = False
     onset_of: str = ""
     held: bool = False
     continues: str = ""

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf
 
 import numpy as np
 import pytest
 
 from rovval.diagnose.criteria import GROUP_PROBABILITY, VARYING_ALIKE
 from rovval.diagnose.decision.open_gap import evidence_of_something_else
-from rovval.diagnose.decision.posterior import Probabilities, probabilities
+from rovval.diagnose.decision.posterior import Probabilities, probabilities, something_beside
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.search.model import Model, ModelPrior
 
@@ -87,14 +88,13 @@ def test_a_gap_that_no_model_explains_is_something_else_and_beside_causes_too():
     pair: dict[tuple[str, ...], float] = {("waves",): 40.0, ("dvl_scale",): 38.0}
     assert belief({("waves",): -60.0}, open_gap=30.0).something_else > 0.99
     closed, left = belief(pair), belief(pair, open_gap=30.0)
-    assert left.partly(frozenset({"waves"})) and not closed.partly(frozenset({"waves"}))
     assert [left.of(n) for n in ("waves", "dvl_scale")] == pytest.approx([closed.of(n) for n in ("waves", "dvl_scale")], abs=0.02)
     assert dict(left.group("waves")) == pytest.approx(dict(closed.group("waves")))
 
 
 def test_something_beside_the_causes_leaves_them_at_work():
     found = belief({("waves",): 80.0}, beside=30.0)
-    assert found.partly(frozenset({"waves"})) and found.of("waves") > SURE
+    assert something_beside(30.0, -inf) and not something_beside(-inf, -inf) and found.of("waves") > SURE
 
 
 def test_a_cause_that_would_have_to_vary_may_be_something_else():
@@ -102,7 +102,7 @@ def test_a_cause_that_would_have_to_vary_may_be_something_else():
     found = belief({("waves",): 80.0}, varying=30.0)
     assert [found.varying, found.something_else] == pytest.approx([VARYING_ALIKE] * 2, abs=1e-4)
     assert [found.of("waves"), found.causes] == pytest.approx([1.0 - VARYING_ALIKE] * 2, abs=1e-4)
-    assert found.partly(frozenset({"waves"})) and found.best == {"waves"}
+    assert something_beside(-inf, 30.0) and found.best == {"waves"}
 
 
 def test_a_file_off_in_many_numbers_is_believed_where_it_explains_more():
@@ -130,7 +130,7 @@ def test_the_set_that_is_named_holds_what_most_of_the_probability_holds():
     """The single most probable set holds a slow thruster and waves; a scale of the velocity log is in two others, which together are more probable."""
     pairs: dict[tuple[str, ...], float] = {("thrust_lag", "waves"): 400.0, ("thrust_lag", "dvl_scale"): 399.5, ("cross_drag", "dvl_scale"): 399.0}
     found = belief({("thrust_lag",): 70.0, ("dvl_scale",): 380.0, ("cross_drag",): 30.0, ("waves",): 30.0, **pairs}, weighed=list(pairs))
-    assert max(pairs, key=lambda names: found.of_set(frozenset(names))) == ("thrust_lag", "waves") and found.of("dvl_scale") > found.of("waves")
+    assert next(names for names in found.ranked if len(names) == 2) == {"thrust_lag", "waves"} and found.of("dvl_scale") > found.of("waves")
     assert found.best == {"thrust_lag", "dvl_scale"}
 
 

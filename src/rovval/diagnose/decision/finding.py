@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import inf, log
 
 from rovval.core.data import Array
+from rovval.diagnose.decision.resemblance import Left, gap_left, gap_left_from, none_of_the_library
 from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.effort import ONSET_SEARCHED
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.sensor_faults import FittedFault
 from rovval.diagnose.search.forward import Selection
+from rovval.diagnose.search.model import Names
 from rovval.diagnose.search.onset import Onset, evidence_with_onset, onset_cost
 
 
@@ -52,8 +55,17 @@ class Finding:
 
 def more_probable(late: Finding, whole: Finding, onset: Onset) -> bool:
     """Whether the causes that a search ``late`` of the windows from an onset on found, at work from then on, are a more probable model of the whole log
-    than any that was found in the ``whole`` of it."""
-    if not late.decision.causes or not late.decision.fit or late.is_event:
+    than any that was found in the ``whole`` of it, what resembles causes and is none taken off each (`resemblance`)."""
+    fit, problem, names = late.decision.fit, whole.problem, frozenset(h.name for h in late.decision.causes)
+    if not fit or late.is_event:
         return False
-    evidence = evidence_with_onset(whole.problem, late.decision.fit, onset.time, whole.selection.healthy) - onset_cost(whole.problem)
-    return late.selection.prior.log_mass(late.decision.causes) + 0.5 * evidence > whole.selection.log_posterior
+    evidence = evidence_with_onset(problem, fit, onset.time, whole.selection.healthy) - onset_cost(problem)
+    found = late.selection.prior.log_mass(late.decision.causes) + 0.5 * evidence + _log_known(names, {names: gap_left_from(problem, fit, onset.time)})
+    left = gap_left(problem, whole.selection.models)
+    return found > max(m.log_posterior + (_log_known(m.names, left) if m.names else 0.0) for m in whole.selection.models)
+
+
+def _log_known(names: Names, left: Left) -> float:
+    """Logarithm of the probability that what looks like causes is of the library."""
+    known = 1.0 - none_of_the_library(names, left)
+    return log(known) if known > 0.0 else -inf

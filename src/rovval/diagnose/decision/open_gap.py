@@ -14,6 +14,7 @@ import numpy as np
 
 from rovval.diagnose.criteria import OPEN_GAP_ELSE, OPEN_GAP_RIGHT
 from rovval.diagnose.inference.gap import noise_floor_loss, share_left
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem
 
@@ -21,14 +22,23 @@ from rovval.diagnose.problem.problem import Problem
 def open_gap(problem: Problem, models: Iterable[Posterior]) -> float:
     """Squared gap that the best of ``models`` leaves, beyond noise, over what noise and tolerances are expected to make (1); 0 at least.
 
-    Tolerances make what coefficients and sensors do that are off by one standard deviation of their prior, each by itself.
+    It is judged in the metric of the likelihood, in which what any unlogged force can do counts for little.
     """
-    gap = problem.gap.dynamics
-    whole, noise = float(gap.c.sum()), float(noise_floor_loss(problem).sum())
     left = min(share_left(problem, point) for point in models)
+    return _beyond_noise(problem, left * float(problem.gap.dynamics.c.sum()))
+
+
+def left_open(problem: Problem, causes: HypothesisFit) -> float:
+    """Squared gap that ``causes`` leave on held-out windows, beyond noise, over what noise and tolerances are expected to make (1); 0 at least."""
+    return _beyond_noise(problem, float(causes.dynamics_loss.sum()))
+
+
+def _beyond_noise(problem: Problem, loss: float) -> float:
+    """Tolerances make what coefficients and sensors do that are off by one standard deviation of their prior, each by itself."""
+    gap, noise = problem.gap.dynamics, float(noise_floor_loss(problem).sum())
     columns, sd = tuple(problem.tolerance.sd), np.array(list(problem.tolerance.sd.values()))
     tolerated = float((gap.A.sum(axis=0).diagonal()[gap.place(columns)] * sd**2).sum())
-    return max(0.0, (left * whole - noise) / (noise + tolerated))
+    return max(0.0, (loss - noise) / (noise + tolerated))
 
 
 def evidence_of_something_else(gap: float) -> float:

@@ -91,17 +91,9 @@ class Probabilities:
         whole = self._whole()
         return sorted(whole, key=lambda names: -whole[names])
 
-    def of_set(self, names: Names) -> float:
-        """Of a set of causes, whatever is beside it."""
-        return self._whole().get(names, 0.0)
-
     def of(self, name: str) -> float:
         """That a cause is at work."""
         return sum(p for names, p in self._whole().items() if name in names)
-
-    def partly(self, names: Names) -> bool:
-        """Whether something else is more likely beside these causes than not."""
-        return self.beside.get(names, 0.0) > self.sets.get(names, 0.0) + self.filed.get(names, 0.0)
 
     def off_beside(self, names: Names) -> bool:
         """Whether further numbers of the file are more likely off beside these causes than not."""
@@ -168,6 +160,13 @@ def probabilities(
         file=share.get(("filed", frozenset()), 0.0), varying=inconstant,
         something_else=share["else", frozenset()] + inconstant + sum(believed.values()) - sum(share.values()),
     )  # fmt: skip
+
+
+def something_beside(forces: float, varying: float) -> bool:
+    """Whether something else is more likely beside causes than not, by the evidence over the causes of generic ``forces`` and of sizes ``varying`` along the
+    log."""
+    odds = log(PRIOR_SOMETHING_ELSE / PRIOR_HEALTHY)
+    return odds + float(np.logaddexp(_something_else(forces, 0.0), 0.5 * varying)) > 0.0
 
 
 def _something_else(forces: float, open_gap: float) -> float:

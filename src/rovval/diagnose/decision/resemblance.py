@@ -18,8 +18,9 @@ import numpy as np
 
 from rovval.core.data import Array
 from rovval.diagnose.criteria import CAUSES_LEAVE, FORM_ALIKE, FORM_LEAVES, LIBRARY_ALIKE, PRIOR_CAUSES, PRIOR_SOMETHING_ELSE
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 from rovval.diagnose.inference.shrinkage import explainable_left
-from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.problem.problem import Problem, gap_equations_at
 from rovval.diagnose.search.model import Model, Names
 
 Left = Mapping[Names, Array]  # (2,) share of the gap that each set of causes leaves on held-out windows: of the dynamics alone, and with parity residuals
@@ -29,11 +30,20 @@ NOTHING_LEFT = 1e-3  # share of the gap: rounding of a ratio to what is left
 
 def gap_left(problem: Problem, models: Iterable[Model]) -> dict[Names, Array]:
     """What each set of causes that was fitted leaves (2,); of several fits of a set, the least."""
-    fits = [(m.names, m.fit) for m in models if m.fit]
+    fits = [(m.names, np.array([m.fit.dynamics_loss.sum(), m.fit.loss.sum()])) for m in models if m.fit]
     found = dict[Names, Array]()
-    for (names, _), share in zip(fits, explainable_left(problem, [fit for _, fit in fits]), strict=True):
+    for (names, _), share in zip(fits, explainable_left(problem, [losses for _, losses in fits]), strict=True):
         found[names] = np.minimum(np.maximum(share, NOTHING_LEFT), found.get(names, np.inf))
     return found
+
+
+def gap_left_from(problem: Problem, late: HypothesisFit, time: float) -> Array:
+    """The same (2,) of causes that are at work from ``time`` (s since the run's start) on, fitted to the windows from there on; what the windows before lack
+    is left."""
+    before = np.concatenate([part.start * part.run.dt < time for part in problem.runs])
+    dynamics, total = gap_equations_at(problem, late.beta, ())
+    losses = [np.where(before, gap.c, found.c).sum() for gap, found in ((problem.gap.dynamics, dynamics), (problem.gap.total, total))]
+    return np.maximum(explainable_left(problem, [np.array(losses)])[0], NOTHING_LEFT)
 
 
 def none_of_the_library(names: Names, left: Left) -> float:

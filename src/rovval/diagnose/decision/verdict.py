@@ -15,8 +15,8 @@ from rovval.diagnose.decision.consistency import inconsistencies
 from rovval.diagnose.decision.constancy import variation
 from rovval.diagnose.decision.indications import Indications, indications
 from rovval.diagnose.decision.miscalibration import file_evidence
-from rovval.diagnose.decision.open_gap import evidence_of_something_else, open_gap
-from rovval.diagnose.decision.posterior import Probabilities, probabilities
+from rovval.diagnose.decision.open_gap import evidence_of_something_else, left_open, open_gap
+from rovval.diagnose.decision.posterior import Probabilities, probabilities, something_beside
 from rovval.diagnose.decision.resemblance import gap_left
 from rovval.diagnose.decision.unexplained import Accounted, Unexplained, accounted, unexplained, unexplained_by_any
 from rovval.diagnose.effort import NEGLIGIBLE, SETS_WEIGHED
@@ -25,7 +25,7 @@ from rovval.diagnose.inference.gap import weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.sensor_faults import FittedFault
-from rovval.diagnose.search.discrepancy import GenericForces, generic_forces, nominal_forces
+from rovval.diagnose.search.discrepancy import generic_forces, nominal_forces
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.search.joint import joint_fit, refitted
 from rovval.diagnose.search.model import Model, Names, best_of_each_set
@@ -50,6 +50,8 @@ class Decision:
         generic_beside: the same of something else beside the causes, over the causes.
         departure: largest standardised departure of a coefficient that is no cause's, in standard deviations of its prior.
         accounted: what of the gap needs no cause.
+        open_gap: what is left of the gap beyond noise, over what noise and tolerances are expected to make (1): with the causes that are named, on held-out
+            windows.
         unexplained: what is left; None where nothing is.
         indications: what points to a cause where none is named; None where causes are.
     """
@@ -66,6 +68,7 @@ class Decision:
     generic_beside: float
     departure: float
     accounted: Accounted
+    open_gap: float
     unexplained: Unexplained | None
     indications: Indications | None = None
 
@@ -74,8 +77,7 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
     """The verdict on what a search met; ``residuals`` are the nominal vehicle's, ``faults`` of sensors those that parity residuals show."""
     instead, file = generic_forces(problem, selection.healthy), file_evidence(problem, selection)
     leading = _leading(problem, selection)
-    beside = {one.names: generic_forces(problem, one.fit.posterior) for one in leading if one.fit}
-    more = {names: forces.sparse()[0] for names, forces in beside.items()}
+    more = {one.names: generic_forces(problem, one.fit.posterior).sparse()[0] for one in leading if one.fit}
     varies = {one.names: variation(problem, one.fit.posterior, one.causes) for one in leading if one.fit}
     evidence = instead.sparse()[0]
     met = [*leading, *selection.models]
@@ -85,11 +87,11 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
     best = _fitted(problem, selection, met, belief.best)
     known = accounted(problem, selection.healthy)
     over = best.evidence - selection.models[0].evidence
-    generic = max(evidence, 0.0), max(more.get(best.names, 0.0), 0.0)
-    found = Decision("no_gap", belief, (), None, {}, {}, {}, over, *generic, selection.healthy.largest_departure(), known, None)
+    departure, instead_of_any = selection.healthy.largest_departure(), max(evidence, 0.0)
+    found = Decision("no_gap", belief, (), None, {}, {}, {}, over, instead_of_any, 0.0, departure, known, unexplained_gap, None)
     contradicted = any(h.effect.place != "sensor" for h in best.causes) and _contradicted(problem, residuals)
     if best.fit and belief.likelier_than_not == "causes" and not contradicted:
-        return _named(problem, selection, found, best, best.fit, beside.get(best.names) or generic_forces(problem, best.fit.posterior))
+        return _named(problem, selection, found, best, best.fit)
     found = replace(found, indications=indications(selection.steps[0] if selection.steps else (), known, faults))
     if belief.likelier_than_not == "healthy":
         return found
@@ -121,11 +123,13 @@ def _fitted(problem: Problem, selection: Selection, met: Sequence[Model], names:
     return refitted(problem, Model(causes, fit.without_sensitivities(), fit.evidence, selection.prior.log_mass(causes)))
 
 
-def _named(problem: Problem, selection: Selection, found: Decision, best: Model, fit: HypothesisFit, beside: GenericForces) -> Decision:
-    """The causes of the best set are named."""
-    belief = found.probabilities
+def _named(problem: Problem, selection: Selection, found: Decision, best: Model, fit: HypothesisFit) -> Decision:
+    """The causes of the best set are named; they explain a part where something else is likelier beside them than not, or where they leave more than noise
+    and tolerances make."""
+    belief, beside = found.probabilities, generic_forces(problem, fit.posterior)
     probability = {h.name: belief.of(h.name) for h in best.causes}
-    partly = belief.partly(best.names)
+    forces, left = beside.sparse()[0], left_open(problem, fit)
+    partly = left > 1.0 or something_beside(forces, variation(problem, fit.posterior, best.causes))
     return replace(
         found,
         verdict="partly_explained" if partly else "explained",
@@ -134,7 +138,9 @@ def _named(problem: Problem, selection: Selection, found: Decision, best: Model,
         groups={h.name: belief.group(h.name) for h in best.causes},
         probability=probability,
         added={h.name: best.evidence - _evidence_without(selection, best.names - {h.name}) for h in best.causes},
+        generic_beside=max(forces, 0.0),
         departure=fit.posterior.largest_departure(),
+        open_gap=left,
         unexplained=unexplained(problem, beside, fit.posterior) if partly else None,
     )
 

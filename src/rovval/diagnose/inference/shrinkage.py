@@ -86,14 +86,13 @@ def shrinkage_of(problem: Problem, loss: Array, after: list[Array], before: list
     )
 
 
-def explainable_left(problem: Problem, fits: Sequence[HypothesisFit]) -> list[Array]:
-    """Share (2,) of the squared error above noise that each of ``fits`` leaves on held-out windows, above 1 where it adds to it: of the dynamics alone, and
-    of these with the parity residuals. All of it where there is no error above noise that could be taken away."""
+def explainable_left(problem: Problem, losses: Sequence[Array]) -> list[Array]:
+    """Share (2,) of the squared error above noise that each of ``losses`` (2,) is, above 1 where it is more than all: of the dynamics alone, and of these
+    with the parity residuals. All of it where there is no error above noise that could be taken away."""
     gap, noise = problem.gap, float(noise_floor_loss(problem).sum())
     checked = sum(float(check.noise_loss(problem.design_effect).sum()) for check in problem.parity)
-    before = np.array([gap.dynamics.c.sum(), gap.total.c.sum()])
-    floor, after = np.array([noise, noise + checked]), [np.array([fit.dynamics_loss.sum(), fit.loss.sum()]) for fit in fits]
-    return [np.asarray(np.divide(loss - floor, before - floor, out=np.ones(2), where=before > floor)) for loss in after]
+    floor, before = np.array([noise, noise + checked]), np.array([gap.dynamics.c.sum(), gap.total.c.sum()])
+    return [np.asarray(np.divide(loss - floor, before - floor, out=np.ones(2), where=before > floor)) for loss in losses]
 
 
 def worsened_axes(reduction: GapReduction) -> dict[str, float]:

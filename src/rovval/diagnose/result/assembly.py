@@ -166,6 +166,7 @@ def _detection(decision: Decision) -> Detection:
         generic_instead=decision.generic_instead,
         generic_beside=decision.generic_beside,
         largest_departure=decision.departure,
+        open_gap=decision.open_gap,
     )
 
 

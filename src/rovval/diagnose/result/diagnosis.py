@@ -176,6 +176,10 @@ class Detection(Record):
         validation_alias=AliasChoices("largest_departure", "strain"),
         description="largest standardised departure of a coefficient that is no cause's, in standard deviations of its prior",
     )
+    open_gap: float = Field(
+        default=0.0,
+        description="squared gap that causes, or where none are named any model, leave beyond noise, over what noise and tolerances are expected to make",
+    )
 
     @computed_field(description="older key of tolerance_share")  # type: ignore[prop-decorator]
     @property
