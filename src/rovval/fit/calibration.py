@@ -1,7 +1,7 @@
 """Calibration: all that a vehicle's file may have wrong, estimated from logs at once; read `calibrate` first.
 
 Every unknown has a prior about the file and none is frozen: what the logs do not show stays where its prior holds it, and is said to. What
-only some vehicles need (thrusters that differ from one another, a tether) is added where it predicts every run left out better.
+only some vehicles need (thrusters that differ from one another) is added where it predicts every run left out better.
 """
 
 from __future__ import annotations

@@ -78,11 +78,22 @@ def maximum(problem: Problem, starts: Sequence[Array]) -> Estimate:
 
 
 def _climb(problem: Problem, start: Array) -> Estimate | None:
-    values, residuals = start.copy(), problem.residuals(start)
+    """The maximum that is reached from ``start``: with the scales that the residuals have there, which a bad start makes wide and the surface smooth, and
+    from there with those that they take on (graduated: Blake and Zisserman 1987)."""
+    residuals = problem.residuals(start)
     if not _finite(residuals):
         return None
-    damping, converged = DAMPED, False
+    values, residuals, _ = _descend(problem, start.copy(), residuals, _scale(problem, residuals))
+    values, residuals, converged = _descend(problem, values, residuals, None)
     scale = _scale(problem, residuals)
+    curvature, _ = _normal_equations(problem, values, residuals, scale)
+    return Estimate(values, np.asarray(np.linalg.inv(curvature), dtype=np.float64), _cost(problem, values, residuals, scale), scale, converged)
+
+
+def _descend(problem: Problem, values: Array, residuals: Sequence[Array], fixed: Array | None) -> tuple[Array, Sequence[Array], bool]:
+    """``values`` and their residuals after damped steps, with ``fixed`` scales or with those of the residuals, and whether the last step gained nothing."""
+    damping = DAMPED
+    scale = fixed if fixed is not None else _scale(problem, residuals)
     for _ in range(STEPS):
         curvature, slope = _normal_equations(problem, values, residuals, scale)
         cost = _cost(problem, values, residuals, scale)
@@ -94,15 +105,12 @@ def _climb(problem: Problem, start: Array) -> Estimate | None:
                 break
             damping *= HARDER
         else:
-            converged = True  # no step along the slope lowers the cost: this is the bottom, to rounding
-            break
+            return values, residuals, True  # no step along the slope lowers the cost: this is the bottom, to rounding
         values, residuals, damping = ahead, there, damping * EASIER
-        scale = _scale(problem, residuals)
+        scale = fixed if fixed is not None else _scale(problem, residuals)
         if cost - new < CONVERGED / 2:
-            converged = True
-            break
-    curvature, _ = _normal_equations(problem, values, residuals, scale)
-    return Estimate(values, np.asarray(np.linalg.inv(curvature), dtype=np.float64), _cost(problem, values, residuals, scale), scale, converged)
+            return values, residuals, True
+    return values, residuals, False
 
 
 def _finite(residuals: Sequence[Array]) -> bool:

@@ -26,7 +26,7 @@ INERTIA = log(1.3)  # rigid-body inertia: from weighed parts it is known to a th
 SINGLE = 0.1  # one thruster's gain about the others': spread of a batch (chosen)
 ASTERN = 0.1  # ratio of thrust astern to ahead about the thruster's table (chosen)
 VERTICAL = log(1.5)  # ratio of vertical to horizontal thrusters: shrouding by frame and buoyancy (chosen)
-ARM = 0.2  # of the longest thruster arm: height of thrusters (chosen; von Benzon prints 85 mm where 4 mm act)
+ARM = 0.2  # of the longest thruster arm: height of thrusters, and how far ahead they are (chosen; von Benzon prints 85 mm where 4 mm act)
 CENTRE = 0.05  # of the longest thruster arm: where buoyancy acts (chosen)
 TRIM = 0.02  # of the weight: what an operator trims to with ballast of some hundred grams (chosen)
 TILT = 0.05  # rad: a frame that is measured by eye, 3 degrees (chosen)
@@ -40,6 +40,7 @@ KNOWN_FORCE = "a known force against the thrusters (depth held with a weighed ba
 GROUPS = "steps in heave by the vertical thrusters alone, beside steps in surge and sway by the horizontal ones alone"
 BOTH_WAYS = "one axis ahead and astern at the same command, each until the speed is steady"
 STEPS = "steps of command from rest and back to none, each held for some seconds"
+FREE_TURN = "steps in sway and heave with yaw and pitch left free (no attitude hold)"
 FREE_TILT = "steps in surge and sway with roll and pitch left free (no attitude hold)"
 COAST = "a coast-down in {0}, thrusters off until it stands: at the slow end linear drag is all that is left"
 STEADY = "steady motion in {0} at two speeds or more, the fastest near full command"
@@ -97,6 +98,7 @@ def unknowns(vehicle: Vehicle, channels: Sequence[str]) -> tuple[Unknown, ...]:
     ]
     found.append(Unknown("thrust.lag", "factor", WIDE, "1", "time constant of the thrusters' speed", STEPS))
     found.append(Unknown("thrust.height", "offset", ARM * arm, "m", "height of the horizontal thrusters, down", FREE_TILT))
+    found.append(Unknown("thrust.ahead", "offset", ARM * arm, "m", "place of all thrusters, ahead of the vehicle's centre", FREE_TURN))
     for axis in AXES:
         slow, fast, jerk = (how.format(axis) for how in (RIGHTED if axis in ("roll", "pitch") else (COAST, STEADY, FROM_REST)))
         found.append(Unknown(f"linear_drag[{axis}]", "factor", WIDE, "1", f"linear drag in {axis}", slow))
@@ -113,7 +115,7 @@ def unknowns(vehicle: Vehicle, channels: Sequence[str]) -> tuple[Unknown, ...]:
     if {"u", "v", "w"} <= set(channels):
         found += [Unknown(f"velocity.{c}", "offset", TILT, "rad", f"{c} of the velocity sensor's frame", STRAIGHT.format(*of)) for c, of in TURNED.items()]
         found += [Unknown(f"velocity.lever.{c}", "offset", LEVER, "m", f"place of the velocity sensor, {c}", SPOT.format(*of)) for c, of in SWUNG.items()]
-    found.append(Unknown("tether.drag", "factor", WIDE, "1", "quadratic drag of the tether where it is made fast", TETHER, True))
+    found.append(Unknown("tether.drag", "factor", WIDE, "1", "quadratic drag of the tether where it is made fast", TETHER))
     return tuple(found)
 
 
@@ -139,7 +141,7 @@ def _thruster(one: Thruster, at: Mapping[str, float]) -> Thruster:
     x, y, z = one.position
     height = 0.0 if _vertical(one) else at.get("thrust.height", 0.0)
     astern = at.get("thrust.astern", 1.0)
-    return one.model_copy(update={"k_pos": one.k_pos * gain, "k_neg": one.k_neg * gain * astern, "position": (x, y, z + height)})
+    return one.model_copy(update={"k_pos": one.k_pos * gain, "k_neg": one.k_neg * gain * astern, "position": (x + at.get("thrust.ahead", 0.0), y, z + height)})
 
 
 def _vertical(one: Thruster) -> bool:
