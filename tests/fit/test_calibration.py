@@ -21,12 +21,12 @@ from rovval.vehicle import parse
 from rovval.vehicle.model import Vehicle
 from rovval.vehicle.write import to_toml
 
-WRONG = {"thrust.gain": -0.5, "quadratic_drag[surge]": 0.6, "linear_drag[yaw]": 0.7, "thrust.height": 0.1, "trim.buoyancy": 30.0}
+WRONG = {"thrust.gain": -0.5, "quadratic_drag[surge]": 0.6, "linear_drag[yaw]": 0.7, "thrust.height": 0.1, "thrust.ahead": 0.08, "trim.buoyancy": 30.0}
 CHANNELS = ("u", "v", "w", "p", "q", "r", "phi", "theta", "z")
 
 
 def true_vehicle() -> Vehicle:
-    """Merlin as it is in the water, where its file is wrong in five numbers."""
+    """Merlin as it is in the water, where its file is wrong in six numbers."""
     asked = tuple(one for one in unknowns(merlin(), CHANNELS) if one.key in WRONG)
     return applied(merlin(), asked, np.array([WRONG[one.key] for one in asked]))
 
@@ -46,6 +46,7 @@ def test_what_the_file_has_wrong_comes_back():
     drag, gain = found["quadratic_drag[surge]"], found["thrust.gain"]
     assert drag.value / gain.value == pytest.approx(np.exp(0.6 + 0.5), rel=0.1)  # of forces the ratio shows best
     assert found["thrust.height"].value == pytest.approx(0.1, abs=0.03)
+    assert found["thrust.ahead"].value == pytest.approx(0.08, abs=0.02)
     assert found["trim.buoyancy"].value == pytest.approx(30.0, abs=5.0)
 
 

@@ -11,7 +11,8 @@ from scipy.integrate import quad
 
 from rovval.diagnose import Diagnosis, diagnose
 from rovval.diagnose.criteria import OPEN_GAP_RIGHT
-from rovval.diagnose.decision.open_gap import evidence_of_something_else, open_gap
+from rovval.diagnose.decision.open_gap import evidence_of_something_else, left_open, open_gap
+from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
 from rovval.diagnose.inference.map_fit import healthy_fit
 
 
@@ -53,3 +54,11 @@ def test_bumps_that_no_model_has_are_no_healthy_vehicle(bumped: Diagnosis):
     assert bumped.verdict == "unknown" and not bumped.causes
     assert bumped.probabilities is not None and bumped.probabilities.something_else > 0.8
     assert bumped.left is not None and bumped.left.accounted is not None and bumped.left.accounted < 0.5
+
+
+def test_causes_leave_little_open_and_half_of_them_more():
+    """Two effects are planted: with both, what is left is no more than noise and tolerances make; with the smaller of them it is."""
+    problem, library = posed(("buoyancy_error:force=150", "quadratic_drag[surge]:scale=1.0"))
+    buoyancy, drag = (next(h for h in library if h.name == name).slots for name in ("buoyancy_error", "quadratic_drag[surge]"))
+    both, one = (fit_hypothesis(problem, problem.origin, slots) for slots in ((*buoyancy, *drag), drag))
+    assert left_open(problem, both) < 0.5 < 1.0 < left_open(problem, one)

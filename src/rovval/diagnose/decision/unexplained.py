@@ -45,8 +45,8 @@ class Unexplained:
         share: share (1) of the squared error that generic forces take away on held-out windows; 0 of an open gap.
         departed: coefficient furthest beyond its tolerance and its standardised departure; None where none is.
         inconstant: effects that come near, but whose value would have to change along the log.
-        accounted: of an open gap, the share (1) of it that noise and tolerance account for; None where a force, a coefficient or an effect
-            is surely at work.
+        accounted: of an open gap, the share (1) of it, or of what the causes leave of it, that noise and tolerance account for; None where a force, a
+            coefficient or an effect is surely at work.
     """
 
     axes: tuple[str, ...]
@@ -75,7 +75,8 @@ def unexplained(problem: Problem, forces: GenericForces, point: Posterior, incon
     return Unexplained(tuple(axes), tuple(depends), forces.held_out_gain(problem.folds), departed, tuple(inconstant))
 
 
-def unexplained_by_any(problem: Problem, known: Accounted, residuals: list[Array]) -> Unexplained:
-    """A gap that goes with nothing that was logged: the axis of its largest part. ``residuals`` are the nominal vehicle's."""
+def unexplained_by_any(problem: Problem, accounted: float, residuals: list[Array]) -> Unexplained:
+    """A gap that goes with nothing that was logged: the axis of its largest part. ``residuals`` are the nominal vehicle's, or with the causes that are named;
+    noise and tolerance account for a share ``accounted`` of it."""
     weight = weighted_errors(problem, residuals)
-    return Unexplained((max(axis_channels(problem.runs[0]), key=lambda axis: weight[axis]),), accounted=known.share)
+    return Unexplained((max(axis_channels(problem.runs[0]), key=lambda axis: weight[axis]),), accounted=accounted)

@@ -23,9 +23,9 @@ from rovval.diagnose.effort import NEGLIGIBLE, SETS_WEIGHED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.gap import weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
-from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.residuals.sensor_faults import FittedFault
-from rovval.diagnose.search.discrepancy import generic_forces, nominal_forces
+from rovval.diagnose.search.discrepancy import GenericForces, generic_forces, nominal_forces
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.search.joint import joint_fit, refitted
 from rovval.diagnose.search.model import Model, Names, best_of_each_set
@@ -97,7 +97,7 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
         return found
     inconstant = [h.name for h in best.causes] if belief.varying > 0.5 * belief.something_else else []
     if belief.something_else > max(belief.healthy, belief.causes) and evidence <= 0.0 and not inconstant:
-        return replace(found, verdict="unknown", unexplained=unexplained_by_any(problem, known, residuals))
+        return replace(found, verdict="unknown", unexplained=unexplained_by_any(problem, known.share, residuals))
     return replace(found, verdict="unknown", unexplained=unexplained(problem, nominal_forces(problem), selection.healthy, inconstant))
 
 
@@ -124,25 +124,32 @@ def _fitted(problem: Problem, selection: Selection, met: Sequence[Model], names:
 
 
 def _named(problem: Problem, selection: Selection, found: Decision, best: Model, fit: HypothesisFit) -> Decision:
-    """The causes of the best set are named; they explain a part where something else is likelier beside them than not, or where they leave more than noise
-    and tolerances make."""
+    """The causes of the best set are named; they explain a part of the gap where something is left of it."""
     belief, beside = found.probabilities, generic_forces(problem, fit.posterior)
     probability = {h.name: belief.of(h.name) for h in best.causes}
-    forces, left = beside.sparse()[0], left_open(problem, fit)
-    partly = left > 1.0 or something_beside(forces, variation(problem, fit.posterior, best.causes))
+    rest = _rest(problem, best, fit, beside)
     return replace(
         found,
-        verdict="partly_explained" if partly else "explained",
+        verdict="partly_explained" if rest else "explained",
         causes=tuple(sorted(best.causes, key=lambda h: -probability[h.name])),
         fit=fit,
         groups={h.name: belief.group(h.name) for h in best.causes},
         probability=probability,
         added={h.name: best.evidence - _evidence_without(selection, best.names - {h.name}) for h in best.causes},
-        generic_beside=max(forces, 0.0),
+        generic_beside=max(beside.sparse()[0], 0.0),
         departure=fit.posterior.largest_departure(),
-        open_gap=left,
-        unexplained=unexplained(problem, beside, fit.posterior) if partly else None,
+        open_gap=left_open(problem, fit),
+        unexplained=rest,
     )
+
+
+def _rest(problem: Problem, best: Model, fit: HypothesisFit, beside: GenericForces) -> Unexplained | None:
+    """What causes leave: generic forces or sizes that vary, where these are likelier than not; else what is more than noise and tolerances make."""
+    if something_beside(beside.sparse()[0], variation(problem, fit.posterior, best.causes)):
+        return unexplained(problem, beside, fit.posterior)
+    if (left := left_open(problem, fit)) > 1.0:
+        return unexplained_by_any(problem, 1.0 / left, corrected_residuals(problem, fit.beta))
+    return None
 
 
 def _contradicted(problem: Problem, residuals: list[Array]) -> bool:

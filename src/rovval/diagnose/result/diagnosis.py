@@ -219,8 +219,8 @@ class Unexplained(Record):
     inconstant: tuple[str, ...] = Field(default=(), description="effects that come near, but whose value would change along the log")
     accounted: float | None = Field(
         default=None,
-        description="share of the gap that noise and tolerance account for, where that is so little that the gap stays open; null "
-        "where a force, a coefficient or an effect is surely at work",
+        description="share of the gap, or of what causes leave of it, that noise and tolerance account for, where that is so little that it stays open; "
+        "null where a force, a coefficient or an effect is surely at work",
     )
     text: str = Field(default="", description="the same in words")
 

@@ -106,13 +106,13 @@ def _force(d: Diagnosis, left: Unexplained) -> str:
 
 
 def _open(d: Diagnosis, accounted: float) -> str:
-    """A gap of which noise and tolerances account for so little that it stays open."""
-    found, beyond = d.detection, ""
-    if found and accounted < found.noise + found.tolerance_share - 1e-9:  # the tolerances were overdrawn: they were not counted
+    """A gap, or what causes leave of it, of which noise and tolerances account for so little that it stays open."""
+    found, beyond, whole = d.detection, "", "what the causes leave" if d.causes else "the squared gap"
+    if found and not d.causes and accounted < found.noise + found.tolerance_share - 1e-9:  # the tolerances were overdrawn: they were not counted
         beyond = f" (for {per_cent(found.tolerance_share)} if a coefficient were {found.largest_departure:.1f} times its tolerance off)"
     return (
-        f"{known(d)} account for only {per_cent(accounted)} of the squared gap{beyond}; no effect of the library and no smooth force is shown to be "
-        f"the rest. It may be a disturbance{_largest(d)}, an effect that comes and goes, or motion that this log shows too little of"
+        f"{known(d)} account for only {per_cent(accounted)} of {whole}{beyond}; no effect of the library and no smooth force is shown to be the rest. "
+        f"It may be a disturbance{_largest(d)}, an effect that comes and goes, or motion that this log shows too little of"
     )
 
 
