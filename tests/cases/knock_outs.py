@@ -5,7 +5,6 @@ The vehicle is calibrated on the two other runs, so that nothing of the run that
 
 from __future__ import annotations
 
-import json
 import math
 import tempfile
 from collections.abc import Callable
@@ -22,7 +21,7 @@ from rovval import vehicle
 from rovval.core.code_version import source_hash
 from rovval.core.data import Run
 from rovval.fit.calibration import calibrate
-from rovval.fit.unknowns import SENSORS, applied, unknowns
+from rovval.fit.unknowns import applied, unknowns
 from rovval.storage.archive import open_run
 from rovval.storage.atomic import write_text
 from rovval.vehicle.model import Vehicle
@@ -36,7 +35,6 @@ WEAK = 0.6  # of a thruster's thrust; a thruster that is left at 1/WEAK is the s
 LATE_S = 0.4
 TURNED = math.radians(10.0)
 LIFT = 3.0  # N
-FAR = 5.0  # standard errors
 SHIFT = 0.02  # m
 CHANNELS = ("u", "v", "w", "p", "q", "r", "phi", "theta", "z")
 
@@ -53,22 +51,6 @@ def calibrated(left_out: str) -> Vehicle:
         found = calibrate([open_run(tank(run)) for run in RUNS if run != left_out], vehicle.load("bluerov2_heavy"))
         write_text(kept, to_toml(found.vehicle))
     return vehicle.load(kept)
-
-
-@cache
-def sensors_of_its_own(run: str) -> tuple[str, ...]:
-    """Effects of sensors that were off in this run by another amount than in the two others, as a calibration of this run alone finds: by more than `FAR`
-    standard errors. The diagnosis has no part in it, and what it says of them is right whatever else was done to the run."""
-    kept = KEPT / f"tank_sensors_of_{run}_{source_hash(UNUSED, ('.py', '.toml'))}.json"
-    if not kept.exists():
-        alone, others = calibrate([open_run(tank(run))], vehicle.load("bluerov2_heavy")), calibrated(run).effects
-        error = {row.unknown.key: row.error for row in alone.rows}
-        off = {
-            effect for key, (effect, parameter) in SENSORS.items()
-            if key in error and abs(alone.vehicle.effects[effect][parameter] - others.get(effect, {}).get(parameter, 0.0)) > FAR * error[key]
-        }  # fmt: skip
-        write_text(kept, json.dumps(sorted(off)))
-    return tuple(json.loads(kept.read_text()))
 
 
 def without_surge_drag(whole: Vehicle) -> Vehicle:
@@ -141,7 +123,7 @@ PIECES: dict[str, tuple[Callable[[Vehicle], Vehicle], Callable[[Path], Run], tup
 def questions(run: str) -> tuple[Question, ...]:
     whole = calibrated(run)
     return tuple(
-        Question(piece, (tank(run),), to_toml(change(whole)), right, read, to_toml(whole), sensors_of_its_own(run))
+        Question(piece, (tank(run),), to_toml(change(whole)), right, read, to_toml(whole))
         for piece, (change, read, right) in PIECES.items()
     )
 

@@ -26,8 +26,7 @@ BINS = ((0.9, 1.01), (0.5, 0.9), (0.0, 0.5))  # of printed probabilities
 class Question:
     """What was done (``piece``) to ``logs`` or to a ``vehicle`` (TOML); a first cause among ``right`` is right, with none of these any cause is wrong.
 
-    ``read`` reads a log and damages it; ``whole`` is the vehicle (TOML) before, where it is known. ``also`` are effects that are known to be in the logs
-    whatever was done: no first name is right for one of them, and none is a mistake."""
+    ``read`` reads a log and damages it; ``whole`` is the vehicle (TOML) before, where it is known."""
 
     piece: str
     logs: tuple[Path, ...]
@@ -35,7 +34,6 @@ class Question:
     right: tuple[str, ...]
     read: Callable[[Path], Run] = open_run
     whole: str = ""
-    also: tuple[str, ...] = ()
 
     @property
     def log(self) -> str:
@@ -116,15 +114,9 @@ def named_first(answers: Sequence[Answer]) -> tuple[int, int]:
 
 
 def overconfident(answers: Sequence[Answer], least: float = BINS[0][0]) -> tuple[int, int]:
-    """How many of the names printed at ``least`` or above are wrong, and of how many; in an answer of several every name counts, but for those of what is
-    known to be in the logs beside what was done."""
-    said = [name in one.question.right for one in answers for name, p in one.causes if p >= least and name not in one.question.also]
+    """How many of the names printed at ``least`` or above are wrong, and of how many; in an answer of several every name counts."""
+    said = [name in one.question.right for one in answers for name, p in one.causes if p >= least]
     return said.count(False), len(said)
-
-
-def beside(answers: Sequence[Answer], least: float = BINS[0][0]) -> int:
-    """How many names at ``least`` or above are of what is known to be in the logs beside what was done."""
-    return sum(name in one.question.also for one in answers for name, p in one.causes if p >= least)
 
 
 def confidence(answers: Sequence[Answer]) -> str:
