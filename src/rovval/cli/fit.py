@@ -48,7 +48,7 @@ def command(
 ) -> None:
     """Calibrate a vehicle's file to one or more runs, or tune chosen parameters of it, and write the vehicle.
 
-    Without --parameters all that a file may have wrong is estimated at once: thrust, height of thrusters, drag, added mass, inertia, trim, lag, and
+    Without --parameters all that a file may have wrong is estimated at once: thrust, place of thrusters, drag, added mass, inertia, trim, lag, and
     how sensors are mounted. What the logs do not show stays near the file. Several runs also predict one another. The page of --report has intervals,
     correlations, predicted runs, and what another manoeuvre would tell.
 
