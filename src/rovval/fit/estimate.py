@@ -93,8 +93,8 @@ def _climb(problem: Problem, start: Array) -> Estimate | None:
 def _descend(problem: Problem, values: Array, residuals: Sequence[Array], fixed: Array | None) -> tuple[Array, Sequence[Array], bool]:
     """``values`` and their residuals after damped steps, with ``fixed`` scales or with those of the residuals, and whether the last step gained nothing."""
     damping = DAMPED
-    scale = fixed if fixed is not None else _scale(problem, residuals)
     for _ in range(STEPS):
+        scale = _scale(problem, residuals) if fixed is None else fixed
         curvature, slope = _normal_equations(problem, values, residuals, scale)
         cost = _cost(problem, values, residuals, scale)
         for _ in range(TRIES):
@@ -107,7 +107,6 @@ def _descend(problem: Problem, values: Array, residuals: Sequence[Array], fixed:
         else:
             return values, residuals, True  # no step along the slope lowers the cost: this is the bottom, to rounding
         values, residuals, damping = ahead, there, damping * EASIER
-        scale = fixed if fixed is not None else _scale(problem, residuals)
         if cost - new < CONVERGED / 2:
             return values, residuals, True
     return values, residuals, False

@@ -88,6 +88,8 @@ def test_a_gap_that_no_model_explains_is_something_else_and_beside_causes_too():
     pair: dict[tuple[str, ...], float] = {("waves",): 40.0, ("dvl_scale",): 38.0}
     assert belief({("waves",): -60.0}, open_gap=30.0).something_else > 0.99
     closed, left = belief(pair), belief(pair, open_gap=30.0)
+    waves = frozenset({"waves"})
+    assert left.beside[waves] > left.sets[waves] and closed.beside[waves] < closed.sets[waves]
     assert [left.of(n) for n in ("waves", "dvl_scale")] == pytest.approx([closed.of(n) for n in ("waves", "dvl_scale")], abs=0.02)
     assert dict(left.group("waves")) == pytest.approx(dict(closed.group("waves")))
 

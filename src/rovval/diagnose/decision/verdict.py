@@ -77,7 +77,8 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
     """The verdict on what a search met; ``residuals`` are the nominal vehicle's, ``faults`` of sensors those that parity residuals show."""
     instead, file = generic_forces(problem, selection.healthy), file_evidence(problem, selection)
     leading = _leading(problem, selection)
-    more = {one.names: generic_forces(problem, one.fit.posterior).sparse()[0] for one in leading if one.fit}
+    beside = {one.names: generic_forces(problem, one.fit.posterior) for one in leading if one.fit}
+    more = {names: forces.sparse()[0] for names, forces in beside.items()}
     varies = {one.names: variation(problem, one.fit.posterior, one.causes) for one in leading if one.fit}
     evidence = instead.sparse()[0]
     met = [*leading, *selection.models]
@@ -91,7 +92,9 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
     found = Decision("no_gap", belief, (), None, {}, {}, {}, over, instead_of_any, 0.0, departure, known, unexplained_gap, None)
     contradicted = any(h.effect.place != "sensor" for h in best.causes) and _contradicted(problem, residuals)
     if best.fit and belief.likelier_than_not == "causes" and not contradicted:
-        return _named(problem, selection, found, best, best.fit)
+        forces = beside.get(best.names) or generic_forces(problem, best.fit.posterior)
+        varying = varies[best.names] if best.names in varies else variation(problem, best.fit.posterior, best.causes)
+        return _named(problem, selection, found, best, best.fit, forces, varying)
     found = replace(found, indications=indications(selection.steps[0] if selection.steps else (), known, faults))
     if belief.likelier_than_not == "healthy":
         return found
@@ -123,11 +126,18 @@ def _fitted(problem: Problem, selection: Selection, met: Sequence[Model], names:
     return refitted(problem, Model(causes, fit.without_sensitivities(), fit.evidence, selection.prior.log_mass(causes)))
 
 
-def _named(problem: Problem, selection: Selection, found: Decision, best: Model, fit: HypothesisFit) -> Decision:
-    """The causes of the best set are named; they explain a part of the gap where something is left of it."""
-    belief, beside = found.probabilities, generic_forces(problem, fit.posterior)
+def _named(
+    problem: Problem, selection: Selection, found: Decision, best: Model, fit: HypothesisFit, beside: GenericForces, varying: float
+) -> Decision:
+    """The causes of the best set are named; they explain a part where generic forces ``beside`` them, or sizes ``varying`` along the log, are likelier than
+    not, or where they leave more of the gap than noise and tolerances make."""
+    belief, evidence, left = found.probabilities, beside.sparse()[0], left_open(problem, fit)
     probability = {h.name: belief.of(h.name) for h in best.causes}
-    rest = _rest(problem, best, fit, beside)
+    rest = None
+    if something_beside(evidence, varying):
+        rest = unexplained(problem, beside, fit.posterior)
+    elif left > 1.0:
+        rest = unexplained_by_any(problem, 1.0 / left, corrected_residuals(problem, fit.beta))
     return replace(
         found,
         verdict="partly_explained" if rest else "explained",
@@ -136,20 +146,11 @@ def _named(problem: Problem, selection: Selection, found: Decision, best: Model,
         groups={h.name: belief.group(h.name) for h in best.causes},
         probability=probability,
         added={h.name: best.evidence - _evidence_without(selection, best.names - {h.name}) for h in best.causes},
-        generic_beside=max(beside.sparse()[0], 0.0),
+        generic_beside=max(evidence, 0.0),
         departure=fit.posterior.largest_departure(),
-        open_gap=left_open(problem, fit),
+        open_gap=left,
         unexplained=rest,
     )
-
-
-def _rest(problem: Problem, best: Model, fit: HypothesisFit, beside: GenericForces) -> Unexplained | None:
-    """What causes leave: generic forces or sizes that vary, where these are likelier than not; else what is more than noise and tolerances make."""
-    if something_beside(beside.sparse()[0], variation(problem, fit.posterior, best.causes)):
-        return unexplained(problem, beside, fit.posterior)
-    if (left := left_open(problem, fit)) > 1.0:
-        return unexplained_by_any(problem, 1.0 / left, corrected_residuals(problem, fit.beta))
-    return None
 
 
 def _contradicted(problem: Problem, residuals: list[Array]) -> bool:
