@@ -113,7 +113,7 @@ class Probabilities:
 
     def _whole(self) -> dict[Names, float]:
         parts = self.sets, self.beside, self.filed
-        return {n: sum(part.get(n, 0.0) for part in parts) for n in {*self.sets, *self.beside, *self.filed} if n}
+        return {n: sum(part.get(n, 0.0) for part in parts) for n in dict.fromkeys((*self.sets, *self.beside, *self.filed)) if n}
 
 
 def probabilities(
