@@ -41,7 +41,7 @@ def test_an_effect_says_what_an_engineer_needs(name):
     assert effect.literature and {reference(cited) for cited in effect.literature} <= set(REFERENCES)
     assert effect.confused_with and set(effect.confused_with) <= set(effects.names()) - {name}
     assert (effect.per == "axis") == bool(effect.axes) and set(effect.axes) <= set(AXES)
-    assert set(effect.needs) <= set(CHANNELS)
+    assert {*effect.needs, *effect.needs_one_of} <= set(CHANNELS)
 
 
 @pytest.mark.parametrize("name", effects.names())

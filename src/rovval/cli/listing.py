@@ -175,6 +175,7 @@ def _effect(name: str) -> Shown:
         f"literature: {'; '.join(effect.literature)}",
     ]
     lines += [f"needs: {', '.join(effect.needs)}"] if effect.needs else []
+    lines += [f"needs one of: {', '.join(effect.needs_one_of)}"] if effect.needs_one_of else []
     lines += [effect.unnamed] if effect.unnamed else []
     lines += ["", "use: " + ", ".join(uses) + (f"  (per {effect.per}: {', '.join(target)})" if target else "")]
     return "\n".join(lines), lambda: _effect_document(effect)
@@ -182,7 +183,7 @@ def _effect(name: str) -> Shown:
 
 def _effect_document(effect: Effect) -> dict[str, Any]:
     plain = ("name", "title", "place", "equation", "signature", "separates", "per")
-    listed = ("confused_with", "axes", "needs", "literature")
+    listed = ("confused_with", "axes", "needs", "needs_one_of", "literature")
     numbers = ("name", "unit", "low", "high", "null", "typical", "source", "target")
     document: dict[str, Any] = {k: getattr(effect, k) for k in plain} | {k: list(getattr(effect, k)) for k in listed}
     return document | {"symbols": dict(effect.symbols), "parameters": [{k: getattr(p, k) for k in numbers} for p in effect.parameters]}

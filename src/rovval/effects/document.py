@@ -55,6 +55,7 @@ def _section(effect: Effect) -> str:
     per = {"": "", "axis": f" One for each axis ({', '.join(effect.axes)}){_together(effect)}.", "thruster": " One for each thruster."}[effect.per]
     named = f" {effect.unnamed[0].upper()}{effect.unnamed[1:]}." if effect.unnamed else ""
     needs = f" Needs {', '.join(f'`{c}`' for c in effect.needs)} in the log." if effect.needs else ""
+    needs += f" Needs one of {', '.join(f'`{c}`' for c in effect.needs_one_of)} in the log." if effect.needs_one_of else ""
     parts = [
         f"### {effect.name}",
         f"**{effect.title}.**{per}{needs}{named}",

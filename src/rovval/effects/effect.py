@@ -125,7 +125,8 @@ class Effect:
     - ``per``: its parameters belong to each axis of ``axes``, to each thruster, or to the vehicle (empty).
     - ``groups``: names of several of its ``axes`` that may well depart as one, each a hypothesis of its own (``added_mass[translation]``) beside the axes
       by themselves; their parameters are relative departures, and 1 + departure multiplies.
-    - ``needs``: channels without which it cannot be tested; ``within``: what a channel has to come below, in its unit, for it to act at all.
+    - ``needs``: channels without which it cannot be tested; ``needs_one_of``: channels of which one will do; ``within``: what a channel has to come
+      below, in its unit, for it to act at all.
     - ``separable``: each parameter may well be at work without the others, as an offset along one of three axes, and is tried by itself, too.
     - ``refines``: parameters that only refine the others, which are tried without them as well; of an effect that is also ``separable`` they say of
       one axis what the others say of all, and are tried one by one only.
@@ -156,6 +157,7 @@ class Effect:
     axes: tuple[str, ...] = ()
     groups: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     needs: tuple[str, ...] = ()
+    needs_one_of: tuple[str, ...] = ()
     within: Mapping[str, float] = field(default_factory=dict)
     separable: bool = False
     refines: tuple[str, ...] = ()

@@ -11,10 +11,12 @@ import pytest
 from rovval.diagnose.criteria import GROUP_PROBABILITY, VARYING_ALIKE
 from rovval.diagnose.decision.open_gap import evidence_of_something_else
 from rovval.diagnose.decision.posterior import Probabilities, probabilities, something_beside
+from rovval.diagnose.decision.resemblance import Left
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.search.model import Model, ModelPrior
 
 SURE = 0.9  # nothing is surer by much: see `test_no_cause_is_certain`
+SMALL = 1e-6  # share of the gap that tolerances make: none
 NAMES = ("waves", "dvl_scale", "thrust_lag", "time_offset", "cross_drag")
 
 
@@ -31,8 +33,8 @@ def belief(
     best = max(models, key=lambda m: m.log_posterior)
     files = {frozenset[str](): file} | ({best.names: filed} if filed is not None else {})
     alone = {frozenset(names): beside for names in weighed} or ({best.names: beside} if best.causes else {})
-    shares = {frozenset(names): np.full(2, share) for names, share in (left or {}).items()}
-    return probabilities(models, files, forces, alone, {best.names: varying} if best.causes else {}, open_gap, shares)
+    known = Left({frozenset(names): np.full(2, share) for names, share in left.items()}, np.full(2, SMALL)) if left else None
+    return probabilities(models, files, forces, alone, {best.names: varying} if best.causes else {}, open_gap, known)
 
 
 @pytest.mark.parametrize("worth", [0.0, 8.0, 40.0, 4000.0])

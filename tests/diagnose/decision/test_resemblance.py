@@ -8,17 +8,18 @@ import numpy as np
 import pytest
 from diagnose_case import posed
 
-from rovval.core.data import Array
-from rovval.diagnose.criteria import FORM_ALIKE, LIBRARY_ALIKE, PRIOR_CAUSES, PRIOR_SOMETHING_ELSE
-from rovval.diagnose.decision.resemblance import form_error, gap_left, left_beyond, none_of_the_library
+from rovval.diagnose.criteria import FORM_ALIKE, HEALTHY_GAP, LIBRARY_ALIKE, PRIOR_CAUSES, PRIOR_SOMETHING_ELSE
+from rovval.diagnose.decision.resemblance import Left, form_error, gap_left, none_of_the_library
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
+from rovval.diagnose.inference.gap import explainable_gap, tolerated_gap
 from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
-from rovval.diagnose.search.model import Model, Names
+from rovval.diagnose.search.model import Model
 
 
-def left(**shares: float | tuple[float, float]) -> dict[Names, Array]:
+def left(healthy: float = 1e-6, **shares: float | tuple[float, float]) -> Left:
     """What sets of causes leave, of the dynamics and with parity: ``a_b=0.3`` is that of a and b together."""
-    return {frozenset(names.split("_")): np.broadcast_to(share, (2,)).astype(float) for names, share in shares.items()}
+    found = {frozenset(names.split("_")): np.broadcast_to(share, (2,)).astype(float) for names, share in shares.items()}
+    return Left(found, np.full(2, healthy))
 
 
 AB = frozenset("ab")
@@ -26,9 +27,9 @@ AB = frozenset("ab")
 
 def test_where_nothing_is_known_priors_alone_judge():
     odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / sum(PRIOR_CAUSES)
-    assert none_of_the_library(AB, {}) == pytest.approx(odds / (1.0 + odds))
+    assert none_of_the_library(AB, None) == pytest.approx(odds / (1.0 + odds))
     alike = FORM_ALIKE * PRIOR_CAUSES[0]
-    assert form_error("b", AB, {}) == pytest.approx(alike / (PRIOR_CAUSES[1] + alike))
+    assert form_error("b", AB, None) == pytest.approx(alike / (PRIOR_CAUSES[1] + alike))
 
 
 def test_both_distributions_are_distributions():
@@ -39,6 +40,28 @@ def test_both_distributions_are_distributions():
     assert np.mean(odds * (1.0 - p) / p) == pytest.approx(1.0, abs=1e-3)
     q = np.array([form_error("b", AB, left(a=1.0, a_b=s)) for s in share])
     assert np.mean(q / (1.0 - q)) == pytest.approx(FORM_ALIKE * PRIOR_CAUSES[0] / PRIOR_CAUSES[1], abs=1e-3)
+
+
+@pytest.mark.parametrize("expected", [1e-6, 0.2, 1.0, 10.0])
+@pytest.mark.parametrize(("share", "a", "b"), [(0.1, 1, 4), (0.6, 1, 4), (0.95, 1, 4), (0.6, 9, 1)])
+def test_what_a_healthy_vehicle_shows_is_integrated_over(expected: float, share: float, a: int, b: int):
+    """Against draws: of a gap of 1 a part is the healthy vehicle's, exponential, and of the rest a beta distributed share is left."""
+    rng = np.random.default_rng(7)
+    healthy = rng.exponential(expected, 4_000_000)
+    healthy = healthy[healthy < 1.0]
+    drawn = {name: healthy + (1.0 - healthy) * part for name, part in (("beta", rng.beta(a, b, healthy.size)), ("any", rng.uniform(size=healthy.size)))}
+    near = {name: np.mean(np.abs(values - share) < 0.01) for name, values in drawn.items()}
+    if a == 1:
+        odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / sum(PRIOR_CAUSES) * near["any"] / near["beta"]
+        assert none_of_the_library(AB, left(expected, a_b=share)) == pytest.approx(odds / (1.0 + odds), rel=0.05)
+    else:
+        odds = FORM_ALIKE * PRIOR_CAUSES[0] / PRIOR_CAUSES[1] * near["beta"] / near["any"]
+        assert form_error("b", AB, left(expected, a=1.0, a_b=share)) == pytest.approx(odds / (1.0 + odds), rel=0.05)
+
+
+def test_a_weak_effect_is_not_something_else_for_what_a_healthy_vehicle_shows():
+    """Most of the gap is left either way; only where it is much larger than a healthy vehicle's does that say anything."""
+    assert none_of_the_library(AB, left(1.0, a_b=0.8)) < 0.15 < 0.4 < none_of_the_library(AB, left(0.01, a_b=0.8))
 
 
 def test_a_set_is_judged_by_its_best_part():
@@ -54,7 +77,7 @@ def test_a_sensor_is_judged_with_parity():
 
 
 def test_a_further_cause_that_adds_to_the_gap_is_none():
-    assert left_beyond("b", AB, left(a=0.3, a_b=0.6)) == pytest.approx(2.0)
+    assert left(a=0.3, a_b=0.6).beyond("b", AB) == pytest.approx(2.0)
     assert form_error("b", AB, left(a=0.3, a_b=0.6)) == 1.0 > form_error("b", AB, left(a=0.3, a_b=0.29)) > form_error("b", AB, left(a=0.3, a_b=0.15))
 
 
@@ -67,8 +90,9 @@ def test_what_a_fit_leaves_is_measured_on_held_out_windows():
         fit = fit_hypothesis(problem, problem.origin, slots)
         models.append(Model((Hypothesis(name, name, slots, (), ()),), fit, fit.evidence, 0.0))
     shares = gap_left(problem, models)
-    planted, other = (shares[frozenset({name})] for name in ("inflow_loss", "added_mass[surge]"))
+    planted, other = (shares.shares[frozenset({name})] for name in ("inflow_loss", "added_mass[surge]"))
     assert planted.max() < 0.1 < 0.5 < other.min()
+    assert shares.healthy == pytest.approx(HEALTHY_GAP * tolerated_gap(problem) / explainable_gap(problem))
     parts = {name: replace(getattr(problem.gap, name), c=0.0 * getattr(problem.gap, name).c) for name in ("dynamics", "total")}
     still = replace(problem, gap=replace(problem.gap, **parts))
-    assert gap_left(still, models)[frozenset({"inflow_loss"})].tolist() == [1.0, 1.0]  # no error above noise is there to be taken away
+    assert gap_left(still, models).shares[frozenset({"inflow_loss"})].tolist() == [1.0, 1.0]  # no error above noise is there to be taken away

@@ -29,6 +29,15 @@ def test_a_late_depth_needs_a_velocity_to_be_late_against():
     assert "time_offset[depth]" not in {h.name for h in library} and "needs w" in untestable["time_offset[depth].delay"]
 
 
+@pytest.mark.parametrize(("logged", "there"), [((), False), (("u",), True), (("x", "y"), True)])
+def test_a_hose_that_is_dragged_along_needs_a_way_that_it_is_dragged(logged: tuple[str, ...], there: bool):
+    """Of a vehicle that only turns, as far as the log shows, its drag is any drag in yaw: yaw drag of real basin runs was named a tether's."""
+    missing = [c for c in ("u", "v", "x", "y") if c not in logged]
+    parts, _ = cut([without(own((), 5, 120.0), *missing)], merlin(), "fossen", 10.0)
+    library, untestable = hypotheses(parts)
+    assert ("tether_drag" in {h.name for h in library}) is there is ("tether_drag" not in untestable)
+
+
 @pytest.mark.parametrize(("least", "there"), [(2.9, True), (3.1, False)])
 def test_what_acts_close_by_does_not_compete_from_afar(least: float, there: bool):
     """Else a force that varies with depth five metres above the bottom is the bottom's."""

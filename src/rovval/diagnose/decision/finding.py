@@ -60,7 +60,7 @@ def more_probable(late: Finding, whole: Finding, onset: Onset) -> bool:
     if not fit or late.is_event:
         return False
     evidence = evidence_with_onset(problem, fit, onset.time, whole.selection.healthy) - onset_cost(problem)
-    found = late.selection.prior.log_mass(late.decision.causes) + 0.5 * evidence + _log_known(names, {names: gap_left_from(problem, fit, onset.time)})
+    found = late.selection.prior.log_mass(late.decision.causes) + 0.5 * evidence + _log_known(names, gap_left_from(problem, names, fit, onset.time))
     left = gap_left(problem, whole.selection.models)
     return found > max(m.log_posterior + (_log_known(m.names, left) if m.names else 0.0) for m in whole.selection.models)
 

@@ -10,10 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import log
 
-import numpy as np
-
 from rovval.diagnose.criteria import OPEN_GAP_ELSE, OPEN_GAP_RIGHT
-from rovval.diagnose.inference.gap import noise_floor_loss, share_left
+from rovval.diagnose.inference.gap import floor_losses, share_left, tolerated_gap
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem
@@ -34,11 +32,8 @@ def left_open(problem: Problem, causes: HypothesisFit) -> float:
 
 
 def _beyond_noise(problem: Problem, loss: float) -> float:
-    """Tolerances make what coefficients and sensors do that are off by one standard deviation of their prior, each by itself."""
-    gap, noise = problem.gap.dynamics, float(noise_floor_loss(problem).sum())
-    columns, sd = tuple(problem.tolerance.sd), np.array(list(problem.tolerance.sd.values()))
-    tolerated = float((gap.A.sum(axis=0).diagonal()[gap.place(columns)] * sd**2).sum())
-    return max(0.0, (loss - noise) / (noise + tolerated))
+    noise = float(floor_losses(problem)[0])
+    return max(0.0, (loss - noise) / (noise + tolerated_gap(problem)))
 
 
 def evidence_of_something_else(gap: float) -> float:

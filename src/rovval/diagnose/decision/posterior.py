@@ -18,7 +18,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, inf, log
-from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
@@ -32,7 +31,7 @@ from rovval.diagnose.criteria import (
     PRIOR_SOMETHING_ELSE,
     VARYING_ALIKE,
 )
-from rovval.diagnose.decision.resemblance import Left, form_error, left_beyond, none_of_the_library
+from rovval.diagnose.decision.resemblance import Left, form_error, none_of_the_library
 from rovval.diagnose.effort import NEGLIGIBLE
 from rovval.diagnose.search.model import Model, Names, best_of_each_set
 
@@ -118,7 +117,7 @@ class Probabilities:
 
 def probabilities(
     models: Sequence[Model], file: Mapping[Names, float], forces: float, beside: Mapping[Names, float], varying: Mapping[Names, float],
-    open_gap: float = 0.0, left: Left = MappingProxyType({}),
+    open_gap: float = 0.0, left: Left | None = None,
 ) -> Probabilities:
     """Probabilities of the models that a search met.
 
@@ -130,7 +129,7 @@ def probabilities(
         beside: the same of something else beside sets of causes, over these.
         varying: the same of a cause that varies along the log, over the set that it is of; a part of it is something else, the rest that cause in another form.
         open_gap: the same of something else, beside whatever cause, by how much no model explains (`open_gap.evidence_of_something_else`).
-        left: of the explainable gap, what sets of causes leave on held-out windows (`resemblance.gap_left`); where it is empty, priors alone judge.
+        left: of the explainable gap, what sets of causes leave on held-out windows (`resemblance.gap_left`); without it, priors alone judge.
     """
     best = best_of_each_set(models)
     doubt = log(PRIOR_SOMETHING_ELSE / PRIOR_HEALTHY)
@@ -175,7 +174,7 @@ def _something_else(forces: float, open_gap: float) -> float:
     return float(np.logaddexp(0.5 * forces, 0.0)) - log(2.0) + 0.5 * open_gap
 
 
-def _move_form_errors(share: dict[tuple[str, Names], float], best: Mapping[Names, Model], left: Left) -> None:
+def _move_form_errors(share: dict[tuple[str, Names], float], best: Mapping[Names, Model], left: Left | None) -> None:
     """Move that part of the mass of each set of two causes or more, of whatever kind, to the set without the cause that adds least, which says that this cause
     is the form error of the others."""
     for size in range(len(PRIOR_CAUSES), 1, -1):
@@ -188,11 +187,11 @@ def _move_form_errors(share: dict[tuple[str, Names], float], best: Mapping[Names
                 share[fewer] = share.get(fewer, 0.0) + moved
 
 
-def _least(names: Names, best: Mapping[Names, Model], left: Left) -> str:
+def _least(names: Names, best: Mapping[Names, Model], left: Left | None) -> str:
     """The cause of a set that adds least to the others: that leaves most of what they leave of the gap, or, where nothing is known of that, adds least
     evidence; the last that was added where the sets without it were not fitted."""
-    if left:
-        return max(sorted(names), key=lambda name: left_beyond(name, names, left))
+    if left is not None:
+        return max(sorted(names), key=lambda name: float(left.beyond(name, names).min()))
     fitted = [name for name in names if names - {name} in best]
     if fitted:
         return max(sorted(fitted), key=lambda name: best[names - {name}].evidence)

@@ -54,6 +54,8 @@ def _untestable(effect: effects.Effect, windows: Sequence[Windows]) -> str:
         return "the water stands still, as the profile of these logs says"
     if missing := [c for c in effect.needs if not _logged(windows, c)]:
         return f"needs {', '.join(missing)}, which this log does not hold"
+    if effect.needs_one_of and not any(_logged(windows, c) for c in effect.needs_one_of):
+        return f"needs one of {', '.join(effect.needs_one_of)}, and this log holds none"
     for p in (p for p in effect.parameters if p.instead_of):
         if not any(_logged(windows, c) for c in (p.instead_of, p.needs) if c):
             return f"needs {p.instead_of} or {p.needs}, and this log holds neither"

@@ -82,6 +82,23 @@ def share_left(problem: Problem, point: Posterior) -> float:
     return float(point.dynamics_loss().sum()) / float(problem.likelihood.dynamics.c.sum())
 
 
+def explainable_gap(problem: Problem) -> Array:
+    """Squared error above noise (2,) of the vehicle as its file has it: of the dynamics, and of these with the parity residuals."""
+    return np.array([float(one.c.sum()) for one in (problem.gap.dynamics, problem.gap.total)]) - floor_losses(problem)
+
+
+def tolerated_gap(problem: Problem) -> float:
+    """Squared error of the dynamics that coefficients and sensors make which are off by one standard deviation of their tolerance, each by itself."""
+    gap, sd = problem.gap.dynamics, np.array(list(problem.tolerance.sd.values()))
+    return float((gap.A.sum(axis=0).diagonal()[gap.place(tuple(problem.tolerance.sd))] * sd**2).sum())
+
+
+def floor_losses(problem: Problem) -> Array:
+    """Loss (2,) that noise alone makes: of the dynamics, and of these with the parity residuals."""
+    noise = float(noise_floor_loss(problem).sum())
+    return np.array([noise, noise + sum(float(check.noise_loss(problem.design_effect).sum()) for check in problem.parity)])
+
+
 def noise_floor_loss(problem: Problem) -> Array:
     """Loss of each window (m,) that white sensor noise alone makes: no model explains it."""
     share = [np.where(p.ok, p.noise**2 / problem.gap.variance, 0.0).sum(axis=(1, 2)) for p in problem.runs]

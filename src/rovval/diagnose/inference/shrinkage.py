@@ -17,7 +17,7 @@ from rovval.core.large_arrays import taken
 from rovval.diagnose.criteria import HARMED_AXIS
 from rovval.diagnose.effort import MOST_REFITS
 from rovval.diagnose.inference.bootstrap import shrinkage_interval
-from rovval.diagnose.inference.gap import noise_floor_loss, squared_errors
+from rovval.diagnose.inference.gap import explainable_gap, floor_losses, noise_floor_loss, squared_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, held_out_steps
 from rovval.diagnose.inference.map_fit import map_fit
 from rovval.diagnose.problem.cross_validation import Fold, make_folds
@@ -89,10 +89,8 @@ def shrinkage_of(problem: Problem, loss: Array, after: list[Array], before: list
 def explainable_left(problem: Problem, losses: Sequence[Array]) -> list[Array]:
     """Share (2,) of the squared error above noise that each of ``losses`` (2,) is, above 1 where it is more than all: of the dynamics alone, and of these
     with the parity residuals. All of it where there is no error above noise that could be taken away."""
-    gap, noise = problem.gap, float(noise_floor_loss(problem).sum())
-    checked = sum(float(check.noise_loss(problem.design_effect).sum()) for check in problem.parity)
-    floor, before = np.array([noise, noise + checked]), np.array([gap.dynamics.c.sum(), gap.total.c.sum()])
-    return [np.asarray(np.divide(loss - floor, before - floor, out=np.ones(2), where=before > floor)) for loss in losses]
+    before, floor = explainable_gap(problem), floor_losses(problem)
+    return [np.asarray(np.divide(loss - floor, before, out=np.ones(2), where=before > 0.0)) for loss in losses]
 
 
 def worsened_axes(reduction: GapReduction) -> dict[str, float]:
