@@ -137,6 +137,7 @@ class Effect:
     - ``onset_of``: the effect that it is from an onset on.
     - ``held``: it pulls towards a point as a tether does that is caught there, so that its search begins where a spring would hold the vehicle, too.
     - ``continues``: the effect that imitates it as far as that goes, and which it exceeds (a dead thruster is one that is half reversed).
+    - ``includes``: the effect that it is where its own size is nothing; parameters of the same name are the same. That one is searched for from there, too.
     - ``family``: the name by which `rovval fit` tunes it along with others of its kind.
     - ``in_file``: whether it is a number of the vehicle's file that is off, rather than something that no file holds.
     - ``absent_in``: platforms whose equations lack what it scales: there is nothing to take away.
@@ -168,6 +169,7 @@ class Effect:
     onset_of: str = ""
     held: bool = False
     continues: str = ""
+    includes: str = ""
     family: Family = ""
     absent_in: tuple[str, ...] = ()
     in_file: bool = False

@@ -7,8 +7,11 @@ import pytest
 from diagnose_case import posed, slot
 
 from rovval.diagnose.hypotheses.hypothesis import displaced
+from rovval.diagnose.hypotheses.library import initialised
+from rovval.diagnose.inference.map_fit import healthy_fit
 from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.search.candidates import start_of
+from rovval.diagnose.search.forward import search
 
 
 @pytest.mark.parametrize(("before", "after"), [(0.0, np.pi), (np.pi / 2, -np.pi / 2)])
@@ -19,3 +22,12 @@ def test_a_negative_amplitude_is_half_a_turn(before: float, after: float):
     data = NormalEquations(np.zeros((1, 1, 1)), np.zeros((1, 1)), np.zeros(1), (1000,))
     start = start_of(p, data, h, np.array([-0.7]), p.origin, h.slots)
     assert start[phase] == pytest.approx(after) and start[amplitude] == pytest.approx(0.7)
+
+
+def test_what_an_effect_includes_is_searched_for_from_its_fit():
+    """A hose that pulls at the bow and is not dragged: with the one initial point at the stern, the pull alone is found from where the drag's fit has it."""
+    problem, library = posed(("tether_tension:north=-145,east=105,down=-15,x=1.9,z=-0.3",), seconds=120.0)
+    healthy, tether = healthy_fit(problem), [h for h in library if h.name in ("tether_drag", "tether_tension")]
+    begun = [h for h in initialised(problem, tether, healthy) if h.name == "tether_drag" or h.label == "tether_tension@lever0"]
+    worth = {m.names: m.log_posterior for m in search(problem, tether, begun, healthy, lambda text, share: None).models}
+    assert worth[frozenset({"tether_tension"})] > worth[frozenset({"tether_drag"})] - 5.0

@@ -6,9 +6,9 @@ right close most of it: the share that is left is uniform, or beta distributed a
 are off by may look like one more cause (`FORM_ALIKE`). It closes next to nothing of what the others leave of windows that it was not fitted to, while a cause
 of its own closes any part of it: here the share that is left is beta distributed about `FORM_LEAVES` and densest at all of it, or uniform.
 
-A healthy vehicle has a gap, too: coefficients and sensors are off within their tolerances. No cause closes that part, and what is left of it speaks against
-none. How large it is in a log is unknown; it is exponential about the share of what tolerances could make that healthy vehicles show (`HEALTHY_GAP`), and
-integrated over. So a weak effect is not taken for something else because it leaves what many a healthy vehicle shows.
+A healthy vehicle has a gap, too: coefficients and sensors are off within their tolerances. No cause closes that part, and what is left of it says nothing of
+whether the library lacks something. How large it is in a log is unknown; it is exponential about the share of what tolerances could make that healthy
+vehicles show (`HEALTHY_GAP`), and integrated over. So a weak effect is not taken for something else because it leaves what many a healthy vehicle shows.
 
 Shares are of the errors above the noise of the sensors, of the dynamics alone, which causes that push the vehicle close, and with the parity residuals, which
 faults of sensors close. A cause is judged by the one of the two that it closes more of, and with the best of the sets that it was fitted in.
@@ -18,10 +18,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from math import expm1, log1p
+from math import log1p
 
 import numpy as np
-from scipy.integrate import quad
 
 from rovval.core.data import Array
 from rovval.diagnose.criteria import (
@@ -40,6 +39,8 @@ from rovval.diagnose.problem.problem import Problem, gap_equations_at
 from rovval.diagnose.search.model import Model, Names
 
 NOTHING_LEFT = 1e-3  # share of the gap: rounding of a ratio to what is left
+FALLS = np.array([1.0, 3.0, 10.0, 30.0])  # means of an exponential: where its integral is cut into parts
+NODES = 40  # of the integral over each part
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,30 +106,34 @@ def form_error(name: str, names: Names, left: Left | None) -> float:
     odds = FORM_ALIKE * PRIOR_CAUSES[len(names) - 2] / PRIOR_CAUSES[len(names) - 1]
     if left is None:
         return odds / (odds + 1.0)
-    beyond = left.beyond(name, names)
-    best = int(np.argmin(beyond))
-    others = left.least(lambda part: name not in part and part <= names)
+    beyond = float(np.min(left.beyond(name, names)))
+    if beyond >= 1.0:
+        return 1.0
     freedom = FORM_LEAVES / (1.0 - FORM_LEAVES)  # Beta(a, 1), of mean a / (a + 1)
-    alike, right = _densities(float(beyond[best]), float((left.healthy / others)[best]), lambda share: freedom * share ** (freedom - 1.0))
-    return odds * alike / (odds * alike + right) if beyond[best] < 1.0 else 1.0
+    odds *= freedom * float(beyond ** (freedom - 1.0))
+    return odds / (odds + 1.0)
 
 
-def _densities(left: float, healthy: float, density: Callable[[float], float]) -> tuple[float, float]:
+def _densities(left: float, healthy: float, density: Callable[[Array], Array]) -> tuple[float, float]:
     """Density of the share ``left`` of a gap where of what is at work a share of that ``density`` is left, and where any share is, alike; but for a factor
     that both have. The limit of both where all is left.
 
-    A part h of the gap, exponential of mean ``healthy``, is no effect's; of the rest, 1 - h, a share (left - h) / (1 - h) is left. It is integrated over h
-    from nothing to all that is left, in steps of equal prior mass.
+    A part h of the gap, exponential of mean ``healthy``, is no effect's; of the rest, 1 - h, a share (left - h) / (1 - h) is left. It is integrated over the
+    logarithm of the rest, from all of the gap to what is not left (Gauss and Legendre's rule, in parts over which the exponential falls alike).
     """
     if left >= 1.0:
         return 0.0, 1.0
-    mass = -expm1(-left / healthy)
+    log_rest, weight = _nodes(log1p(-left), healthy)
+    part = -np.expm1(log_rest)
+    weight = weight * np.exp(-part / healthy)
+    return float(weight @ density(np.maximum(left - part, 0.0) / (1.0 - part))), float(weight.sum())
 
-    def integral(of: Callable[[float], float]) -> float:
-        def at(quantile: float) -> float:
-            part = min(-healthy * log1p(-quantile * mass), left)
-            return of((left - part) / (1.0 - part)) / (1.0 - part)
 
-        return float(quad(at, 0.0, 1.0, limit=200)[0])
-
-    return integral(density), integral(lambda share: 1.0)
+def _nodes(end: float, healthy: float) -> tuple[Array, Array]:
+    """Nodes between 0 and ``end``, below it, and their weights as shares of the way."""
+    ends = np.array([0.0, *(fall for fall in -healthy * FALLS if fall > end), end])
+    nodes, weight = np.polynomial.legendre.leggauss(NODES)
+    step = np.diff(ends)
+    at = ends[:-1, None] + 0.5 * step[:, None] * (nodes + 1.0)
+    share = step / end if end else np.array([1.0])
+    return at.ravel(), (0.5 * share[:, None] * weight).ravel()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -84,6 +84,10 @@ def candidates(
     for h in _like_the_best(data, ordered, fits):
         if h.name not in fits:
             refit(h)
+    for h, start in _included(problem, library, fits):
+        quick = fit_quickly(problem, start, tuple(dict.fromkeys((*chosen, *h.slots))), base.whitened).without_sensitivities()
+        if h.name not in fits or quick.evidence > fits[h.name][1].evidence:
+            fits[h.name] = h, quick
     carefully = _refitted(problem, promised, fits, alone if chosen else None, baseline.evidence)
     return _relinearised(problem, _compared(list(carefully.values()), baseline), baseline)
 
@@ -96,6 +100,20 @@ def _like_the_best(data: NormalEquations, ordered: list[Hypothesis], fits: Fits)
     twins = [h for h in ordered if h.name not in fits and coherence(data, best.columns, h.columns) > COHERENT]
     further = [h for h in ordered if h.effect.continues and f"{h.effect.continues}{h.of}" in fits]
     return [*twins[:MOST_COHERENT], *further]
+
+
+def _included(problem: Problem, library: Sequence[Hypothesis], fits: Fits) -> list[tuple[Hypothesis, Array]]:
+    """What the best fit is where its own size is nothing (a tether's pull without its drag), and the parameters there."""
+    best = max(fits.values(), key=lambda item: item[1].evidence, default=None)
+    plain = next((h for h in library if best and h.name == f"{best[0].effect.includes}{best[0].of}"), None)
+    if best is None or plain is None:
+        return []
+    found, start, slots = best[1].posterior.beta, best[1].posterior.beta.copy(), problem.plant.slots
+    start[list(best[0].slots)] = problem.origin[list(best[0].slots)]
+    there, placed = {slots[s].parameter.name: found[s] for s in best[0].slots}, dict(plain.at)
+    for s in plain.slots:
+        start[s] = there.get(slots[s].parameter.name, placed.get(s, problem.origin[s]))
+    return [(plain, start)]
 
 
 def _departed(problem: Problem, base: Posterior, h: Hypothesis, start: Array) -> list[Array]:

@@ -45,6 +45,7 @@ EFFECT = Effect(
         "Driscoll 2000: dynamics of an ROV's tether",
         "Feng and Allen 2004: a cable's drag on an underwater vehicle",
     ),
+    includes="tether_tension",
     needs_one_of=("u", "v", "x", "y"),  # of a vehicle that only turns, as far as the log shows, it is drag in yaw
     refines=("north", "east", "down"),
 )
