@@ -93,6 +93,7 @@ LIBRARY_ALIKE = 2.0 / 3.0  # share of what the library lacks that looks like som
 CAUSES_LEAVE = 0.20  # mean share of what they make that right causes leave on held-out windows (69 visible effects of two plants, most likely value),
 HEALTHY_GAP = 0.20  # mean gap above noise of healthy vehicles over what tolerances could make (36 healthy logs of two plants: 0.22, 0.07 to 0.78)
 FORM_LEAVES = 0.90  # and of what the others leave, that their form error leaves where it is taken for one more cause (opened sets and real runs: 0.90 of 57)
+BETWEEN_CAUSES = 0.2  # power of the posterior odds of sets of as many causes (80 visible effects of two plants: log score best at 0.15, flat to 0.3)
 VARYING_ALIKE = 2.0 / 9.0  # share of causes that seem to vary along a log which are what the library lacks (opened sets: 1 of 7; rule of succession)
 FORM_ALIKE = 0.25  # prior probability that the form error of causes looks like one more (development logs: of 18 further names on three plants 10 are right)
 FILE_WIDTH = 10.0  # times the tolerance: prior standard deviation of a number of such a file (chosen: 50 % where the tolerance is 5 %)

@@ -8,7 +8,7 @@ from math import inf
 import numpy as np
 import pytest
 
-from rovval.diagnose.criteria import GROUP_PROBABILITY, VARYING_ALIKE
+from rovval.diagnose.criteria import BETWEEN_CAUSES, GROUP_PROBABILITY, VARYING_ALIKE
 from rovval.diagnose.decision.open_gap import evidence_of_something_else
 from rovval.diagnose.decision.posterior import Probabilities, probabilities, something_beside
 from rovval.diagnose.decision.resemblance import Left
@@ -50,8 +50,15 @@ def test_without_evidence_a_healthy_vehicle_is_believed():
     assert found.healthy > 0.8 and found.healthy > found.causes
 
 
+def test_which_cause_it_is_is_less_sure_than_that_there_is_one():
+    """Odds between causes are a power of those by their evidence; the first stays the first, and the sum of all is as without it."""
+    alone, found = belief({("thrust_lag",): 60.0}), belief({("thrust_lag",): 60.0, ("time_offset",): 50.0})
+    assert found.causes == pytest.approx(alone.causes, abs=1e-6)
+    assert found.of("thrust_lag") / found.of("time_offset") == pytest.approx(np.exp(0.5 * (60.0 - 50.0)) ** BETWEEN_CAUSES, rel=1e-6)
+
+
 def test_a_group_is_the_fewest_names_that_hold_the_probability():
-    found = belief({("thrust_lag",): 60.0, ("time_offset",): 59.0, ("waves",): 50.0, ("dvl_scale",): 20.0})
+    found = belief({("thrust_lag",): 60.0, ("time_offset",): 59.0, ("waves",): 30.0, ("dvl_scale",): 20.0})
     group = dict(found.group("thrust_lag"))
     assert list(group) == ["thrust_lag", "time_offset"]
     assert sum(group.values()) >= GROUP_PROBABILITY > group["thrust_lag"]
@@ -59,7 +66,7 @@ def test_a_group_is_the_fewest_names_that_hold_the_probability():
 
 def test_a_group_is_of_one_cause_beside_the_others():
     """What stands in for the second cause stands beside the first."""
-    found = belief({("waves", "thrust_lag"): 90.0, ("waves", "time_offset"): 89.0, ("waves",): 40.0, ("dvl_scale", "thrust_lag"): 60.0})
+    found = belief({("waves", "thrust_lag"): 90.0, ("waves", "time_offset"): 89.0, ("waves",): 40.0, ("dvl_scale", "thrust_lag"): 40.0})
     assert [n for n, _ in found.group("waves")] == ["waves"]
     assert [n for n, _ in found.group("thrust_lag")] == ["thrust_lag", "time_offset"]
     assert found.of("waves") > SURE > found.of("thrust_lag")

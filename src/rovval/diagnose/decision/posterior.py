@@ -7,7 +7,8 @@ beside causes (model discrepancy: Kennedy and O'Hagan 2001), or forces that go w
 No log tells two explanations apart that predict the same; they share its probability by their priors, and by how much of the gap is left where windows are
 held out (`resemblance`). So something else has a part of the mass of every set of causes, and no cause is ever certain; and the set without the cause that
 adds least has another part, since that cause may be what the equations of the others are off by. A cause that would have to vary along the log may be that
-cause in another form, or something else that comes near it (`VARYING_ALIKE`).
+cause in another form, or something else that comes near it (`VARYING_ALIKE`). Which of several sets of as many causes it is, is less sure than how well they
+fit: each is only nearly right in its form (`BETWEEN_CAUSES`).
 
 The set that is named has as many causes as is most probable, and of such sets it is the one that the true one is expected to share the most causes with
 (centroid estimator: Carvalho and Lawrence 2008). The most probable single set may hold a cause that most of the others do without.
@@ -23,6 +24,7 @@ from typing import Literal
 import numpy as np
 
 from rovval.diagnose.criteria import (
+    BETWEEN_CAUSES,
     EVEN_ODDS,
     GROUP_PROBABILITY,
     PRIOR_CAUSES,
@@ -151,6 +153,7 @@ def probabilities(
     for names in varying:
         share["beside", names] = share.get(("beside", names), 0.0) + share.pop(("form", names))
     _move_form_errors(share, best, left)
+    _coarsen(share)
     inconstant = sum(p for (kind, _), p in share.items() if kind == "varying")
     return Probabilities(
         sets={names: p for (kind, names), p in share.items() if kind == "sets"},
@@ -185,6 +188,23 @@ def _move_form_errors(share: dict[tuple[str, Names], float], best: Mapping[Names
                 moved, fewer = share[kind, names] * part, (kind, names - {least})
                 share[kind, names] -= moved
                 share[fewer] = share.get(fewer, 0.0) + moved
+
+
+def _coarsen(share: dict[tuple[str, Names], float]) -> None:
+    """Divide the mass of all sets of one, two and three causes, whatever is beside them, among these sets by a power of what each has.
+
+    How well two causes of a kind fit differs by the form of their equations as much as by which of them is at work, and none of these forms is exact: the
+    likelihoods with which they are compared with each other are coarser than those of a vehicle with and without them."""
+    for size in range(1, len(PRIOR_CAUSES) + 1):
+        keys = [(kind, names) for kind, names in share if kind in CAUSES and len(names) == size]
+        whole = dict[Names, float]()
+        for kind, names in keys:
+            whole[names] = whole.get(names, 0.0) + share[kind, names]
+        top = max(whole.values(), default=0.0)
+        weight = {names: (p / top) ** BETWEEN_CAUSES for names, p in whole.items() if p > 0.0}
+        for key in keys:
+            if whole[key[1]] > 0.0:
+                share[key] *= weight[key[1]] / whole[key[1]] * sum(whole.values()) / sum(weight.values())
 
 
 def _least(names: Names, best: Mapping[Names, Model], left: Left | None) -> str:
