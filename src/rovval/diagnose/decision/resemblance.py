@@ -18,9 +18,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from math import log1p
 
 import numpy as np
+from scipy.integrate import fixed_quad
 
 from rovval.core.data import Array
 from rovval.diagnose.criteria import (
@@ -123,17 +125,13 @@ def _densities(left: float, healthy: float, density: Callable[[Array], Array]) -
     """
     if left >= 1.0:
         return 0.0, 1.0
-    log_rest, weight = _nodes(log1p(-left), healthy)
-    part = -np.expm1(log_rest)
-    weight = weight * np.exp(-part / healthy)
-    return float(weight @ density(np.maximum(left - part, 0.0) / (1.0 - part))), float(weight.sum())
+    end = log1p(-left)
+    parts = [0.0, *(float(fall) / -end for fall in healthy * FALLS if fall < -end), 1.0]  # as shares of the way to the end
 
+    def both(way: Array) -> Array:
+        part = -np.expm1(end * way)
+        likely = np.exp(-part / healthy)
+        return np.stack([likely * density(np.maximum(left - part, 0.0) / (1.0 - part)), likely])
 
-def _nodes(end: float, healthy: float) -> tuple[Array, Array]:
-    """Nodes between 0 and ``end``, below it, and their weights as shares of the way."""
-    ends = np.array([0.0, *(fall for fall in -healthy * FALLS if fall > end), end])
-    nodes, weight = np.polynomial.legendre.leggauss(NODES)
-    step = np.diff(ends)
-    at = ends[:-1, None] + 0.5 * step[:, None] * (nodes + 1.0)
-    share = step / end if end else np.array([1.0])
-    return at.ravel(), (0.5 * share[:, None] * weight).ravel()
+    found, alike = sum(fixed_quad(both, low, high, n=NODES)[0] for low, high in pairwise(parts))
+    return float(found), float(alike)

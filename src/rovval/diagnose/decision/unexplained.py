@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from rovval.core.channels import AXES
 from rovval.core.data import Array
 from rovval.diagnose.criteria import ACTING_FORCE, MOST_ACTING, MOST_VARYING, OUT_OF_TOLERANCE, VARYING_FORCE
-from rovval.diagnose.inference.gap import noise_floor_loss, share_left, weighted_errors
+from rovval.diagnose.inference.gap import floor_losses, share_left, weighted_errors
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.search.discrepancy import GenericForces
@@ -59,7 +59,7 @@ class Unexplained:
 
 def accounted(problem: Problem, healthy: Posterior) -> Accounted:
     """What of the gap needs no cause; ``healthy`` is the vehicle with its coefficients fitted within their tolerances."""
-    noise = min(float(noise_floor_loss(problem).sum()) / float(problem.gap.dynamics.c.sum()), 1.0)
+    noise = min(float(floor_losses(problem)[0]) / float(problem.gap.dynamics.c.sum()), 1.0)
     return Accounted(noise, 1.0 - share_left(problem, healthy), healthy.largest_departure())
 
 

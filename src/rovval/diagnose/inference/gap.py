@@ -94,12 +94,7 @@ def tolerated_gap(problem: Problem) -> float:
 
 
 def floor_losses(problem: Problem) -> Array:
-    """Loss (2,) that noise alone makes: of the dynamics, and of these with the parity residuals."""
-    noise = float(noise_floor_loss(problem).sum())
-    return np.array([noise, noise + sum(float(check.noise_loss(problem.design_effect).sum()) for check in problem.parity)])
-
-
-def noise_floor_loss(problem: Problem) -> Array:
-    """Loss of each window (m,) that white sensor noise alone makes: no model explains it."""
+    """Loss (2,) that white sensor noise alone makes, which no model explains: of the dynamics, and of these with the parity residuals."""
     share = [np.where(p.ok, p.noise**2 / problem.gap.variance, 0.0).sum(axis=(1, 2)) for p in problem.runs]
-    return np.concatenate(share)
+    noise = float(np.concatenate(share).sum())
+    return np.array([noise, noise + sum(float(check.noise_loss(problem.design_effect).sum()) for check in problem.parity)])

@@ -17,7 +17,7 @@ from rovval.core.large_arrays import taken
 from rovval.diagnose.criteria import HARMED_AXIS
 from rovval.diagnose.effort import MOST_REFITS
 from rovval.diagnose.inference.bootstrap import shrinkage_interval
-from rovval.diagnose.inference.gap import explainable_gap, floor_losses, noise_floor_loss, squared_errors
+from rovval.diagnose.inference.gap import explainable_gap, floor_losses, squared_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, held_out_steps
 from rovval.diagnose.inference.map_fit import map_fit
 from rovval.diagnose.problem.cross_validation import Fold, make_folds
@@ -119,8 +119,8 @@ def held_out_linearisations(problem: Problem, fitted: HypothesisFit) -> list[Lin
 
 def _explainable(problem: Problem, loss: Array) -> float:
     """Reduction on held-out windows as a share of the weighted squared error above the noise floor, 1 at most."""
-    gap, floor = float(problem.gap.dynamics.c.sum()), float(noise_floor_loss(problem).sum())
-    return float(min((gap - float(loss.sum())) / max(gap - floor, 1e-12), 1.0))
+    closed = float(problem.gap.dynamics.c.sum()) - float(loss.sum())
+    return min(closed / max(float(explainable_gap(problem)[0]), 1e-12), 1.0)
 
 
 def refitted_shrinkage(problem: Problem, fitted: HypothesisFit, before: Sequence[Array], tolerance: float, seed: int) -> GapReduction:

@@ -63,6 +63,11 @@ def candidates(
         """The start where all else stays as in the baseline: a step of everything may lead away what was found before."""
         return start_of(problem, data, h, np.where(np.isin(data.columns, h.columns), steps(h), 0.0), base.beta, slots)
 
+    def fit_from(h: Hypothesis, begin: Array, slots: tuple[int, ...]) -> None:
+        quick = fit_quickly(problem, begin, slots, base.whitened).without_sensitivities()
+        if h.name not in fits or quick.evidence > fits[h.name][1].evidence:
+            fits[h.name] = h, quick
+
     def refit(h: Hypothesis) -> None:
         slots = tuple(dict.fromkeys((*chosen, *h.slots)))
         start = start_of(problem, data, h, steps(h), base.beta, slots)
@@ -71,9 +76,7 @@ def candidates(
         if h.evident:
             start = progressive_start(problem, alone(h, slots), slots)
         for begin in (start, *_departed(problem, base, h, start)):
-            quick = fit_quickly(problem, begin, slots, base.whitened).without_sensitivities()
-            if h.name not in fits or quick.evidence > fits[h.name][1].evidence:
-                fits[h.name] = h, quick
+            fit_from(h, begin, slots)
 
     tries = Counter[str]()
     for h in ordered:
@@ -84,10 +87,9 @@ def candidates(
     for h in _like_the_best(data, ordered, fits):
         if h.name not in fits:
             refit(h)
-    for h, start in _included(problem, library, fits):
-        quick = fit_quickly(problem, start, tuple(dict.fromkeys((*chosen, *h.slots))), base.whitened).without_sensitivities()
-        if h.name not in fits or quick.evidence > fits[h.name][1].evidence:
-            fits[h.name] = h, quick
+    if included := _included(problem, library, fits):
+        h, begin = included
+        fit_from(h, begin, tuple(dict.fromkeys((*chosen, *h.slots))))
     carefully = _refitted(problem, promised, fits, alone if chosen else None, baseline.evidence)
     return _relinearised(problem, _compared(list(carefully.values()), baseline), baseline)
 
@@ -102,18 +104,21 @@ def _like_the_best(data: NormalEquations, ordered: list[Hypothesis], fits: Fits)
     return [*twins[:MOST_COHERENT], *further]
 
 
-def _included(problem: Problem, library: Sequence[Hypothesis], fits: Fits) -> list[tuple[Hypothesis, Array]]:
-    """What the best fit is where its own size is nothing (a tether's pull without its drag), and the parameters there."""
-    best = max(fits.values(), key=lambda item: item[1].evidence, default=None)
-    plain = next((h for h in library if best and h.name == f"{best[0].effect.includes}{best[0].of}"), None)
-    if best is None or plain is None:
-        return []
-    found, start, slots = best[1].posterior.beta, best[1].posterior.beta.copy(), problem.plant.slots
-    start[list(best[0].slots)] = problem.origin[list(best[0].slots)]
-    there, placed = {slots[s].parameter.name: found[s] for s in best[0].slots}, dict(plain.at)
+def _included(problem: Problem, library: Sequence[Hypothesis], fits: Fits) -> tuple[Hypothesis, Array] | None:
+    """What the best fit is where its own size is nothing (a tether's pull without its drag), and the parameters there; None where it includes nothing."""
+    if not fits:
+        return None
+    best, fit = max(fits.values(), key=lambda item: item[1].evidence)
+    name = f"{best.effect.includes}{best.of}"
+    plain = next((h for h in library if best.effect.includes and h.name == name), None)
+    if plain is None:
+        return None
+    found, start, slots = fit.posterior.beta, fit.posterior.beta.copy(), problem.plant.slots
+    start[list(best.slots)] = problem.origin[list(best.slots)]
+    there, placed = {slots[s].parameter.name: found[s] for s in best.slots}, dict(plain.at)
     for s in plain.slots:
         start[s] = there.get(slots[s].parameter.name, placed.get(s, problem.origin[s]))
-    return [(plain, start)]
+    return plain, start
 
 
 def _departed(problem: Problem, base: Posterior, h: Hypothesis, start: Array) -> list[Array]:
