@@ -8,26 +8,41 @@ import pytest
 from diagnose_case import foreign, merlin, posed
 
 from rovval.diagnose import diagnose
-from rovval.diagnose.decision.constancy import variation
-from rovval.diagnose.hypotheses.hypothesis import Hypothesis
+from rovval.diagnose.decision.constancy import Variation, variation
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of
+from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.inference.map_fit import map_fit
-from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.problem.problem import Problem, pose
+from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.report.diagnosis.json import document as written
 
 
-def fitted(problem: Problem, library: list[Hypothesis], name: str) -> float:
-    """Evidence that the size of a cause, fitted by itself, varies."""
+def fitted(problem: Problem, library: list[Hypothesis], name: str) -> Variation:
+    """That of the size of a cause, fitted by itself."""
     h = next(h for h in library if h.name == name)
     return variation(problem, map_fit(problem, problem.origin, h.slots), [h])
 
 
 @pytest.mark.parametrize(("planted", "name"), [("inflow_loss:loss=0.4", "inflow_loss"), ("thruster_degraded[VAC]:loss=0.4", "thruster_degraded[VAC]")])
 def test_a_cause_that_is_there_holds_still(planted: str, name: str):
-    assert fitted(*posed((planted,)), name) < 0.0
+    found = fitted(*posed((planted,)), name)
+    assert max(found.form, found.alike) < 0.0 and found.goes_with is None
 
 
 def test_a_loss_that_begins_in_mid_log_varies_as_one_that_was_always_there():
-    assert fitted(*posed(("thruster_fault_onset[VAC]:loss=0.9,onset=60",)), "thruster_degraded[VAC]") > 2.0
+    assert fitted(*posed(("thruster_fault_onset[VAC]:loss=0.9,onset=60",)), "thruster_degraded[VAC]").either > 2.0
+
+
+@pytest.mark.parametrize(
+    ("planted", "name", "covariate"),
+    [(("one_sided_drag", "", 1.9), "quadratic_drag[surge]", "u"), (("power_limit", "", 2.0), "rpm_scale", "thrusters' speed")],
+)
+def test_what_only_looks_like_a_cause_goes_with_what_it_depends_on(tmp_path: Path, planted: tuple[str, str, float], name: str, covariate: str):
+    """A net that opens astern against drag, a supply that gives way under load against a scale of speed, of a plant that has nothing of this model."""
+    windows, _ = cut([foreign(tmp_path, (planted,), 31)], merlin(), "fossen", 10.0)
+    library, _ = hypotheses(windows)
+    found = fitted(pose(windows, columns_of(library), 0.05), library, name)
+    assert found.goes_with == (name, covariate) and found.either > 6.0
 
 
 @pytest.mark.slow

@@ -8,7 +8,15 @@ import numpy as np
 import pytest
 from diagnose_case import posed
 
-from rovval.diagnose.criteria import CAUSES_LEAVE, FORM_ALIKE, HEALTHY_GAP, LIBRARY_ALIKE, PRIOR_CAUSES, PRIOR_SOMETHING_ELSE
+from rovval.diagnose.criteria import (
+    CAUSES_LEAVE,
+    FORM_ALIKE,
+    HEALTHY_GAP,
+    LIBRARY_ALIKE,
+    PRIOR_CAUSES,
+    PRIOR_HEALTHY,
+    PRIOR_SOMETHING_ELSE,
+)
 from rovval.diagnose.decision.resemblance import Left, form_error, gap_left, none_of_the_library
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.gap import explainable_gap, tolerated_gap
@@ -28,6 +36,8 @@ AB = frozenset("ab")
 def test_where_nothing_is_known_priors_alone_judge():
     odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / sum(PRIOR_CAUSES)
     assert none_of_the_library(AB, None) == pytest.approx(odds / (1.0 + odds))
+    odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / (sum(PRIOR_CAUSES) * PRIOR_SOMETHING_ELSE / PRIOR_HEALTHY)  # of something else alone, and beside causes
+    assert none_of_the_library(AB, None, beside=True) == pytest.approx(odds / (1.0 + odds))
     alike = FORM_ALIKE * PRIOR_CAUSES[0]
     assert form_error("b", AB, None) == pytest.approx(alike / (PRIOR_CAUSES[1] + alike))
 

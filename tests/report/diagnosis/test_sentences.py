@@ -33,7 +33,7 @@ def still_open(noise: float, tolerance: float, departure: float = 0.0, accounted
 
 
 def weighed(gain: float, evidence: float) -> list[list[dict[str, Any]]]:
-    return [[{"effect": "inflow_loss", "gain": gain, "evidence": evidence}, {"effect": "waves", "gain": 0.1, "evidence": 9.0}]]
+    return [[{"effect": "inflow_loss", "gain": gain, "evidence": evidence}, {"effect": "waves", "gain": 0.1, "evidence": 5.0}]]
 
 
 def number_of_words(d: Diagnosis) -> int:
@@ -157,7 +157,7 @@ def test_an_open_gap_may_be_what_pushed_unlogged() -> None:
 
 @pytest.mark.parametrize(
     ("gain", "evidence", "tolerance", "near", "seen"),
-    [(0.4, 4.44, 0.45, True, False), (0.6, 30.0, 0.55, True, True), (0.2, 8.0, 0.7, False, False), (0.5, 1.0, 0.7, False, False)],
+    [(0.4, 6.44, 0.45, True, False), (0.6, 30.0, 0.55, True, True), (0.2, 8.0, 0.7, True, False), (0.5, 1.0, 0.7, False, False)],
 )
 def test_what_came_near_is_told_with_how_probable_causes_are(gain: float, evidence: float, tolerance: float, near: bool, seen: bool) -> None:
     p = {"healthy": 0.85, "causes": 0.12, "miscalibrated_file": 0.0, "something_else": 0.03}
@@ -191,6 +191,8 @@ def test_what_comes_near_an_unknown_force_is_told_with_why_it_is_not_it() -> Non
     assert "Nearest: quadratic_drag[surge].scale, which would have to be 7 times its tolerance off." in sentence(d)
     d = diagnosis(verdict="unknown", causes=[], left=force | {"inconstant": ["waves"]})
     assert "Nearest: Waves at the surface (waves), but the size would have to change along the log." in sentence(d)
+    d = diagnosis(verdict="unknown", causes=[], left=force | {"inconstant": ["waves"], "goes_with": {"effect": "waves", "covariate": "depth"}})
+    assert "Nearest: Waves at the surface (waves), but the size would have to change with depth." in sentence(d)
 
 
 def test_a_cause_that_leaves_the_simulated_motion_is_said_to() -> None:

@@ -1,12 +1,14 @@
-"""Constancy of a cause: a true cause has mostly one size all through the log, the nearest relative of another effect has not.
+"""Constancy of a cause: a true cause has one size all through the log, the nearest relative of what the library lacks has not.
 
-The model in which the size of a cause varies from window to window about its mean (a hierarchical model; Gelman and Hill 2007, chapter 11) stands beside
-the one in which it is constant. A constant cause that is only nearly right hardly ever varies so (of some 70 right causes on three plants, three did).
+Beside the model in which the size of a cause is constant stand those in which it varies: from window to window about its mean (a hierarchical model; Gelman
+and Hill 2007, chapter 11), or with something that was logged (`dependence`). By a little, it is that cause in another form than its equation here; by much, it
+is something else that only comes near to it (`VARIATIONS`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,17 +16,50 @@ from rovval.diagnose.criteria import VARIATIONS
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.search.dependence import dependence
 
 
-def variation(problem: Problem, point: Posterior, causes: Sequence[Hypothesis]) -> float:
-    """Twice the log Bayes factor of the model in which one of the causes fitted at ``point`` varies over that in which all are constant, which cause and by
-    how much integrated over; minus infinity where all wander by nature or are of a sensor, whose faults the parity residuals show."""
-    found = [_varies(problem, point, h, share) for h in causes if not (h.effect.wanders or h.effect.place == "sensor") for share in VARIATIONS]
-    return 2.0 * float(np.logaddexp.reduce(0.5 * np.array(found)) - np.log(len(found))) if found else -np.inf
+@dataclass(frozen=True, slots=True)
+class Variation:
+    """How much likelier it is that the size of one of some causes varies than that all are constant, as twice a log Bayes factor; which cause it is and with
+    what it varies are integrated over. Minus infinity where none could.
+
+    Attributes:
+        form: it varies by as much as the form of an equation is off (`VARIATIONS`, the first).
+        alike: it varies by as much as only something else does (the second).
+        goes_with: (cause, covariate) that it most likely varies with by that much; None where it varies from window to window, or not at all.
+    """
+
+    form: float = -np.inf
+    alike: float = -np.inf
+    goes_with: tuple[str, str] | None = None
+
+    @property
+    def either(self) -> float:
+        """That it varies by the one or the other."""
+        return 2.0 * float(np.logaddexp(0.5 * self.form, 0.5 * self.alike) - np.log(2.0))
+
+
+def variation(problem: Problem, point: Posterior, causes: Sequence[Hypothesis]) -> Variation:
+    """The variation of causes fitted at ``point``. A cause that wanders by nature is no less likely where it does; what a sensor's fault does from window to
+    window the parity residuals show."""
+    still = [h for h in causes if not h.effect.wanders]
+    logged = dependence(problem, point, still)
+    names = logged.names if logged else ()
+    by_size = []
+    for share in VARIATIONS:
+        found = [_varies(problem, point, h, share) for h in still if h.effect.place != "sensor"]
+        found += [logged.evidence_of([i], share) for i in range(len(names))] if logged else []
+        by_size.append(np.array(found))
+    if not len(by_size[0]):
+        return Variation()
+    form, alike = (2.0 * float(np.logaddexp.reduce(0.5 * one) - np.log(len(one))) for one in by_size)
+    best = int(np.argmax(by_size[1])) - (len(by_size[1]) - len(names))
+    return Variation(form, alike, names[best] if best >= 0 and by_size[1].max() > 0.0 else None)
 
 
 def _varies(problem: Problem, point: Posterior, h: Hypothesis, share: float) -> float:
-    """The same for one cause of which the response in each window is multiplied by a normal factor of mean 1 and standard deviation ``share``.
+    """Evidence that the response to one cause in each window is multiplied by a normal factor of mean 1 and standard deviation ``share``.
 
     The factor is a nuisance of each window, integrated out (Woodbury identity).
     """

@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from math import inf, log
 
 from rovval.core.data import Array
+from rovval.diagnose.decision.posterior import log_varying
 from rovval.diagnose.decision.resemblance import Left, gap_left, gap_left_from, none_of_the_library
 from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.effort import ONSET_SEARCHED
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.sensor_faults import FittedFault
 from rovval.diagnose.search.forward import Selection
-from rovval.diagnose.search.model import Names
+from rovval.diagnose.search.model import Names, best_of_each_set
 from rovval.diagnose.search.onset import Onset, evidence_with_onset, onset_cost
 
 
@@ -55,14 +56,16 @@ class Finding:
 
 def more_probable(late: Finding, whole: Finding, onset: Onset) -> bool:
     """Whether the causes that a search ``late`` of the windows from an onset on found, at work from then on, are a more probable model of the whole log
-    than any that was found in the ``whole`` of it, what resembles causes and is none taken off each (`resemblance`)."""
+    than any that was found in the ``whole`` of it, what resembles causes and is none taken off each (`resemblance`), and those of which the sizes vary."""
     fit, problem, names = late.decision.fit, whole.problem, frozenset(h.name for h in late.decision.causes)
     if not fit or late.is_event:
         return False
     evidence = evidence_with_onset(problem, fit, onset.time, whole.selection.healthy) - onset_cost(problem)
     found = late.selection.prior.log_mass(late.decision.causes) + 0.5 * evidence + _log_known(names, gap_left_from(problem, names, fit, onset.time))
-    left = gap_left(problem, whole.selection.models)
-    return found > max(m.log_posterior + (_log_known(m.names, left) if m.names else 0.0) for m in whole.selection.models)
+    left, varying = gap_left(problem, whole.selection.models), whole.decision.varying
+    others = [m.log_posterior + (_log_known(m.names, left) if m.names else 0.0) for m in whole.selection.models]
+    others += [max(log_varying(m, varying[names])) for names, m in best_of_each_set(whole.selection.models).items() if names in varying]
+    return found > max(others)
 
 
 def _log_known(names: Names, left: Left) -> float:

@@ -6,18 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from rovval.diagnose.criteria import (
-    INDICATED_EVIDENCE,
-    INDICATED_GAIN,
-    INDICATED_LESS_GAIN,
-    INDICATED_MORE_EVIDENCE,
-    LEAST_EVIDENCE,
-)
+from rovval.diagnose.criteria import LEAST_EVIDENCE
 from rovval.diagnose.decision.unexplained import Accounted
 from rovval.diagnose.residuals.sensor_faults import FittedFault
 from rovval.effects import sensor_tolerance
 
-Lack = Literal["evidence", "reduction"]
+Lack = Literal["evidence", "reduction"]  # "evidence" in documents of before: what lacks it is no longer told
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,8 +22,7 @@ class NearestEffect:
         effect: its name.
         evidence: twice the log Bayes factor over the healthy vehicle.
         gain: reduction of the squared gap by it alone, on held-out windows.
-        lacks: of what it has too little: ``evidence`` (less than is asked of a cause), ``reduction`` (no more than coefficients within their
-            tolerances bring); empty where it fails another check.
+        lacks: of what it has too little: ``reduction`` (no more than coefficients within their tolerances bring), or nothing: other models are likelier.
     """
 
     effect: str
@@ -69,21 +62,9 @@ def indications(candidates: Sequence[tuple[str, float, float]], known: Accounted
         faults: of sensors, each fitted to the parity residuals by itself.
     """
     within = known.share - known.noise
-    near = [c for c in candidates if _comes_near(c[1], c[2])]
-    best = max(near, key=lambda c: c[1], default=None)
+    best = max((c for c in candidates if c[1] > LEAST_EVIDENCE and c[2] > 0.0), key=lambda c: c[1], default=None)
     fault = max((f for f in faults if f.significant), key=lambda f: (round(f.share, 2), _departure(f)), default=None)
-    return Indications(_nearest(*best, within) if best else None, within, fault, _departure(fault) if fault else 0.0)
-
-
-def _comes_near(evidence: float, gain: float) -> bool:
-    """Whether a candidate takes much of the gap away with some evidence, or less of it with more."""
-    much, sure = gain >= INDICATED_GAIN, evidence > INDICATED_MORE_EVIDENCE
-    return (much and evidence > INDICATED_EVIDENCE) or (sure and gain >= INDICATED_LESS_GAIN)
-
-
-def _nearest(name: str, evidence: float, gain: float, within: float) -> NearestEffect:
-    short: dict[Lack, bool] = {"evidence": evidence < LEAST_EVIDENCE, "reduction": within >= gain}
-    return NearestEffect(name, evidence, gain, tuple(lack for lack, lacking in short.items() if lacking))
+    return Indications(NearestEffect(*best, ("reduction",) if within >= best[2] else ()) if best else None, within, fault, _departure(fault) if fault else 0.0)
 
 
 def _departure(fault: FittedFault) -> float:

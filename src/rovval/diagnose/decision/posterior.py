@@ -5,10 +5,11 @@ Miller and Dunson 2019; `problem.Problem.tempering`). Something else is what no 
 beside causes (model discrepancy: Kennedy and O'Hagan 2001), or forces that go with nothing that was logged; either leaves an open gap (`open_gap`).
 
 No log tells two explanations apart that predict the same; they share its probability by their priors, and by how much of the gap is left where windows are
-held out (`resemblance`). So something else has a part of the mass of every set of causes, and no cause is ever certain; and the set without the cause that
-adds least has another part, since that cause may be what the equations of the others are off by. A cause that would have to vary along the log may be that
-cause in another form, or something else that comes near it (`VARYING_ALIKE`). Which of several sets of as many causes it is, is less sure than how well they
-fit: each is only nearly right in its form (`BETWEEN_CAUSES`).
+held out (`resemblance`). So something else has a part of the mass of every set of causes, and no cause is ever certain, least where something else is at
+work in any case, beside causes or in their place (what causes that wander by nature leave is their own); and the set without the cause that adds least has
+another part, since that cause may be what the equations of the others are off by. A cause of which the size varies is that cause in another form, or
+something else that comes near it (`constancy`). Which of several sets of as many causes it is, is less sure than how well they fit: each is only nearly right
+in its form (`BETWEEN_CAUSES`).
 
 The set that is named has as many causes as is most probable, and of such sets it is the one that the true one is expected to share the most causes with
 (centroid estimator: Carvalho and Lawrence 2008). The most probable single set may hold a cause that most of the others do without.
@@ -31,13 +32,14 @@ from rovval.diagnose.criteria import (
     PRIOR_FILE,
     PRIOR_HEALTHY,
     PRIOR_SOMETHING_ELSE,
-    VARYING_ALIKE,
 )
+from rovval.diagnose.decision.constancy import Variation
 from rovval.diagnose.decision.resemblance import Left, form_error, none_of_the_library
 from rovval.diagnose.effort import NEGLIGIBLE
 from rovval.diagnose.search.model import Model, Names, best_of_each_set
 
 CAUSES = ("sets", "beside", "filed")  # kinds of models with causes: these alone, with something else, and with a file that is off in further numbers
+FORM = "form"  # and those in another form, which are told as causes with something else beside them
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +120,7 @@ class Probabilities:
 
 
 def probabilities(
-    models: Sequence[Model], file: Mapping[Names, float], forces: float, beside: Mapping[Names, float], varying: Mapping[Names, float],
+    models: Sequence[Model], file: Mapping[Names, float], forces: float, beside: Mapping[Names, float], varying: Mapping[Names, Variation],
     open_gap: float = 0.0, left: Left | None = None,
 ) -> Probabilities:
     """Probabilities of the models that a search met.
@@ -129,7 +131,7 @@ def probabilities(
             of causes.
         forces: evidence of something else on the healthy vehicle, over it; its prior among such forces included.
         beside: the same of something else beside sets of causes, over these.
-        varying: the same of a cause that varies along the log, over the set that it is of; a part of it is something else, the rest that cause in another form.
+        varying: the same of a cause of which the size varies, over the set that it is of: that cause in another form, and something else that comes near it.
         open_gap: the same of something else, beside whatever cause, by how much no model explains (`open_gap.evidence_of_something_else`).
         left: of the explainable gap, what sets of causes leave on held-out windows (`resemblance.gap_left`); without it, priors alone judge.
     """
@@ -142,16 +144,18 @@ def probabilities(
     known |= {("filed", names): best[names].log_prior + filed + 0.5 * evidence for names, evidence in file.items()}
     known["else", frozenset()] = nothing.log_posterior + doubt + _something_else(forces, open_gap)
     for names, more in varying.items():  # what only comes near a cause, or that cause in another form
-        whole = best[names].log_posterior + doubt + 0.5 * more
-        known["varying", names], known["form", names] = whole + log(VARYING_ALIKE), whole + log(1.0 - VARYING_ALIKE)
+        known[FORM, names], known["varying", names] = log_varying(best[names], more)
     top = max(known.values())
     weight = {key: exp(value - top) for key, value in known.items()}
     total = sum(weight.values())
     believed = {key: value / total for key, value in weight.items()}
-    known_causes = {names: 1.0 - none_of_the_library(names, left) for _, names in believed if names}
-    share = {(kind, names): p * known_causes[names] if names and kind in CAUSES else p for (kind, names), p in believed.items()}
+    share = dict(believed)
+    for kind, names in believed:
+        if names and kind in (*CAUSES, FORM):
+            beside_them = kind == "beside" and not all(h.effect.wanders for h in best[names].causes)
+            share[kind, names] *= 1.0 - none_of_the_library(names, left, beside_them)
     for names in varying:
-        share["beside", names] = share.get(("beside", names), 0.0) + share.pop(("form", names))
+        share["beside", names] = share.get(("beside", names), 0.0) + share.pop((FORM, names))
     _move_form_errors(share, best, left)
     _coarsen(share)
     inconstant = sum(p for (kind, _), p in share.items() if kind == "varying")
@@ -164,11 +168,17 @@ def probabilities(
     )  # fmt: skip
 
 
-def something_beside(forces: float, varying: float) -> bool:
-    """Whether something else is more likely beside causes than not, by the evidence over the causes of generic ``forces`` and of sizes ``varying`` along the
-    log."""
+def log_varying(model: Model, varying: Variation) -> tuple[float, float]:
+    """Log posterior of the causes of a model in another form, of which the size varies, and of something else that comes near to them; the one is as likely
+    beforehand as the other, and both together as something else beside causes."""
+    whole = model.log_posterior + log(PRIOR_SOMETHING_ELSE / PRIOR_HEALTHY) - log(2.0)
+    return whole + 0.5 * varying.form, whole + 0.5 * varying.alike
+
+
+def something_beside(forces: float, varying: Variation) -> bool:
+    """Whether something else is more likely beside causes than not, by the evidence over the causes of generic ``forces`` and of sizes that are ``varying``."""
     odds = log(PRIOR_SOMETHING_ELSE / PRIOR_HEALTHY)
-    return odds + float(np.logaddexp(_something_else(forces, 0.0), 0.5 * varying)) > 0.0
+    return odds + float(np.logaddexp(_something_else(forces, 0.0), 0.5 * varying.either)) > 0.0
 
 
 def _something_else(forces: float, open_gap: float) -> float:

@@ -32,6 +32,7 @@ from rovval.diagnose.criteria import (
     HEALTHY_GAP,
     LIBRARY_ALIKE,
     PRIOR_CAUSES,
+    PRIOR_HEALTHY,
     PRIOR_SOMETHING_ELSE,
 )
 from rovval.diagnose.inference.gap import explainable_gap, tolerated_gap
@@ -91,9 +92,10 @@ def _healthy(problem: Problem) -> Array:
     return np.asarray(np.divide(HEALTHY_GAP * tolerated_gap(problem), gap, out=np.ones(2), where=gap > 0.0))
 
 
-def none_of_the_library(names: Names, left: Left | None) -> float:
-    """Probability that what looks like the causes ``names`` is none of the library; by the priors alone where nothing is known of what they leave."""
-    odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / sum(PRIOR_CAUSES)
+def none_of_the_library(names: Names, left: Left | None, beside: bool = False) -> float:
+    """Probability that what looks like the causes ``names`` is none of the library; by the priors alone where nothing is known of what they leave. Where
+    something else is at work ``beside`` them, it may as well be that alone: beforehand both together are less likely than either."""
+    odds = LIBRARY_ALIKE * (PRIOR_HEALTHY if beside else PRIOR_SOMETHING_ELSE) / sum(PRIOR_CAUSES)
     if left is None:
         return odds / (odds + 1.0)
     shares = left.least(lambda part: part <= names)

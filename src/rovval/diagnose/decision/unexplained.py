@@ -45,6 +45,7 @@ class Unexplained:
         share: share (1) of the squared error that generic forces take away on held-out windows; 0 of an open gap.
         departed: coefficient furthest beyond its tolerance and its standardised departure; None where none is.
         inconstant: effects that come near, but whose value would have to change along the log.
+        goes_with: (effect, covariate): the size of a cause, or of what comes near to one, and what it changes with; None where none does.
         accounted: of an open gap, the share (1) of it, or of what the causes leave of it, that noise and tolerance account for; None where a force, a
             coefficient or an effect is surely at work.
     """
@@ -54,6 +55,7 @@ class Unexplained:
     share: float = 0.0
     departed: tuple[str, float] | None = None
     inconstant: tuple[str, ...] = ()
+    goes_with: tuple[str, str] | None = None
     accounted: float | None = None
 
 
@@ -63,8 +65,10 @@ def accounted(problem: Problem, healthy: Posterior) -> Accounted:
     return Accounted(noise, 1.0 - share_left(problem, healthy), healthy.largest_departure())
 
 
-def unexplained(problem: Problem, forces: GenericForces, point: Posterior, inconstant: Sequence[str] = ()) -> Unexplained:
-    """On which axes generic forces would take away most of what is left at ``point``, and what that resembles."""
+def unexplained(
+    problem: Problem, forces: GenericForces, point: Posterior, inconstant: Sequence[str] = (), goes_with: tuple[str, str] | None = None
+) -> Unexplained:
+    """On which axes generic forces would take away most of what is left at ``point``, and what that resembles; the last two as of `Unexplained`."""
     by_axis = sorted(((axis, forces.evidence([axis])) for axis in AXES), key=lambda item: -item[1])
     axes = [axis for axis, gain in by_axis if gain > ACTING_FORCE * by_axis[0][1]][:MOST_ACTING] or [by_axis[0][0]]
     by_feature = sorted(((f, forces.evidence([axes[0]], f)) for f in forces.features), key=lambda item: -item[1])
@@ -72,7 +76,7 @@ def unexplained(problem: Problem, forces: GenericForces, point: Posterior, incon
     departures = zip(point.columns[point.effect_count :], point.standardised_departures(), strict=True)
     beyond = [(problem.plant.slots[c].key, float(z)) for c, z in departures if abs(z) > OUT_OF_TOLERANCE]
     departed = max(beyond, key=lambda one: abs(one[1]), default=None)
-    return Unexplained(tuple(axes), tuple(depends), forces.held_out_gain(problem.folds), departed, tuple(inconstant))
+    return Unexplained(tuple(axes), tuple(depends), forces.held_out_gain(problem.folds), departed, tuple(inconstant), goes_with)
 
 
 def unexplained_by_any(problem: Problem, accounted: float, residuals: list[Array]) -> Unexplained:

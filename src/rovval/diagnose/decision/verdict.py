@@ -12,7 +12,7 @@ from typing import Literal
 
 from rovval.core.data import Array
 from rovval.diagnose.decision.consistency import inconsistencies
-from rovval.diagnose.decision.constancy import variation
+from rovval.diagnose.decision.constancy import Variation, variation
 from rovval.diagnose.decision.indications import Indications, indications
 from rovval.diagnose.decision.miscalibration import file_evidence
 from rovval.diagnose.decision.open_gap import evidence_of_something_else, left_open, open_gap
@@ -50,6 +50,7 @@ class Decision:
         generic_beside: the same of something else beside the causes, over the causes.
         departure: largest standardised departure of a coefficient that is no cause's, in standard deviations of its prior.
         accounted: what of the gap needs no cause.
+        varying: of the most probable sets of causes, how much likelier it is that their sizes vary.
         open_gap: what is left of the gap beyond noise, over what noise and tolerances are expected to make (1): with the causes that are named, on held-out
             windows.
         unexplained: what is left; None where nothing is.
@@ -68,6 +69,7 @@ class Decision:
     generic_beside: float
     departure: float
     accounted: Accounted
+    varying: Mapping[Names, Variation]
     open_gap: float
     unexplained: Unexplained | None
     indications: Indications | None = None
@@ -89,7 +91,7 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
     known = accounted(problem, selection.healthy)
     over = best.evidence - selection.models[0].evidence
     departure, instead_of_any = selection.healthy.largest_departure(), max(evidence, 0.0)
-    found = Decision("no_gap", belief, (), None, {}, {}, {}, over, instead_of_any, 0.0, departure, known, unexplained_gap, None)
+    found = Decision("no_gap", belief, (), None, {}, {}, {}, over, instead_of_any, 0.0, departure, known, varies, unexplained_gap, None)
     contradicted = any(h.effect.place != "sensor" for h in best.causes) and _contradicted(problem, residuals)
     if best.fit and belief.likelier_than_not == "causes" and not contradicted:
         forces = beside.get(best.names) or generic_forces(problem, best.fit.posterior)
@@ -99,9 +101,10 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
     if belief.likelier_than_not == "healthy":
         return found
     inconstant = [h.name for h in best.causes] if belief.varying > 0.5 * belief.something_else else []
+    goes_with = varies[best.names].goes_with if inconstant and best.names in varies else None
     if belief.something_else > max(belief.healthy, belief.causes) and evidence <= 0.0 and not inconstant:
         return replace(found, verdict="unknown", unexplained=unexplained_by_any(problem, known.share, residuals))
-    return replace(found, verdict="unknown", unexplained=unexplained(problem, nominal_forces(problem), selection.healthy, inconstant))
+    return replace(found, verdict="unknown", unexplained=unexplained(problem, nominal_forces(problem), selection.healthy, inconstant, goes_with))
 
 
 def _leading(problem: Problem, selection: Selection) -> list[Model]:
@@ -127,7 +130,7 @@ def _fitted(problem: Problem, selection: Selection, met: Sequence[Model], names:
 
 
 def _named(
-    problem: Problem, selection: Selection, found: Decision, best: Model, fit: HypothesisFit, beside: GenericForces, varying: float
+    problem: Problem, selection: Selection, found: Decision, best: Model, fit: HypothesisFit, beside: GenericForces, varying: Variation
 ) -> Decision:
     """The causes of the best set are named; they explain a part where generic forces ``beside`` them, or sizes ``varying`` along the log, are likelier than
     not, or where they leave more of the gap than noise and tolerances make."""
@@ -135,7 +138,7 @@ def _named(
     probability = {h.name: belief.of(h.name) for h in best.causes}
     rest = None
     if something_beside(evidence, varying):
-        rest = unexplained(problem, beside, fit.posterior)
+        rest = unexplained(problem, beside, fit.posterior, goes_with=varying.goes_with)
     elif left > 1.0:
         rest = unexplained_by_any(problem, 1.0 / left, corrected_residuals(problem, fit.beta))
     return replace(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -61,20 +61,30 @@ def force_features(windows: Windows) -> dict[str, Array]:
 
 def force_sensitivities(windows: Windows, beta: Array, forces: Sequence[tuple[str, Array]]) -> Array:
     """Sensitivity (m, n, c, f) to f additional forces about ``beta`` (k,), each given as its axis and a series (run,) on the run's grid, N or N m."""
+
+    def series(axis: str, sequence: Array) -> Array:
+        wrench = np.zeros((len(windows.run), 6))
+        wrench[:, AXES.index(axis)] = sequence
+        return wrench
+
+    return wrench_sensitivities(windows, beta, len(forces), lambda i: series(*forces[i]))
+
+
+def wrench_sensitivities(windows: Windows, beta: Array, count: int, wrench: Callable[[int], Array]) -> Array:
+    """Sensitivity (m, n, c, f) to ``count`` additional wrenches about ``beta`` (k,); ``wrench`` gives the series (run, 6) of each, N and N m, on the run's
+    grid."""
     m, which = windows.count, np.arange(windows.count)
     base, _ = simulate_windows(windows, np.tile(beta, (m, 1)), windows.nu0, windows.eta0, which)
-    S = columns_first(*base.shape, columns=len(forces))
+    S = columns_first(*base.shape, columns=count)
     each = max(1, LANES // m)
-    for begin in range(0, len(forces), each):
-        chosen = forces[begin : begin + each]
-        bank, lanes = np.zeros((len(chosen), len(windows.run), 6)), len(chosen) * m
-        for series, (axis, sequence) in zip(bank, chosen, strict=True):
-            series[:, AXES.index(axis)] = sequence
+    for begin in range(0, count, each):
+        bank = np.stack([wrench(i) for i in range(begin, min(begin + each, count))])
+        some, lanes = len(bank), len(bank) * m
         motion = windows.plant.simulate(
-            replace(windows.actuation.inputs, extra=bank), np.tile(windows.start, len(chosen)), windows.steps, np.tile(windows.nu0, (len(chosen), 1)),
-            np.tile(windows.eta0, (len(chosen), 1)), np.tile(beta, (lanes, 1)), np.repeat(np.arange(len(chosen)), m), np.full(lanes, STEP),
+            replace(windows.actuation.inputs, extra=bank), np.tile(windows.start, some), windows.steps, np.tile(windows.nu0, (some, 1)),
+            np.tile(windows.eta0, (some, 1)), np.tile(beta, (lanes, 1)), np.repeat(np.arange(some), m), np.full(lanes, STEP),
         )  # fmt: skip
-        out = predicted_channels(windows, np.tile(which, len(chosen)), motion.nu, motion.eta).reshape(len(chosen), *base.shape)
+        out = predicted_channels(windows, np.tile(which, some), motion.nu, motion.eta).reshape(some, *base.shape)
         S[..., begin : begin + each] = np.moveaxis(channel_difference(windows, out, base[None]) / STEP, 0, -1)
     return S
 

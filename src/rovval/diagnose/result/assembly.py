@@ -27,6 +27,7 @@ from rovval.diagnose.result.diagnosis import (
     AxisHarm,
     Candidate,
     Departure,
+    Dependence,
     Detection,
     Diagnosis,
     Disturbance,
@@ -181,9 +182,11 @@ def _unexplained(rest: Rest | None) -> Unexplained | None:
     if rest is None:
         return None
     departed = Departure(coefficient=rest.departed[0], departure=rest.departed[1]) if rest.departed else None
+    goes_with = Dependence(effect=rest.goes_with[0], covariate=rest.goes_with[1]) if rest.goes_with else None
     return Unexplained(
-        axes=rest.axes, depends_on=rest.depends_on, share=rest.share, departed=departed, inconstant=rest.inconstant, accounted=rest.accounted
-    )
+        axes=rest.axes, depends_on=rest.depends_on, share=rest.share, departed=departed, inconstant=rest.inconstant, goes_with=goes_with,
+        accounted=rest.accounted,
+    )  # fmt: skip
 
 
 def _remarks(problem: Problem, before: list[Array]) -> tuple[LogRemark, ...]:

@@ -209,6 +209,13 @@ class Departure(Record):
     departure: float = Field(description="standardised departure, in standard deviations of its prior")
 
 
+class Dependence(Record):
+    """A size that changes with something that was logged."""
+
+    effect: str = Field(description="name of the effect of which it is the size")
+    covariate: str = Field(description="what it changes with")
+
+
 class Unexplained(Record):
     """What the causes leave unexplained; all of the gap where none is named."""
 
@@ -217,6 +224,7 @@ class Unexplained(Record):
     share: float = Field(default=0.0, description="share of what is left that generic forces take away on held-out windows")
     departed: Departure | None = Field(default=None, description="coefficient furthest beyond its tolerance, where one is")
     inconstant: tuple[str, ...] = Field(default=(), description="effects that come near, but whose value would change along the log")
+    goes_with: Dependence | None = Field(default=None, description="cause, or what comes near to one, of which the size changes with something that was logged")
     accounted: float | None = Field(
         default=None,
         description="share of the gap, or of what causes leave of it, that noise and tolerance account for, where that is so little that it stays open; "
@@ -285,8 +293,8 @@ class NearestEffect(Candidate):
     """The candidate that came nearest to a cause, though it is not named."""
 
     lacks: tuple[Lack, ...] = Field(
-        description="evidence: less than is asked of a cause; reduction: no more than coefficients within their tolerances bring; "
-        "empty: it fails another check"
+        description="reduction: no more than coefficients within their tolerances bring; evidence (older documents): less than is asked of a cause; "
+        "empty: other models are likelier"
     )
 
 

@@ -47,7 +47,7 @@ class GenericForces:
     def evidence(self, axes: Sequence[str] = AXES, feature: str = "") -> float:
         """Evidence of all forces on ``axes``, or of those with one feature only."""
         chosen = [i for i, (axis, name) in enumerate(self.names) if axis in axes and feature in ("", name)]
-        return max(self._evidence(chosen, size) for size in GENERIC_SIZES) - self._evidence([], 1.0) if chosen else 0.0
+        return max(self.evidence_of(chosen, size) for size in GENERIC_SIZES) if chosen else 0.0
 
     def sparse(self, most: int = MOST_FORCES) -> tuple[float, tuple[tuple[str, str], ...]]:
         """(Evidence of the few forces, each of one feature on one axis, that explain most, the names of these): up to ``most``, each beside those before and
@@ -91,7 +91,11 @@ class GenericForces:
         free = np.arange(len(precision))
         return eliminated(self.data.A.sum(axis=0), self.data.b.sum(axis=0), free, np.diag(precision), self.pull)
 
-    def _evidence(self, chosen: Sequence[int], prior_size: float) -> float:
+    def evidence_of(self, chosen: Sequence[int], prior_size: float) -> float:
+        """Evidence of the ``chosen`` forces, by their places among the names, of that prior standard deviation."""
+        return self._explained(chosen, prior_size) - self._explained([], 1.0)
+
+    def _explained(self, chosen: Sequence[int], prior_size: float) -> float:
         k = len(self.precision)
         free = np.array([*range(k), *(k + i for i in chosen)], dtype=int)
         ridge = np.concatenate([self.precision, np.full(len(chosen), self.tempering / prior_size**2)])

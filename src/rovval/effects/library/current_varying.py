@@ -43,6 +43,7 @@ EFFECT = Effect(
     confused_with=("current_constant", "voltage_sag", "clock_drift", "tether_tension"),
     separates="a long log with the same heading early and late",
     literature=("Fossen 2021, section 10.3: current velocity as a Gauss-Markov process", "DNV 2010, section 4.1: tidal and turbulent currents"),
+    wanders=True,  # a Gauss-Markov process, of which one period is a part (Fossen 2021, section 10.3)
 )
 ROWS = ("north_rate", "east_rate", "north", "east", "omega", "phase")
 

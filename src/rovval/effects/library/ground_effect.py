@@ -49,6 +49,7 @@ EFFECT = Effect(
         "Bhattacharyya 2016: a small underwater vehicle in hydrodynamic ground effect",
         "JMSE 2025: an underwater vehicle near a wall, force by distance and speed",
     ),
+    wanders=True,  # with the speed over the bottom (Bhattacharyya 2016) and a bottom that is not flat, of which the equation has neither
     within={"altitude": 3.0},  # m, chosen: three times the largest reach above, where a twentieth is left
 )
 ROWS = ("gain", "inverse", "seabed", "linear", "quadratic")

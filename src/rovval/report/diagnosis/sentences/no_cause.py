@@ -49,7 +49,8 @@ def unexplained(d: Diagnosis) -> str:
 def nearest(d: Diagnosis) -> str:
     """The effect that came nearest to a cause, and by how much it is less probable than what is believed; empty where none came near."""
     if d.left and d.left.inconstant:
-        return f"Nearest: {listed(titled(name) for name in d.left.inconstant)}, but the size would have to change along the log."
+        along = f"with {d.left.goes_with.covariate}" if d.left.goes_with else "along the log"
+        return f"Nearest: {listed(titled(name) for name in d.left.inconstant)}, but the size would have to change {along}."
     if d.left and d.left.departed:
         off = abs(d.left.departed.departure)
         return f"Nearest: {d.left.departed.coefficient}, which would have to be {off:.0f} times its tolerance off."
@@ -102,6 +103,8 @@ def _axes(d: Diagnosis, left: Unexplained) -> list[str]:
 def _force(d: Diagnosis, left: Unexplained) -> str:
     text = f"a force in {listed(_axes(d, left))} that nothing in the library explains"
     text += f"; it varies with {listed(left.depends_on)}" if left.depends_on else ""
+    if d.causes and left.goes_with:
+        text += f", and the size of {titled(left.goes_with.effect)} with {left.goes_with.covariate}"
     return text + (f", and with a formula for it the error {falls(left.share)}" if remaining(left.share) <= WORTH_A_FORMULA else "")
 
 
