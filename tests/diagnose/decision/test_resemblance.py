@@ -14,8 +14,8 @@ from rovval.diagnose.criteria import (
     HEALTHY_GAP,
     LIBRARY_ALIKE,
     PRIOR_CAUSES,
-    PRIOR_HEALTHY,
     PRIOR_SOMETHING_ELSE,
+    SHOWS_BESIDE,
 )
 from rovval.diagnose.decision.resemblance import Left, form_error, gap_left, none_of_the_library
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
@@ -36,10 +36,15 @@ AB = frozenset("ab")
 def test_where_nothing_is_known_priors_alone_judge():
     odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / sum(PRIOR_CAUSES)
     assert none_of_the_library(AB, None) == pytest.approx(odds / (1.0 + odds))
-    odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / (sum(PRIOR_CAUSES) * PRIOR_SOMETHING_ELSE / PRIOR_HEALTHY)  # of something else alone, and beside causes
-    assert none_of_the_library(AB, None, beside=True) == pytest.approx(odds / (1.0 + odds))
     alike = FORM_ALIKE * PRIOR_CAUSES[0]
     assert form_error("b", AB, None) == pytest.approx(alike / (PRIOR_CAUSES[1] + alike))
+
+
+def test_a_force_that_shows_beside_causes_speaks_against_them_by_how_often_it_does():
+    odds = SHOWS_BESIDE[1] / SHOWS_BESIDE[0] * LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / sum(PRIOR_CAUSES)
+    assert none_of_the_library(AB, None, beside=True) == pytest.approx(odds / (1.0 + odds))
+    shown, alone = (none_of_the_library(AB, left(a_b=0.3), beside) for beside in (True, False))
+    assert shown / (1.0 - shown) == pytest.approx(SHOWS_BESIDE[1] / SHOWS_BESIDE[0] * alone / (1.0 - alone))
 
 
 def test_both_distributions_are_distributions():

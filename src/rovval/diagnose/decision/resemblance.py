@@ -10,6 +10,9 @@ A healthy vehicle has a gap, too: coefficients and sensors are off within their 
 whether the library lacks something. How large it is in a log is unknown; it is exponential about the share of what tolerances could make that healthy
 vehicles show (`HEALTHY_GAP`), and integrated over. So a weak effect is not taken for something else because it leaves what many a healthy vehicle shows.
 
+Beside what only looks like a cause generic forces often show that go with the motion: the rest of what it really is. Beside causes they hardly ever do
+(`SHOWS_BESIDE`).
+
 Shares are of the errors above the noise of the sensors, of the dynamics alone, which causes that push the vehicle close, and with the parity residuals, which
 faults of sensors close. A cause is judged by the one of the two that it closes more of, and with the best of the sets that it was fitted in.
 """
@@ -32,8 +35,8 @@ from rovval.diagnose.criteria import (
     HEALTHY_GAP,
     LIBRARY_ALIKE,
     PRIOR_CAUSES,
-    PRIOR_HEALTHY,
     PRIOR_SOMETHING_ELSE,
+    SHOWS_BESIDE,
 )
 from rovval.diagnose.inference.gap import explainable_gap, tolerated_gap
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
@@ -93,9 +96,10 @@ def _healthy(problem: Problem) -> Array:
 
 
 def none_of_the_library(names: Names, left: Left | None, beside: bool = False) -> float:
-    """Probability that what looks like the causes ``names`` is none of the library; by the priors alone where nothing is known of what they leave. Where
-    something else is at work ``beside`` them, it may as well be that alone: beforehand both together are less likely than either."""
-    odds = LIBRARY_ALIKE * (PRIOR_HEALTHY if beside else PRIOR_SOMETHING_ELSE) / sum(PRIOR_CAUSES)
+    """Probability that what looks like the causes ``names`` is none of the library; by the priors alone where nothing is known of what they leave. That
+    generic forces show ``beside`` them is evidence (`SHOWS_BESIDE`); that none do says little of a small gap, and is not counted."""
+    odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / sum(PRIOR_CAUSES)
+    odds *= SHOWS_BESIDE[1] / SHOWS_BESIDE[0] if beside else 1.0
     if left is None:
         return odds / (odds + 1.0)
     shares = left.least(lambda part: part <= names)
