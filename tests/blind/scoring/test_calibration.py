@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-from rovval.blind.scoring.calibration import calibration
+from rovval.blind.scoring.calibration import calibration, skill_of_kinds
 from rovval.blind.scoring.intervals import exact
 
 
@@ -43,6 +43,14 @@ def test_scores_by_hand():
     assert found["constant_log_score"] == pytest.approx(np.log(0.5))
     assert found["skill"] == pytest.approx(1.0 - found["log_score"] / np.log(0.5))
     assert found["calibration_error"] == pytest.approx((0.1 + 0.2 + 0.3 + 0.6) / 4)
+
+
+def test_kinds_are_scored_by_the_probability_of_the_true_one():
+    stated = [{"a": 0.9, "b": 0.1}, {"a": 0.8, "b": 0.2}, {"a": 0.3, "b": 0.7}, {"a": 0.5, "b": 0.5}]
+    found = skill_of_kinds(stated, ["a", "a", "b", "b"])
+    assert found is not None and found["log_score"] == pytest.approx(np.mean(np.log([0.9, 0.8, 0.7, 0.5])))
+    assert found["constant_log_score"] == pytest.approx(np.log(0.5)) and found["skill"] == pytest.approx(1.0 - found["log_score"] / np.log(0.5))
+    assert skill_of_kinds(stated, ["a"] * 4) is None
 
 
 def test_the_best_constant_has_no_skill_and_no_error():

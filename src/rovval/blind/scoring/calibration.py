@@ -7,7 +7,8 @@ calibration error), Clopper and Pearson 1934 (intervals of shares).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -41,6 +42,17 @@ def calibration(stated: Sequence[float], right: Sequence[bool]) -> dict[str, Any
         "brier": float(np.mean((p - hit) ** 2)), "calibration_error": float(off),
         "slope": slope(p, hit), "log_score": score, "constant_log_score": base if constant else 0.0, "skill": 1.0 - score / base if constant else None,
     }  # fmt: skip
+
+
+def skill_of_kinds(stated: Sequence[Mapping[str, float]], true: Sequence[str]) -> dict[str, float] | None:
+    """Log score (mean logarithm of the probability given to the kind that is true), that of the constant probabilities that fit best (the kinds' shares), and
+    the share by which the one is nearer to 0; None where all are of one kind."""
+    shares = [count / len(true) for count in Counter(true).values()]
+    if len(shares) < 2:
+        return None
+    score = float(np.mean([np.log(max(p[kind], LEAST)) for p, kind in zip(stated, true, strict=True)]))
+    base = float(sum(share * np.log(share) for share in shares))
+    return {"log_score": score, "constant_log_score": base, "skill": 1.0 - score / base}
 
 
 def log_score(p: Array, hit: Array) -> float:

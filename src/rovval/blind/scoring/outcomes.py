@@ -12,7 +12,7 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rovval.blind.scoring.calibration import calibration
+from rovval.blind.scoring.calibration import calibration, skill_of_kinds
 from rovval.blind.scoring.intervals import Number, exact
 from rovval.diagnose import Diagnosis
 
@@ -74,7 +74,8 @@ def reliability(rows: Sequence[Row]) -> dict[str, Any]:
     found = calibration([row["p_said"] for row in counted], [is_right(row) for row in counted])
     kinds = {kind: calibration([row["p_kinds"][kind] for row in counted], [true_kind(row) == kind for row in counted]) for kind in KINDS}
     brief = {kind: {key: row[key] for key in ("brier", "skill", "calibration_error")} for kind, row in kinds.items() if row["n"]}
-    return found | {"kinds": brief, "not_visible": len(stated) - len(counted), "without_probabilities": len(rows) - len(stated)}
+    together = skill_of_kinds([row["p_kinds"] for row in counted], [true_kind(row) for row in counted])
+    return found | {"kinds": brief, "kinds_together": together, "not_visible": len(stated) - len(counted), "without_probabilities": len(rows) - len(stated)}
 
 
 def counts(rows: Sequence[Row]) -> dict[str, Number]:

@@ -46,6 +46,7 @@ def scores(summed: Row) -> dict[str, str]:
         "log score": _number(r["log_score"]),
         "log score of a constant probability": _number(r["constant_log_score"]),
         "nearer to none lost, by a share of": _number(r["skill"]),
+        "the same of healthy, causes and something else": _number((r.get("kinds_together") or {}).get("skill")),
     }
 
 
