@@ -91,6 +91,8 @@ def known(d: Diagnosis) -> str:
 
 
 def _acting(d: Diagnosis) -> str:
+    if d.left and d.left.inconstant:
+        return f", which looks like {listed(d.left.inconstant)} and is not"
     return f", most in {listed(_axes(d, d.left))}" if d.left and d.left.axes else ""
 
 
