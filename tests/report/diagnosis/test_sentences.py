@@ -193,7 +193,9 @@ def test_what_comes_near_an_unknown_force_is_told_with_why_it_is_not_it() -> Non
     assert "Nearest: Waves at the surface (waves), but the size would have to change along the log." in sentence(d)
     d = diagnosis(verdict="unknown", causes=[], left=force | {"inconstant": ["waves"], "goes_with": {"effect": "waves", "covariate": "depth"}})
     assert "Nearest: Waves at the surface (waves), but the size would have to change with depth." in sentence(d)
-    assert "something else is at work, which looks like waves and is not." in sentence(d)
+    assert "something else is at work, which looks like waves and is not." in sentence(d) and "a force in surge and yaw" in sentence(d)
+    d = diagnosis(verdict="unknown", causes=[], left=force | {"inconstant": ["dvl_scale"], "goes_with": {"effect": "dvl_scale", "covariate": "|u|"}})
+    assert "would have to change with |u|" in sentence(d) and "a force in" not in sentence(d)
 
 
 def test_a_cause_that_leaves_the_simulated_motion_is_said_to() -> None:

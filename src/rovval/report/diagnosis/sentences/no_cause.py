@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rovval import effects
 from rovval.diagnose.result.diagnosis import Diagnosis, Unexplained
 from rovval.report.common.numbers import listed, number, per_cent, probability
 from rovval.report.diagnosis.sentences.plain import falls, remaining, titled
@@ -40,8 +41,9 @@ def unknown(d: Diagnosis) -> str:
 
 
 def unexplained(d: Diagnosis) -> str:
-    """What is left unexplained: a force that is surely at work, or a gap that nothing accounts for; empty where nothing is left."""
-    if d.left is None:
+    """What is left unexplained: a force that is surely at work, or a gap that nothing accounts for; empty where nothing is left, and where it looks like
+    faults of sensors, which are no force."""
+    if d.left is None or (d.left.inconstant and all(effects.load(name.partition("[")[0]).place == "sensor" for name in d.left.inconstant)):
         return ""
     return d.left.text or (_force(d, d.left) if d.left.accounted is None else _open(d, d.left.accounted))
 
