@@ -41,7 +41,7 @@ def belief(
 
 @pytest.mark.parametrize("worth", [0.0, 8.0, 40.0, 4000.0])
 def test_they_sum_to_one_and_grow_with_evidence(worth: float):
-    varies, both = Variation(0.5, 0.5), ("inflow_loss", "dvl_scale")
+    varies, both = Variation(0.5, {"inflow_loss": 0.5}), ("inflow_loss", "dvl_scale")
     found = belief({("inflow_loss",): worth, ("dvl_scale",): 3.0, both: worth + 1.0}, file=-3.0, forces=2.0, beside=1.0, varying=varies)
     assert found.healthy + found.causes + found.file + found.something_else == pytest.approx(1.0)
     less = belief({("inflow_loss",): worth - 2.0, ("dvl_scale",): 3.0, both: worth - 1.0}, file=-3.0, forces=2.0, beside=1.0, varying=varies)
@@ -115,6 +115,12 @@ def test_something_beside_the_causes_leaves_them_at_work():
     assert found.of("inflow_loss") == pytest.approx(1.0 - none_of_the_library(frozenset({"inflow_loss"}), known, beside=True), abs=1e-4)
 
 
+def test_where_one_of_two_causes_is_something_else_the_other_is_still_at_work():
+    pair: dict[tuple[str, ...], float] = {("thrust_lag",): 60.0, ("thrust_lag", "dvl_scale"): 90.0}
+    found = belief(pair, varying=Variation(-10.0, {"thrust_lag": -10.0, "dvl_scale": 60.0}))
+    assert found.best == {"thrust_lag"} and found.of("thrust_lag") > 0.7 > 0.2 > found.of("dvl_scale") and found.varying < 0.1
+
+
 def test_what_a_cause_that_wanders_leaves_is_its_own():
     closed: dict[tuple[str, ...], float] = {("waves",): 0.3, ("inflow_loss",): 0.3}
     sure = {name: belief({(name,): 80.0}, beside=30.0, left=closed).of(name) for name in ("waves", "inflow_loss")}
@@ -124,11 +130,12 @@ def test_what_a_cause_that_wanders_leaves_is_its_own():
 @pytest.mark.parametrize(("form", "alike"), [(30.0, 30.0), (30.0, 24.0), (24.0, 30.0)])
 def test_a_cause_that_varies_is_another_form_of_it_or_something_else(form: float, alike: float):
     """Which of the two, the evidence of a little and of much variation says."""
-    found, share = belief({("inflow_loss",): 80.0}, varying=Variation(form, alike)), 1.0 / (1.0 + np.exp(0.5 * (form - alike)))
+    found, varies = belief({("inflow_loss",): 80.0}, varying=Variation(form, {"inflow_loss": alike})), Variation(form, {"inflow_loss": alike})
+    share = 1.0 / (1.0 + np.exp(BETWEEN_CAUSES * 0.5 * (form - alike)))
     looks_alike = none_of_the_library(frozenset({"inflow_loss"}), None)
     assert found.varying == pytest.approx(share, abs=1e-4)
     assert [found.of("inflow_loss"), found.causes] == pytest.approx([(1.0 - share) * (1.0 - looks_alike)] * 2, abs=1e-4)
-    assert something_beside(-inf, Variation(form, alike)) and found.best == {"inflow_loss"}
+    assert something_beside(-inf, varies) and found.best == {"inflow_loss"}
 
 
 def test_a_file_off_in_many_numbers_is_believed_where_it_explains_more():

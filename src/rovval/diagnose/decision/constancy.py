@@ -7,8 +7,9 @@ is something else that only comes near to it (`VARIATIONS`).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from math import log
 
 import numpy as np
 
@@ -21,23 +22,23 @@ from rovval.diagnose.search.dependence import dependence
 
 @dataclass(frozen=True, slots=True)
 class Variation:
-    """How much likelier it is that the size of one of some causes varies than that all are constant, as twice a log Bayes factor; which cause it is and with
-    what it varies are integrated over. Minus infinity where none could.
+    """How much likelier it is that the size of one of some causes varies than that all are constant, as twice a log Bayes factor; with what it varies is
+    integrated over.
 
     Attributes:
-        form: it varies by as much as the form of an equation is off (`VARIATIONS`, the first).
-        alike: it varies by as much as only something else does (the second).
-        goes_with: (cause, covariate) that it most likely varies with by that much; None where it varies from window to window, or not at all.
+        form: the size of any of them varies by as much as the form of an equation is off (`VARIATIONS`, the first); minus infinity where none could.
+        alike: that of each cause varies by as much as only something else does (the second), which of them it is integrated over too.
+        goes_with: (cause, covariate) that one most likely varies with by that much; None where it varies from window to window, or not at all.
     """
 
     form: float = -np.inf
-    alike: float = -np.inf
+    alike: Mapping[str, float] = field(default_factory=dict)
     goes_with: tuple[str, str] | None = None
 
     @property
     def either(self) -> float:
-        """That it varies by the one or the other."""
-        return 2.0 * float(np.logaddexp(0.5 * self.form, 0.5 * self.alike) - np.log(2.0))
+        """That one varies by the one or the other."""
+        return 2.0 * float(np.logaddexp.reduce(0.5 * np.array([self.form, *self.alike.values()])) - np.log(2.0))
 
 
 def variation(problem: Problem, point: Posterior, causes: Sequence[Hypothesis]) -> Variation:
@@ -46,16 +47,26 @@ def variation(problem: Problem, point: Posterior, causes: Sequence[Hypothesis]) 
     still = [h for h in causes if not h.effect.wanders]
     logged = dependence(problem, point, still)
     names = logged.names if logged else ()
-    by_size = []
+    found: list[dict[str, float]] = []
     for share in VARIATIONS:
-        found = [_varies(problem, point, h, share) for h in still if h.effect.place != "sensor"]
-        found += [logged.evidence_of([i], share) for i in range(len(names))] if logged else []
-        by_size.append(np.array(found))
-    if not len(by_size[0]):
-        return Variation()
-    form, alike = (2.0 * float(np.logaddexp.reduce(0.5 * one) - np.log(len(one))) for one in by_size)
-    best = int(np.argmax(by_size[1])) - (len(by_size[1]) - len(names))
-    return Variation(form, alike, names[best] if best >= 0 and by_size[1].max() > 0.0 else None)
+        of = {i: logged.evidence_of([i], share) for i in range(len(names))} if logged else {}
+        each = {h.name: [of[i] for i, (name, _) in enumerate(names) if name == h.name] for h in still}
+        for h in still:
+            each[h.name] += [_varies(problem, point, h, share)] if h.effect.place != "sensor" else []
+        found.append({name: _mean(values) - 2.0 * log(len(still)) for name, values in each.items() if values})
+    form, alike = found
+    largest = max(of, key=lambda i: of[i], default=-1)
+    return Variation(_sum(form.values()), alike, names[largest] if largest >= 0 and of[largest] > 0.0 else None)
+
+
+def _sum(evidence: Iterable[float]) -> float:
+    """Evidence of any of several models, the prior of each counted."""
+    return 2.0 * float(np.logaddexp.reduce(0.5 * np.array([-np.inf, *evidence])))
+
+
+def _mean(evidence: Sequence[float]) -> float:
+    """Evidence of any of several models that are as likely as each other beforehand."""
+    return _sum(evidence) - 2.0 * log(len(evidence))
 
 
 def _varies(problem: Problem, point: Posterior, h: Hypothesis, share: float) -> float:

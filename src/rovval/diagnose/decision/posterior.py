@@ -39,6 +39,7 @@ from rovval.diagnose.effort import NEGLIGIBLE
 from rovval.diagnose.search.model import Model, Names, best_of_each_set
 
 CAUSES = ("sets", "beside", "filed")  # kinds of models with causes: these alone, with something else, and with a file that is off in further numbers
+VARYING = "varying "  # what only comes near to one cause of a set, its name behind it
 FORM = "form"  # and those in another form, which are told as causes with something else beside them
 
 
@@ -144,21 +145,24 @@ def probabilities(
     known |= {("filed", names): best[names].log_prior + filed + 0.5 * evidence for names, evidence in file.items()}
     known["else", frozenset()] = nothing.log_posterior + doubt + _something_else(forces, open_gap)
     for names, more in varying.items():  # what only comes near a cause, or that cause in another form
-        known[FORM, names], known["varying", names] = log_varying(best[names], more)
+        known[FORM, names], alike = log_varying(best[names], more)
+        known |= {(VARYING + name, names): value for name, value in alike.items()}
     top = max(known.values())
     weight = {key: exp(value - top) for key, value in known.items()}
     total = sum(weight.values())
     believed = {key: value / total for key, value in weight.items()}
-    share = dict(believed)
+    for names, more in varying.items():
+        _leave_what_varies(believed, names, more)
+    share, causes = dict(believed), {h.name: h for m in models for h in m.causes}
     for kind, names in believed:
         if names and kind in (*CAUSES, FORM):
-            shows = beside.get(names, -inf) > -inf and not all(h.effect.wanders for h in best[names].causes)
+            shows = beside.get(names, -inf) > -inf and not all(causes[name].effect.wanders for name in names)
             share[kind, names] *= 1.0 - none_of_the_library(names, left, shows)
     for names in varying:
         share["beside", names] = share.get(("beside", names), 0.0) + share.pop((FORM, names))
     _move_form_errors(share, best, left)
     _coarsen(share)
-    inconstant = sum(p for (kind, _), p in share.items() if kind == "varying")
+    inconstant = sum(p for (kind, _), p in share.items() if kind.startswith(VARYING))
     return Probabilities(
         sets={names: p for (kind, names), p in share.items() if kind == "sets"},
         beside={names: p for (kind, names), p in share.items() if kind == "beside"},
@@ -168,11 +172,11 @@ def probabilities(
     )  # fmt: skip
 
 
-def log_varying(model: Model, varying: Variation) -> tuple[float, float]:
-    """Log posterior of the causes of a model in another form, of which the size varies, and of something else that comes near to them; the one is as likely
-    beforehand as the other, and both together as something else beside causes."""
+def log_varying(model: Model, varying: Variation) -> tuple[float, dict[str, float]]:
+    """Log posterior of the causes of a model in another form, of which the size varies, and of something else that comes near to each of them; the one is as
+    likely beforehand as the other, and both together as something else beside causes."""
     whole = model.log_posterior + log(PRIOR_SOMETHING_ELSE / PRIOR_HEALTHY) - log(2.0)
-    return whole + 0.5 * varying.form, whole + 0.5 * varying.alike
+    return whole + 0.5 * varying.form, {name: whole + 0.5 * evidence for name, evidence in varying.alike.items()}
 
 
 def something_beside(forces: float, varying: Variation) -> bool:
@@ -185,6 +189,19 @@ def _something_else(forces: float, open_gap: float) -> float:
     """Log Bayes factor of something else, by both of what tells it: it is as likely to go with the motion (generic ``forces``) as with nothing that was
     logged, and either leaves an ``open_gap``."""
     return float(np.logaddexp(0.5 * forces, 0.0)) - log(2.0) + 0.5 * open_gap
+
+
+def _leave_what_varies(believed: dict[tuple[str, Names], float], names: Names, varying: Variation) -> None:
+    """Divide the mass of causes of which a size varies between another form of them and something else that comes near to one, which leaves the others at work
+    beside it. The odds are a power (`BETWEEN_CAUSES`) of what each has: which of them it is is no surer than which of several causes."""
+    keys = [(FORM, names), *((VARYING + name, names) for name in varying.alike)]
+    top, whole = max(believed[key] for key in keys), sum(believed[key] for key in keys)
+    weight = {key: (believed[key] / top) ** BETWEEN_CAUSES if top > 0.0 else 0.0 for key in keys}
+    for key in keys:
+        believed[key] = whole * weight[key] / sum(weight.values()) if top > 0.0 else 0.0
+    for name in varying.alike:
+        if others := names - {name}:
+            believed["beside", others] = believed.get(("beside", others), 0.0) + believed.pop((VARYING + name, names))
 
 
 def _move_form_errors(share: dict[tuple[str, Names], float], best: Mapping[Names, Model], left: Left | None) -> None:
