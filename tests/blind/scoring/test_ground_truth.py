@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from blind_case import cause, planted
 
@@ -66,3 +68,11 @@ def test_every_planted_name_is_a_hypothesis_of_the_library():
         targets = catalogue()[name].targets
         for target in ("HFP",) if targets == ("thruster",) else targets or (None,):
             assert ground_truth.name(planted(name, target)) in known
+
+
+@pytest.mark.parametrize(("target", "speeds"), [("surge", "u"), ("rotation", "pqr")])
+def test_drag_goes_with_the_speeds_of_its_axes(target: str, speeds: str) -> None:
+    """Plant b plants it on one axis and on several at once."""
+    pattern = ground_truth.goes_with(planted("quadratic_drag", target))
+    assert pattern is not None
+    assert [c for c in "uvwpqr" if re.search(pattern, f"|{c}|")] == list(speeds)

@@ -109,7 +109,8 @@ def axes(effect: Row, vehicle: Path) -> set[str]:
 def goes_with(effect: Row) -> str | None:
     """Pattern that one of an answer's worst regimes, or features of the unknown force, should match; None: not scored."""
     if effect["name"] in ("linear_drag", "quadratic_drag"):
-        return rf"\|?\b{VELOCITY[str(effect['target'])]}\b"
+        axes = effects.load(effect["name"]).groups.get(effect["target"], (effect["target"],))
+        return rf"\|?\b[{''.join(VELOCITY[axis] for axis in axes)}]\b"
     if effect["name"].startswith("thruster_") and effect["target"]:
         return re.escape(str(effect["target"]))
     return GOES_WITH.get(str(effect["name"]))
