@@ -16,7 +16,7 @@ def test_covariates_are_of_one_scale_over_all_runs():
     found = covariates(runs)
     assert len(found) == 2 and set(found[0]) == set(found[1]) > {"u", "|u|", "depth", "time", "thrusters' speed"}
     for name in found[0]:
-        inside = [one[name][(w.start[:, None] + np.arange(w.steps + 1)).reshape(-1)] for one, w in zip(found, runs, strict=True)]
+        inside = [one[name][w.samples().reshape(-1)] for one, w in zip(found, runs, strict=True)]
         values = np.concatenate(inside)
         assert values.mean() == pytest.approx(0.0, abs=1e-9) and values.std() == pytest.approx(1.0)
 
@@ -26,7 +26,7 @@ def test_a_size_that_is_one_all_through_speaks_against_every_covariate():
     h = next(h for h in library if h.name == "quadratic_drag[surge]")
     found = dependence(problem, map_fit(problem, problem.origin, h.slots), [h])
     assert found is not None and {effect for effect, _ in found.names} == {h.name}
-    assert max(found.evidence_of([i], 0.8) for i in range(len(found.names))) < 0.0
+    assert found.alone(0.8).max() < 0.0
 
 
 def test_nothing_goes_with_anything_without_causes():

@@ -32,6 +32,19 @@ def test_those_at_work_are_found_and_pay_for_having_been_chosen():
     assert worth == pytest.approx(two.evidence() - 2 * 2.0 * np.log(len(AXES) * 3), abs=0.5)
 
 
+@pytest.mark.parametrize("size", [0.01, 0.1, 1.0])
+def test_each_by_itself_has_the_evidence_of_the_whole_matrix(size: float):
+    both = forces({2: 0.8, 3: 0.9})
+    found = both.alone(size)
+    for i in range(len(AXES)):
+        keep = [0, 1, 2, 3, 4 + i]
+        H = both.data.A[:, keep][..., keep].sum(axis=0) + np.diag([*both.precision, both.tempering / size**2])
+        slope = both.data.b[:, keep].sum(axis=0) - [*both.pull, 0.0]
+        without = slope[:4] @ np.linalg.solve(H[:4, :4], slope[:4])
+        volume = np.linalg.slogdet(H)[1] - np.linalg.slogdet(H[:4, :4])[1] - np.log(both.tempering / size**2)
+        assert found[i] == pytest.approx((slope @ np.linalg.solve(H, slope) - without) / both.tempering - volume, abs=1e-6)
+
+
 def test_nothing_at_work_is_worth_nothing():
     worth, names = forces({}).sparse()
     assert worth == -np.inf and names == ()

@@ -46,17 +46,21 @@ def variation(problem: Problem, point: Posterior, causes: Sequence[Hypothesis]) 
     window the parity residuals show."""
     still = [h for h in causes if not h.effect.wanders]
     logged = dependence(problem, point, still)
-    names = logged.names if logged else ()
-    found: list[dict[str, float]] = []
-    for share in VARIATIONS:
-        of = {i: logged.evidence_of([i], share) for i in range(len(names))} if logged else {}
-        each = {h.name: [of[i] for i, (name, _) in enumerate(names) if name == h.name] for h in still}
-        for h in still:
-            each[h.name] += [_varies(problem, point, h, share)] if h.effect.place != "sensor" else []
-        found.append({name: _mean(values) - 2.0 * log(len(still)) for name, values in each.items() if values})
-    form, alike = found
-    largest = max(of, key=lambda i: of[i], default=-1)
-    return Variation(_sum(form.values()), alike, names[largest] if largest >= 0 and of[largest] > 0.0 else None)
+    little, much = (dict(zip(logged.names, logged.alone(share).tolist(), strict=True)) if logged else {} for share in VARIATIONS)
+    form, alike = (_of_each(problem, point, still, share, along) for share, along in zip(VARIATIONS, (little, much), strict=True))
+    largest = max(much, key=lambda name: much[name], default=None)
+    return Variation(_sum(form.values()), alike, largest if largest and much[largest] > 0.0 else None)
+
+
+def _of_each(problem: Problem, point: Posterior, causes: Sequence[Hypothesis], share: float, along: Mapping[tuple[str, str], float]) -> dict[str, float]:
+    """Evidence that the size of each cause is the one that varies by ``share``, from window to window or ``along`` one covariate."""
+    found = dict[str, float]()
+    for h in causes:
+        ways = [evidence for (name, _), evidence in along.items() if name == h.name]
+        ways += [_varies(problem, point, h, share)] if h.effect.place != "sensor" else []
+        if ways:
+            found[h.name] = _mean(ways) - 2.0 * log(len(causes))
+    return found
 
 
 def _sum(evidence: Iterable[float]) -> float:

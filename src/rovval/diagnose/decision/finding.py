@@ -64,9 +64,9 @@ def more_probable(late: Finding, whole: Finding, onset: Onset) -> bool:
     found = late.selection.prior.log_mass(late.decision.causes) + 0.5 * evidence + _log_known(names, gap_left_from(problem, names, fit, onset.time))
     left, varying = gap_left(problem, whole.selection.models), whole.decision.varying
     others = [m.log_posterior + (_log_known(m.names, left) if m.names else 0.0) for m in whole.selection.models]
-    for names, m in best_of_each_set(whole.selection.models).items():
-        if names in varying:
-            form, alike = log_varying(m, varying[names])
+    for some, m in best_of_each_set(whole.selection.models).items():
+        if some in varying:
+            form, alike = log_varying(m, varying[some])
             others += [form, *alike.values()]
     return found > max(others)
 

@@ -20,7 +20,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, inf, log
-from typing import Literal
+from typing import Literal, TypeVar
 
 import numpy as np
 
@@ -38,6 +38,7 @@ from rovval.diagnose.decision.resemblance import Left, form_error, none_of_the_l
 from rovval.diagnose.effort import NEGLIGIBLE
 from rovval.diagnose.search.model import Model, Names, best_of_each_set
 
+Key = TypeVar("Key")
 CAUSES = ("sets", "beside", "filed")  # kinds of models with causes: these alone, with something else, and with a file that is off in further numbers
 VARYING = "varying "  # what only comes near to one cause of a set, its name behind it
 FORM = "form"  # and those in another form, which are told as causes with something else beside them
@@ -195,10 +196,7 @@ def _leave_what_varies(believed: dict[tuple[str, Names], float], names: Names, v
     """Divide the mass of causes of which a size varies between another form of them and something else that comes near to one, which leaves the others at work
     beside it. The odds are a power (`BETWEEN_CAUSES`) of what each has: which of them it is is no surer than which of several causes."""
     keys = [(FORM, names), *((VARYING + name, names) for name in varying.alike)]
-    top, whole = max(believed[key] for key in keys), sum(believed[key] for key in keys)
-    weight = {key: (believed[key] / top) ** BETWEEN_CAUSES if top > 0.0 else 0.0 for key in keys}
-    for key in keys:
-        believed[key] = whole * weight[key] / sum(weight.values()) if top > 0.0 else 0.0
+    believed |= _coarser({key: believed[key] for key in keys})
     for name in varying.alike:
         if others := names - {name}:
             believed["beside", others] = believed.get(("beside", others), 0.0) + believed.pop((VARYING + name, names))
@@ -227,11 +225,17 @@ def _coarsen(share: dict[tuple[str, Names], float]) -> None:
         whole = dict[Names, float]()
         for kind, names in keys:
             whole[names] = whole.get(names, 0.0) + share[kind, names]
-        top = max(whole.values(), default=0.0)
-        weight = {names: (p / top) ** BETWEEN_CAUSES for names, p in whole.items() if p > 0.0}
+        divided = _coarser(whole)
         for key in keys:
             if whole[key[1]] > 0.0:
-                share[key] *= weight[key[1]] / whole[key[1]] * sum(whole.values()) / sum(weight.values())
+                share[key] *= divided[key[1]] / whole[key[1]]
+
+
+def _coarser(mass: Mapping[Key, float]) -> dict[Key, float]:
+    """The sum of masses divided among them by a power (`BETWEEN_CAUSES`) of what each has; one that has none is given none."""
+    top = max(mass.values(), default=0.0)
+    weight = {key: (p / top) ** BETWEEN_CAUSES if p > 0.0 else 0.0 for key, p in mass.items()}
+    return {key: sum(mass.values()) * w / sum(weight.values()) if w > 0.0 else 0.0 for key, w in weight.items()}
 
 
 def _least(names: Names, best: Mapping[Names, Model], left: Left | None) -> str:

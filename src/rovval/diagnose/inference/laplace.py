@@ -79,10 +79,13 @@ class Posterior:
         step[free] = np.linalg.solve(H[np.ix_(free, free)], slope[free])
         return step
 
+    def predicted_departure(self) -> Array:
+        """Departure (k,) of each column from the mean of its prior that the linearisation predicts after one more step in every column."""
+        return np.asarray(self.departure + self.solve(self.curvature, self.descent))
+
     def standardised_departures(self) -> Array:
         """Standardised departure of each coefficient within tolerance, in standard deviations of its prior, one linear step ahead."""
-        step = self.solve(self.curvature, self.descent)
-        return np.asarray((self.departure + step)[self.effect_count :] * np.sqrt(self.precision[self.effect_count :] / self.tempering))
+        return np.asarray(self.predicted_departure()[self.effect_count :] * np.sqrt(self.precision[self.effect_count :] / self.tempering))
 
     def largest_departure(self) -> float:
         """Largest absolute standardised departure; 0 without tolerances."""
@@ -126,7 +129,7 @@ def heavy_tails(problem: Problem, point: Posterior) -> float:
     `PRIOR_FREEDOM`) to the wide normal one in which they are fitted (`PRIOR_WIDTH`): what the evidence gains by the other prior."""
     own = range(point.effect_count)
     parameters = [problem.plant.slots[s].parameter for s in point.columns[: point.effect_count]]
-    size = point.departure + point.solve(point.curvature, point.descent)
+    size = point.predicted_departure()
     sd = np.sqrt(problem.tempering * np.diag(np.linalg.inv(point.curvature)))
     total, z = 0.0, np.linspace(-6.0, 6.0, 241)  # standard deviations of the posterior: finer than any feature of the ratio
     for i, p in ((i, p) for i, p in zip(own, parameters, strict=True) if not p.places):

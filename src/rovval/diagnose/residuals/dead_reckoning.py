@@ -50,7 +50,7 @@ def without_margin(samples: Array) -> Array:
 def fully_measured(windows: Windows) -> Flags:
     """Windows (m,) in which velocities and attitude were measured nearly throughout; in others bridged gaps would look like faults."""
     run = windows.run
-    at = windows.start[:, None] + np.arange(windows.steps + 1)[None, :]
+    at = windows.samples()
     needed = [c for c in ("u", "v", "w", "p", "q", "r", "phi", "theta", "psi") if run.measured(c)]
     return np.asarray(np.all([run.ok(c)[at].mean(axis=1) > PARITY_MEASURED_SHARE for c in needed], axis=0))
 

@@ -18,7 +18,7 @@ def equivalent_wrench(windows: Windows, beta: Array, without: Array) -> Array:
     m, dt, vehicle = windows.count, windows.run.dt, windows.plant.vehicle
     motion = windows.plant.simulate(windows.actuation.inputs, windows.start, windows.steps, windows.nu0, windows.eta0, np.tile(beta, (m, 1)))
     nu, eta = (state[:, :-1].reshape(-1, 6) for state in (motion.nu, motion.eta))
-    samples = (windows.start[:, None] + np.arange(windows.steps)).reshape(-1)
+    samples = windows.samples()[:, :-1].reshape(-1)
     mass = rigid_body_mass(vehicle.body) + as_matrix(vehicle.body.added_mass)
     found = np.zeros((len(windows.run), 6))
     for begin in range(0, len(samples), LANES):

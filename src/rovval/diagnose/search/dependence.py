@@ -12,15 +12,14 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.core.large_arrays import columns_first, side_by_side
+from rovval.core.large_arrays import columns_first
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.equivalent_wrench import equivalent_wrench
 from rovval.diagnose.residuals.external_forces import wrench_sensitivities
-from rovval.diagnose.residuals.normal_equations import Linearisation, concatenated, normal_equations
-from rovval.diagnose.residuals.nuisances import nuisance_sd
-from rovval.diagnose.search.discrepancy import GenericForces
+from rovval.diagnose.residuals.normal_equations import Linearisation
+from rovval.diagnose.search.discrepancy import GenericForces, beside
 from rovval.diagnose.windows.windows import Windows
 from rovval.effects.effect import Role
 
@@ -40,26 +39,24 @@ def dependence(problem: Problem, point: Posterior, causes: Sequence[Hypothesis])
     names = tuple((h.name, covariate) for h, own in zip(causes, asked, strict=True) for covariate in own)
     if not names:
         return None
-    ids, parts = tuple(range(len(point.beta), len(point.beta) + len(names))), []
+    answers = list[Array]()
     for windows, one, along in zip(problem.runs, point.linear, varying, strict=True):
-        answers = columns_first(*one.r.shape, columns=len(names))
-        at = 0
+        answer, at = columns_first(*one.r.shape, columns=len(names)), 0
         for h, own in zip(causes, asked, strict=True):
-            answers[..., at : at + len(own)] = _responses(problem, point, windows, one, h, [along[name] for name in own])
+            answer[..., at : at + len(own)] = _responses(problem, point, windows, one, h, [along[name] for name in own])
             at += len(own)
-        both = Linearisation(one.r, side_by_side(one.S, answers), one.J, (*one.columns, *ids), one.valid)
-        parts.append(normal_equations(both, windows.ok, problem.likelihood.variance, nuisance_sd(windows)))
-    data, k = concatenated(parts), len(point.columns)
-    data.A[:, :k, :k] += point.total.A - point.dynamics.A
-    data.b[:, :k] += point.total.b - point.dynamics.b
-    return GenericForces(names, data, point.precision, point.precision * point.departure, problem.tempering)
+        answers.append(answer)
+    found, k = beside(problem, names, answers, point.linear, point.precision, point.precision * point.departure), len(point.columns)
+    found.data.A[:, :k, :k] += point.total.A - point.dynamics.A
+    found.data.b[:, :k] += point.total.b - point.dynamics.b
+    return found
 
 
 def covariates(runs: Sequence[Windows]) -> list[Mapping[str, Array]]:
     """What a size may go with: of each run series (run,) by name, of mean zero and standard deviation one over the windows of all runs; those that all runs
     have and that vary."""
     found = [_series(windows) for windows in runs]
-    inside = [(windows.start[:, None] + np.arange(windows.steps + 1)).reshape(-1) for windows in runs]
+    inside = [windows.samples().reshape(-1) for windows in runs]
     kept: list[dict[str, Array]] = [{} for _ in runs]
     for name in found[0]:
         if all(name in one for one in found):
@@ -91,9 +88,8 @@ def _responses(problem: Problem, point: Posterior, windows: Windows, one: Linear
     """Responses (m, n, c, f) of one run's windows to a cause times each covariate, of which ``series`` (run,) are given."""
     if h.effect.place == "sensor":
         at = [i for i, slot in enumerate(point.columns) if slot in h.slots]
-        size = point.departure[at] + point.solve(point.curvature, point.descent)[at]
-        samples = windows.start[:, None] + np.arange(windows.steps + 1)
-        return np.asarray((one.S[..., at] @ size)[..., None] * np.stack([x[samples] for x in series], axis=-1)[:, :, None])
+        response = one.S[..., at] @ point.predicted_departure()[at]
+        return np.asarray(response[..., None] * np.stack([x[windows.samples()] for x in series], axis=-1)[:, :, None])
     without = point.beta.copy()
     without[list(h.slots)] = problem.origin[list(h.slots)]
     wrench = equivalent_wrench(windows, point.beta, without)

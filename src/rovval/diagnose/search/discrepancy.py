@@ -47,7 +47,13 @@ class GenericForces:
     def evidence(self, axes: Sequence[str] = AXES, feature: str = "") -> float:
         """Evidence of all forces on ``axes``, or of those with one feature only."""
         chosen = [i for i, (axis, name) in enumerate(self.names) if axis in axes and feature in ("", name)]
-        return max(self.evidence_of(chosen, size) for size in GENERIC_SIZES) if chosen else 0.0
+        return max(self._evidence(chosen, size) for size in GENERIC_SIZES) - self._evidence([], 1.0) if chosen else 0.0
+
+    def alone(self, prior_size: float) -> Array:
+        """Evidence (f,) of each force by itself, of that prior standard deviation."""
+        k = len(self.precision)
+        A, b = self._eliminated(self.precision)
+        return self._of_each(A[k:, k:], b[k:], self.tempering / prior_size**2)
 
     def sparse(self, most: int = MOST_FORCES) -> tuple[float, tuple[tuple[str, str], ...]]:
         """(Evidence of the few forces, each of one feature on one axis, that explain most, the names of these): up to ``most``, each beside those before and
@@ -64,7 +70,7 @@ class GenericForces:
         ridge, total, found = self.tempering / np.array(GENERIC_SIZES)[:, None] ** 2, 0.0, list[tuple[str, str]]()
         each = 2.0 * np.log(max(len(own) * len(ridge), 1))
         for _ in range(min(most, len(own))):
-            worth = b**2 / (np.diag(A) + ridge) / self.tempering - np.log1p(np.diag(A) / ridge) - each
+            worth = self._of_each(A, b, ridge) - each
             size, best = np.unravel_index(int(np.argmax(worth)), worth.shape)
             if worth[size, best] <= 0.0:
                 break
@@ -91,11 +97,11 @@ class GenericForces:
         free = np.arange(len(precision))
         return eliminated(self.data.A.sum(axis=0), self.data.b.sum(axis=0), free, np.diag(precision), self.pull)
 
-    def evidence_of(self, chosen: Sequence[int], prior_size: float) -> float:
-        """Evidence of the ``chosen`` forces, by their places among the names, of that prior standard deviation."""
-        return self._explained(chosen, prior_size) - self._explained([], 1.0)
+    def _of_each(self, A: Array, b: Array, ridge: Array | float) -> Array:
+        """Evidence of each force by itself; curvature and slope of the forces with all else eliminated."""
+        return np.asarray(b**2 / (np.diag(A) + ridge) / self.tempering - np.log1p(np.diag(A) / ridge))
 
-    def _explained(self, chosen: Sequence[int], prior_size: float) -> float:
+    def _evidence(self, chosen: Sequence[int], prior_size: float) -> float:
         k = len(self.precision)
         free = np.array([*range(k), *(k + i for i in chosen)], dtype=int)
         ridge = np.concatenate([self.precision, np.full(len(chosen), self.tempering / prior_size**2)])
@@ -106,17 +112,22 @@ class GenericForces:
 
 def generic_forces(problem: Problem, point: Posterior) -> GenericForces:
     """Every feature on every axis, simulated about a fit, beside its columns."""
-    return _beside(problem, point.beta, point.linear, point.precision, point.precision * point.departure)
+    names, answers = generic_force_responses(problem.runs, point.beta)
+    return beside(problem, names, answers, point.linear, point.precision, point.precision * point.departure)
 
 
 def nominal_forces(problem: Problem) -> GenericForces:
     """The same about the nominal vehicle, with nothing beside them: what the gap itself looks like."""
-    return _beside(problem, problem.origin, problem.nominal, np.zeros(0), np.zeros(0))
+    names, answers = generic_force_responses(problem.runs, problem.origin)
+    return beside(problem, names, answers, problem.nominal, np.zeros(0), np.zeros(0))
 
 
-def _beside(problem: Problem, beta: Array, linear: Sequence[Linearisation], precision: Array, pull: Array) -> GenericForces:
-    names, answers = generic_force_responses(problem.runs, beta)
-    ids = tuple(range(len(beta), len(beta) + len(names)))
+def beside(
+    problem: Problem, names: tuple[tuple[str, str], ...], answers: Sequence[Array], linear: Sequence[Linearisation], precision: Array, pull: Array
+) -> GenericForces:
+    """Named responses ``answers`` (m, n, c, f) of each run's windows as further columns beside those of ``linear``, whose priors have ``precision`` and add the
+    gradient ``pull`` (k,)."""
+    ids = tuple(range(len(problem.origin), len(problem.origin) + len(names)))
     parts = []
     for part, one, answer in zip(problem.runs, linear, answers, strict=True):
         both = Linearisation(one.r, side_by_side(one.S, answer), one.J, (*one.columns, *ids), one.valid)

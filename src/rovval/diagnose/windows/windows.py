@@ -71,9 +71,13 @@ class Windows:
         """Depths (m, down) that the run went through where they were measured, else those that its windows begin at."""
         return self.run.get("z")[self.run.ok("z")] if self.run.measured("z") else self.eta0[:, 2]
 
+    def samples(self) -> NDArray[np.int64]:
+        """Every sample's place on the run's grid (m, steps + 1)."""
+        return self.start[:, None] + np.arange(self.steps + 1)
+
     def time(self) -> Array:
         """Seconds since the run's start of every sample (m, steps + 1)."""
-        return np.asarray((self.start[:, None] + np.arange(self.steps + 1)[None, :]) * self.run.dt)
+        return np.asarray(self.samples() * self.run.dt)
 
 
 def residual_channels(run: Run) -> tuple[str, ...]:
@@ -93,7 +97,7 @@ def predicted_channels(windows: Windows, which: NDArray[np.int64], nu: Array, et
     blocks = [(at[i], j - i) for i, j in zip(begins, [*begins[1:], len(at)], strict=True)]
     predicted = np.concatenate([(nu, eta)[first // 6][..., first % 6 : first % 6 + size] for first, size in blocks], axis=-1, out=out)
     if tumbling(windows.run):
-        samples = windows.start[which][:, None] + np.arange(windows.steps + 1)
+        samples = windows.samples()[which]
         error = attitude_error(eta[..., 3:], measured_attitude(windows.run)[samples], windows.channels)
         for i, name in enumerate(windows.channels):
             if name in ANGLES:
