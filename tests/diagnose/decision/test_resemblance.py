@@ -27,7 +27,7 @@ from rovval.diagnose.search.model import Model
 def left(healthy: float = 1e-6, **shares: float | tuple[float, float]) -> Left:
     """What sets of causes leave, of the dynamics and with parity: ``a_b=0.3`` is that of a and b together."""
     found = {frozenset(names.split("_")): np.broadcast_to(share, (2,)).astype(float) for names, share in shares.items()}
-    return Left(found, np.full(2, healthy))
+    return Left(found, {names: (float(share.min()), healthy) for names, share in found.items()})
 
 
 AB = frozenset("ab")
@@ -103,7 +103,20 @@ def test_what_a_fit_leaves_is_measured_on_held_out_windows():
     shares = gap_left(problem, models)
     planted, other = (shares.shares[frozenset({name})] for name in ("inflow_loss", "added_mass[surge]"))
     assert planted.max() < 0.1 < 0.5 < other.min()
-    assert shares.healthy == pytest.approx(HEALTHY_GAP * tolerated_gap(problem) / explainable_gap(problem))
+    assert shares.acting[frozenset({"inflow_loss"})][1] == pytest.approx(HEALTHY_GAP * tolerated_gap(problem) / explainable_gap(problem)[0], rel=0.05)
     parts = {name: replace(getattr(problem.gap, name), c=0.0 * getattr(problem.gap, name).c) for name in ("dynamics", "total")}
     still = replace(problem, gap=replace(problem.gap, **parts))
     assert gap_left(still, models).shares[frozenset({"inflow_loss"})].tolist() == [1.0, 1.0]  # no error above noise is there to be taken away
+
+
+def test_causes_are_judged_where_they_act():
+    """Thrust is lost, and a tether pulls down as well: the loss leaves the gap in heave as it is, and closes that in surge."""
+    problem, _ = posed(("inflow_loss:loss=0.1", "tether_tension:down=60"))
+    slots = tuple(i for i, s in enumerate(problem.plant.slots) if s.hypothesis == "inflow_loss")
+    fit = fit_hypothesis(problem, problem.origin, slots)
+    names = frozenset({"inflow_loss"})
+    found = gap_left(problem, [Model((Hypothesis("inflow_loss", "inflow_loss", slots, (), ()),), fit, fit.evidence, 0.0)])
+    share, expected = found.where_they_act(names)
+    assert share < 0.2 < 0.6 < found.shares[names].min()
+    assert 0.0 < expected < 0.3
+    assert found.where_they_act(frozenset({"waves"}))[0] == 1.0  # was not fitted

@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
-from diagnose_case import merlin, own
+from diagnose_case import merlin, own, posed
 
 from rovval.diagnose import diagnose
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis
+from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis, fit_quickly
+from rovval.diagnose.inference.map_fit import healthy_fit
+from rovval.diagnose.search.joint import settled
+from rovval.diagnose.search.model import Model
 
 
 @pytest.mark.slow
@@ -22,3 +29,18 @@ def test_two_causes_that_offset_each_other_are_both_found():
     assert {"rpm_scale"} <= named and named & {"quadratic_drag[surge]", "linear_drag[surge]"}, document["sentence"]
 
 
+def test_the_leading_sets_are_worth_what_a_careful_fit_of_them_is():
+    """A quick fit keeps the sensitivities of another point; here it claims a thousand too much, and another set leads once it is made with care."""
+    problem, _ = posed(("inflow_loss:loss=0.3",))
+    near, models = healthy_fit(problem).whitened, [Model((), None, 0.0, 0.0)]
+    for name, claim in (("inflow_loss", 0.0), ("added_mass[surge]", 1000.0), ("added_mass[roll]", -1e6)):
+        slots = tuple(i for i, slot in enumerate(problem.plant.slots) if slot.hypothesis == name)
+        fit = fit_quickly(problem, problem.origin, slots, near).without_sensitivities()
+        models.append(Model((Hypothesis(name, name, slots, (), ()),), replace(fit, evidence=fit.evidence + claim), fit.evidence + claim, 0.0))
+    found = {next(iter(m.names), ""): m for m in settled(problem, models, 1)}
+    assert max(found, key=lambda name: found[name].log_posterior) == "inflow_loss"
+    for name in ("inflow_loss", "added_mass[surge]"):
+        own = found[name].fit
+        assert own and found[name].careful and found[name].evidence == pytest.approx(fit_hypothesis(problem, own.posterior.beta, own.slots).evidence, abs=0.5)
+        assert bool(own.posterior.whitened) == (name == "inflow_loss")  # the bulk of a fit is kept of the best alone
+    assert not found["added_mass[roll]"].careful

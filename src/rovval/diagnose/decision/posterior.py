@@ -82,13 +82,14 @@ class Probabilities:
 
     @property
     def best(self) -> Names:
-        """The set of causes that is named where causes are believed: as many as is most probable, and those of which the true set is then expected to hold the
-        most, of the sets that are not negligible beside the most probable one (`NEGLIGIBLE`); empty where there is none."""
+        """The set of causes that is named where causes are believed: as many as is most probable, and those of which the true set, if it has as many, is
+        expected to hold the most, of the sets that are not negligible beside the most probable one (`NEGLIGIBLE`); empty where there is none."""
         whole = self._whole()
         count = max((len(names) for names in whole), key=lambda n: sum(p for names, p in whole.items() if len(names) == n), default=0)
         alike = {names: p for names, p in whole.items() if len(names) == count}
         likely = [names for names in self.ranked if alike.get(names, 0.0) >= NEGLIGIBLE * max(alike.values())]
-        return max(likely, key=lambda names: sum(map(self.of, names)), default=frozenset())
+        shared = {names: sum(len(names & other) * p for other, p in alike.items()) for names in likely}
+        return max(likely, key=lambda names: shared[names], default=frozenset())
 
     @property
     def ranked(self) -> list[Names]:

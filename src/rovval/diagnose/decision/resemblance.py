@@ -13,8 +13,9 @@ vehicles show (`HEALTHY_GAP`), and integrated over. So a weak effect is not take
 Beside what only looks like a cause generic forces often show that go with the motion: the rest of what it really is. Beside causes they hardly ever do
 (`SHOWS_BESIDE`).
 
-Shares are of the errors above the noise of the sensors, of the dynamics alone, which causes that push the vehicle close, and with the parity residuals, which
-faults of sensors close. A cause is judged by the one of the two that it closes more of, and with the best of the sets that it was fitted in.
+Shares are of the errors above the noise of the sensors. Whether causes are of the library is judged where they act: by what they leave of the gap on each
+axis, and of the parity residuals, which faults of sensors close, the mean of these weighted with how much of each they close or open. A real vehicle is off
+on several axes for several reasons, and a cause that closes the gap in yaw is no worse for what is left in pitch. A set is judged with the best of its parts.
 """
 
 from __future__ import annotations
@@ -38,12 +39,13 @@ from rovval.diagnose.criteria import (
     PRIOR_SOMETHING_ELSE,
     SHOWS_BESIDE,
 )
-from rovval.diagnose.inference.gap import explainable_gap, tolerated_gap
+from rovval.diagnose.inference.gap import errors_by_part, noise_by_part, parity_errors, tolerated_by_part, weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 from rovval.diagnose.inference.shrinkage import explainable_left
-from rovval.diagnose.problem.problem import Problem, gap_equations_at
+from rovval.diagnose.problem.problem import Problem, corrected_residuals, gap_equations_at
 from rovval.diagnose.search.model import Model, Names
 
+TINY = 1e-9  # share of a gap, or a squared error: next to none, to divide by
 NOTHING_LEFT = 1e-3  # share of the gap: rounding of a ratio to what is left
 FALLS = np.array([1.0, 3.0, 10.0, 30.0])  # means of an exponential: where its integral is cut into parts
 NODES = 40  # of the integral over each part
@@ -51,20 +53,26 @@ NODES = 40  # of the integral over each part
 
 @dataclass(frozen=True, slots=True)
 class Left:
-    """What sets of causes leave of the gap above noise on held-out windows: of the dynamics alone, and with the parity residuals.
+    """What sets of causes leave of the gap above noise on held-out windows.
 
     Attributes:
-        shares: of each set the shares (2,) that it leaves; of several fits of a set, the least. Above 1 where it adds to the gap.
-        healthy: what a healthy vehicle is expected to show, as shares (2,) of the same.
+        shares: of each set the shares (2,) that it leaves of the dynamics alone and with the parity residuals; of several fits of a set, the least. Above 1
+            where it adds to the gap.
+        acting: of each set the share that it leaves where it acts, 1 where it closes nothing; and the share that a healthy vehicle is expected to show there.
     """
 
     shares: Mapping[Names, Array]
-    healthy: Array
+    acting: Mapping[Names, tuple[float, float]]
 
     def least(self, which: Callable[[Names], bool]) -> Array:
         """The least (2,) that is left by the sets ``which``; all of the gap where there is none."""
         shares = [share for part, share in self.shares.items() if which(part)]
         return np.min(shares, axis=0) if shares else np.ones(2)
+
+    def where_they_act(self, names: Names) -> tuple[float, float]:
+        """What causes leave where they act (`acting`), with the best of their parts; all where none was fitted."""
+        parts = [part for part in self.shares if part <= names]
+        return self.acting[min(parts, key=lambda part: float(self.shares[part].min()))] if parts else (1.0, TINY)
 
     def beyond(self, name: str, names: Names) -> Array:
         """Shares (2,) that the cause ``name`` of ``names`` leaves of what the others leave; above 1 where it adds to it."""
@@ -73,26 +81,58 @@ class Left:
 
 def gap_left(problem: Problem, models: Iterable[Model]) -> Left:
     """What each set of causes that was fitted leaves."""
-    fits = [(m.names, np.array([m.fit.dynamics_loss.sum(), m.fit.loss.sum()])) for m in models if m.fit]
-    found = dict[Names, Array]()
-    for (names, _), share in zip(fits, explainable_left(problem, [losses for _, losses in fits]), strict=True):
-        found[names] = np.minimum(np.maximum(share, NOTHING_LEFT), found.get(names, np.inf))
-    return Left(found, _healthy(problem))
+    fits = [(m.names, m.fit) for m in models if m.fit]
+    losses = [np.array([fit.dynamics_loss.sum(), fit.loss.sum()]) for _, fit in fits]
+    shares, acting, gap = dict[Names, Array](), dict[Names, tuple[float, float]](), _Gap.of(problem)
+    for (names, fit), share in zip(fits, explainable_left(problem, losses), strict=True):
+        if names not in shares or share.min() < shares[names].min():
+            acting[names] = gap.left_where_it_acts(fit.parts)
+        shares[names] = np.minimum(np.maximum(share, NOTHING_LEFT), shares.get(names, np.inf))
+    return Left(shares, acting)
 
 
 def gap_left_from(problem: Problem, names: Names, late: HypothesisFit, time: float) -> Left:
     """The same of causes that are at work from ``time`` (s since the run's start) on, fitted to the windows from there on; what the windows before lack
     is left."""
-    before = np.concatenate([part.start * part.run.dt < time for part in problem.runs])
+    before = [part.start * part.run.dt < time for part in problem.runs]
+    switched = [
+        np.where(then[:, None, None], nominal, found)
+        for then, nominal, found in zip(before, corrected_residuals(problem), corrected_residuals(problem, late.beta), strict=True)
+    ]
     dynamics, total = gap_equations_at(problem, late.beta, ())
-    losses = [np.where(before, gap.c, found.c).sum() for gap, found in ((problem.gap.dynamics, dynamics), (problem.gap.total, total))]
-    return Left({names: np.maximum(explainable_left(problem, [np.array(losses)])[0], NOTHING_LEFT)}, _healthy(problem))
+    then = np.concatenate(before)
+    loss = np.array([np.where(then, gap.c, found.c).sum() for gap, found in ((problem.gap.dynamics, dynamics), (problem.gap.total, total))])
+    shares = np.maximum(explainable_left(problem, [loss])[0], NOTHING_LEFT)
+    parity = parity_errors(problem, problem.origin, before), parity_errors(problem, late.beta, [~then for then in before])
+    errors = weighted_errors(problem, switched) | {part: size + parity[1][part] for part, size in parity[0].items()}
+    return Left({names: shares}, {names: _Gap.of(problem).left_where_it_acts(errors)})
 
 
-def _healthy(problem: Problem) -> Array:
-    """What a healthy vehicle is expected to show, as shares (2,) of the gap above noise; all that there is where there is none."""
-    gap = explainable_gap(problem)
-    return np.asarray(np.divide(HEALTHY_GAP * tolerated_gap(problem), gap, out=np.ones(2), where=gap > 0.0))
+@dataclass(frozen=True, slots=True)
+class _Gap:
+    """The gap of each axis and of each parity relation: ``errors`` of the vehicle as its file has it above ``noise``, and what a ``healthy`` one is expected to
+    show of them."""
+
+    errors: Mapping[str, float]
+    noise: Mapping[str, float]
+    healthy: Mapping[str, float]
+
+    @classmethod
+    def of(cls, problem: Problem) -> _Gap:
+        nominal, noise = errors_by_part(problem, corrected_residuals(problem), problem.origin), noise_by_part(problem)
+        expected = {part: HEALTHY_GAP * size for part, size in tolerated_by_part(problem).items()}
+        return cls({part: size - noise[part] for part, size in nominal.items()}, noise, expected)
+
+    def left_where_it_acts(self, errors: Mapping[str, float]) -> tuple[float, float]:
+        """The share that is left of each part of the gap, and that a healthy vehicle is expected to show of it, both weighted with the change of that part; all
+        of it where no part becomes smaller."""
+        left = {part: size - self.noise[part] for part, size in errors.items() if self.errors[part] > 0.0}
+        change = {part: abs(self.errors[part] - size) for part, size in left.items()}
+        if all(size >= self.errors[part] for part, size in left.items()):
+            return 1.0, TINY
+        share = sum(size * max(left[part] / self.errors[part], NOTHING_LEFT) for part, size in change.items())
+        healthy = sum(size * self.healthy[part] / self.errors[part] for part, size in change.items())
+        return share / sum(change.values()), max(healthy / sum(change.values()), TINY)
 
 
 def none_of_the_library(names: Names, left: Left | None, beside: bool = False) -> float:
@@ -102,10 +142,8 @@ def none_of_the_library(names: Names, left: Left | None, beside: bool = False) -
     odds *= SHOWS_BESIDE[1] / SHOWS_BESIDE[0] if beside else 1.0
     if left is None:
         return odds / (odds + 1.0)
-    shares = left.least(lambda part: part <= names)
-    best = int(np.argmin(shares))
     freedom = 1.0 / CAUSES_LEAVE - 1.0  # Beta(1, b), of mean 1 / (1 + b)
-    right, alike = _densities(float(shares[best]), float(left.healthy[best]), lambda share: freedom * (1.0 - share) ** (freedom - 1.0))
+    right, alike = _densities(*left.where_they_act(names), lambda share: freedom * (1.0 - share) ** (freedom - 1.0))
     return odds * alike / (odds * alike + right)
 
 

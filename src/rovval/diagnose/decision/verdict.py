@@ -78,39 +78,38 @@ class Decision:
 def decide(problem: Problem, selection: Selection, residuals: list[Array], faults: Sequence[FittedFault]) -> Decision:
     """The verdict on what a search met; ``residuals`` are the nominal vehicle's, ``faults`` of sensors those that parity residuals show."""
     instead, file = generic_forces(problem, selection.healthy), file_evidence(problem, selection)
-    leading = _leading(problem, selection)
-    beside = {one.names: generic_forces(problem, one.fit.posterior) for one in leading if one.fit}
-    more = {names: forces.sparse()[0] for names, forces in beside.items()}
-    varies = {one.names: variation(problem, one.fit.posterior, one.causes) for one in leading if one.fit}
-    evidence = instead.sparse()[0]
-    met = [*leading, *selection.models]
+    met, evidence = list(selection.models), instead.sparse()[0]
     unexplained_gap = open_gap(problem, [selection.healthy, *(m.fit.posterior for m in met if m.fit)])
-    left = gap_left(problem, met)
-    belief = probabilities(selection.models, file, evidence, more, varies, evidence_of_something_else(unexplained_gap), left)
-    best = _fitted(problem, selection, met, belief.best)
+    beside, varies, weigh = dict[Names, GenericForces](), dict[Names, Variation](), _leading(problem, selection)
+    while True:  # the sets that lead are weighed, and then each that would be named
+        beside |= {m.names: generic_forces(problem, m.fit.posterior) for m in weigh if m.fit}
+        varies |= {m.names: variation(problem, m.fit.posterior, m.causes) for m in weigh if m.fit}
+        more = {names: forces.sparse()[0] for names, forces in beside.items()}
+        belief = probabilities(met, file, evidence, more, varies, evidence_of_something_else(unexplained_gap), gap_left(problem, met))
+        best = _fitted(problem, selection, met, belief.best)
+        if best.fit is None or best.names in beside:
+            break
+        met, weigh = [best, *(m for m in met if m.names != best.names)], [best]
     known = accounted(problem, selection.healthy)
     over = best.evidence - selection.models[0].evidence
     departure, instead_of_any = selection.healthy.largest_departure(), max(evidence, 0.0)
     found = Decision("no_gap", belief, (), None, {}, {}, {}, over, instead_of_any, 0.0, departure, known, varies, unexplained_gap, None)
     contradicted = any(h.effect.place != "sensor" for h in best.causes) and _contradicted(problem, residuals)
     if best.fit and belief.likelier_than_not == "causes" and not contradicted:
-        forces = beside.get(best.names) or generic_forces(problem, best.fit.posterior)
-        varying = varies[best.names] if best.names in varies else variation(problem, best.fit.posterior, best.causes)
-        return _named(problem, selection, found, best, best.fit, forces, varying)
+        return _named(problem, selection, found, best, best.fit, beside[best.names], varies[best.names])
     found = replace(found, indications=indications(selection.steps[0] if selection.steps else (), known, faults))
     if belief.likelier_than_not == "healthy":
         return found
     inconstant = [h.name for h in best.causes] if belief.varying > 0.5 * belief.something_else else []
-    goes_with = varies[best.names].goes_with if inconstant and best.names in varies else None
+    goes_with = varies[best.names].goes_with if inconstant else None
     if belief.something_else > max(belief.healthy, belief.causes) and evidence <= 0.0 and not inconstant:
         return replace(found, verdict="unknown", unexplained=unexplained_by_any(problem, known.share, residuals))
     return replace(found, verdict="unknown", unexplained=unexplained(problem, nominal_forces(problem), selection.healthy, inconstant, goes_with))
 
 
 def _leading(problem: Problem, selection: Selection) -> list[Model]:
-    """The most probable sets of causes, `SETS_WEIGHED` at most, fitted with care; none where they are not worth a thought (`NEGLIGIBLE`)."""
-    sets = best_of_each_set((selection.best, *selection.models))  # the best first: its fit has sensitivities, and is not made again
-    found = sorted((m for m in sets.values() if m.fit), key=lambda m: -m.log_posterior)[:SETS_WEIGHED]
+    """The most probable sets of causes, `SETS_WEIGHED` at most, with their sensitivities; none where they are not worth a thought (`NEGLIGIBLE`)."""
+    found = sorted((m for m in best_of_each_set(selection.models).values() if m.fit), key=lambda m: -m.log_posterior)[:SETS_WEIGHED]
     return [refitted(problem, m) for m in found if m.log_posterior > selection.log_posterior + log(NEGLIGIBLE)]
 
 

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from rovval.core.data import Array
+from rovval.core.data import Array, Flags
 from rovval.diagnose.inference.laplace import Posterior
-from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.windows.windows import axis_channels
 
 ANGULAR = ("roll", "pitch", "yaw")
+PARITY = "parity"  # of a relation of the pose, its name behind it
+TINY = 1e-9  # of a squared error over its variance: next to none, to divide by
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,3 +100,39 @@ def floor_losses(problem: Problem) -> Array:
     share = [np.where(p.ok, p.noise**2 / problem.gap.variance, 0.0).sum(axis=(1, 2)) for p in problem.runs]
     noise = float(np.concatenate(share).sum())
     return np.array([noise, noise + sum(float(check.noise_loss(problem.design_effect).sum()) for check in problem.parity)])
+
+
+def errors_by_part(problem: Problem, residuals: Sequence[Array], beta: Array) -> dict[str, float]:
+    """Weighted squared errors of each axis, of which ``residuals`` are given, and of each parity relation (`PARITY`) about ``beta`` (k,)."""
+    return weighted_errors(problem, residuals) | parity_errors(problem, beta)
+
+
+def parity_errors(problem: Problem, beta: Array, which: Sequence[Flags] | None = None) -> dict[str, float]:
+    """The latter alone, of all windows or of those ``which`` (m,) of each run."""
+    windows = which or [np.ones(part.count, dtype=bool) for part in problem.runs]
+    return _of_parity([check.losses(beta, problem.design_effect, some) for check, some in zip(problem.parity, windows, strict=True)])
+
+
+def noise_by_part(problem: Problem) -> dict[str, float]:
+    """What of them white sensor noise alone makes."""
+    found = dict[str, float]()
+    for windows in problem.runs:
+        noise = np.where(windows.ok, windows.noise**2 / problem.gap.variance, 0.0).sum(axis=(0, 1))
+        for axis, value in zip(windows.axes, noise, strict=True):
+            found[axis] = found.get(axis, 0.0) + float(value)
+    each = [float(check.noise_loss(problem.design_effect).sum()) / max(len(check.relations), 1) for check in problem.parity]
+    return found | _of_parity([dict.fromkeys(check.relations, noise) for check, noise in zip(problem.parity, each, strict=True)])
+
+
+def tolerated_by_part(problem: Problem) -> dict[str, float]:
+    """What of them coefficients and sensors make which are off by one standard deviation of their tolerance, each by itself; on the axes in proportion to the
+    gap there, since the sensitivities by axis are not kept."""
+    nominal, noise = weighted_errors(problem, corrected_residuals(problem)), noise_by_part(problem)
+    share = tolerated_gap(problem) / max(float(explainable_gap(problem)[0]), TINY)
+    axes = {axis: share * (value - noise[axis]) for axis, value in nominal.items()}
+    return axes | _of_parity([check.tolerated(problem.tolerance.sd, problem.design_effect) for check in problem.parity])
+
+
+def _of_parity(runs: Sequence[Mapping[str, float]]) -> dict[str, float]:
+    """Sums over the runs of what is given of each parity relation."""
+    return {f"{PARITY} {name}": sum(one.get(name, 0.0) for one in runs) for name in dict.fromkeys(name for one in runs for name in one)}

@@ -6,7 +6,7 @@ coefficients that a hypothesis needs beside it costs what its prior says, so tha
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,12 +15,14 @@ from scipy import stats
 from rovval.core.data import Array
 from rovval.diagnose.criteria import INTERVAL_PROBABILITY
 from rovval.diagnose.effort import ONSET_SHIFTS_S, QUICK_STEPS
+from rovval.diagnose.inference.gap import errors_by_part
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import map_fit, moved_to
 from rovval.diagnose.problem.cross_validation import Fold
-from rovval.diagnose.problem.problem import Problem, gap_equations_at
-from rovval.diagnose.residuals.normal_equations import Whitened
+from rovval.diagnose.problem.problem import Problem, corrected_of, gap_equations_of
+from rovval.diagnose.residuals.normal_equations import Linearisation, Whitened
 from rovval.diagnose.residuals.ridge import losses
+from rovval.diagnose.residuals.sensitivities import linearise
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +36,7 @@ class HypothesisFit:
         evidence: twice the log Bayes factor over the vehicle as its file has it.
         loss: weighted squared residuals (m,) of each window about ``beta``, held out, in the metric of the gap: dynamics and parity.
         dynamics_loss: the same (m,) of the dynamics alone, of which the reduction of the gap is stated.
+        parts: the same summed over windows, of each axis, initial states at their best, and of each parity relation about ``beta`` (`gap.errors_by_part`).
         at_bound: those of the slots that rest at a bound.
     """
 
@@ -43,6 +46,7 @@ class HypothesisFit:
     evidence: float
     loss: Array
     dynamics_loss: Array
+    parts: Mapping[str, float]
     at_bound: tuple[int, ...]
 
     def without_sensitivities(self) -> HypothesisFit:
@@ -79,19 +83,31 @@ def _scored(problem: Problem, point: Posterior, slots: tuple[int, ...]) -> Hypot
     bounds = [(problem.plant.slots[s].parameter.low, problem.plant.slots[s].parameter.high) for s in slots]
     at_bound = tuple(s for s, (low, high) in zip(slots, bounds, strict=True) if not low < beta[s] < high and (low, high) != (0.0, 1.0))
     found = laplace_evidence(problem, point)
-    fitted = HypothesisFit(slots, beta, point, found, problem.gap.total.c, problem.gap.dynamics.c, at_bound)
-    loss, dynamic_loss = _held_losses(problem, fitted)
-    return replace(fitted, loss=loss, dynamics_loss=dynamic_loss)
+    return _held_out(problem, HypothesisFit(slots, beta, point, found, problem.gap.total.c, problem.gap.dynamics.c, {}, at_bound))
 
 
-def _held_losses(problem: Problem, fitted: HypothesisFit) -> tuple[Array, Array]:
-    """Held-out losses (m,): (of dynamics and parity, of the dynamics alone)."""
-    dynamic, data = gap_equations_at(problem, fitted.beta, fitted.slots)
+def _held_out(problem: Problem, fitted: HypothesisFit) -> HypothesisFit:
+    """The fit with its held-out losses."""
+    linear = [linearise(windows, fitted.beta, fitted.slots) for windows in problem.runs]
+    dynamic, data = gap_equations_of(problem, fitted.beta, linear)
     own, loss, dynamic_loss = np.arange(len(fitted.slots)), data.c.copy(), dynamic.c.copy()
     for fold, step in held_out_steps(problem, fitted):
         loss[fold.test] = losses(data, own, step, fold.test)
         dynamic_loss[fold.test] = losses(dynamic, own, step, fold.test)
-    return loss, dynamic_loss
+    moved = held_out_linearisations(problem, fitted, linear)
+    return replace(fitted, loss=loss, dynamics_loss=dynamic_loss, parts=errors_by_part(problem, corrected_of(problem, moved), fitted.beta))
+
+
+def held_out_linearisations(problem: Problem, fitted: HypothesisFit, linear: Sequence[Linearisation]) -> list[Linearisation]:
+    """The linearisation ``linear`` of each run about the fitted point, its residual moved to what the folds without the window give."""
+    step = np.zeros((problem.window_count, len(fitted.slots)))
+    for fold, own in held_out_steps(problem, fitted):
+        step[fold.test] = own
+    ends = np.cumsum([windows.count for windows in problem.runs])[:-1]
+    return [
+        replace(one, r=np.where(windows.ok, one.r - np.einsum("wtck,wk->wtc", one.S, own), 0.0))
+        for windows, one, own in zip(problem.runs, linear, np.split(step, ends), strict=True)
+    ]
 
 
 def held_out_steps(problem: Problem, fitted: HypothesisFit) -> list[tuple[Fold, Array]]:

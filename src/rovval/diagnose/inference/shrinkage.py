@@ -18,12 +18,10 @@ from rovval.diagnose.criteria import HARMED_AXIS
 from rovval.diagnose.effort import MOST_REFITS
 from rovval.diagnose.inference.bootstrap import shrinkage_interval
 from rovval.diagnose.inference.gap import explainable_gap, floor_losses, squared_errors
-from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, held_out_steps
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, held_out_linearisations
 from rovval.diagnose.inference.map_fit import map_fit
 from rovval.diagnose.problem.cross_validation import Fold, make_folds
-from rovval.diagnose.problem.problem import Problem, corrected_residuals, gap_equations_at, pose, whitened
-from rovval.diagnose.residuals.normal_equations import Linearisation, nuisance_corrected
-from rovval.diagnose.residuals.nuisances import initial_state_sd
+from rovval.diagnose.problem.problem import Problem, corrected_of, corrected_residuals, gap_equations_at, pose, whitened
 from rovval.diagnose.residuals.perturbations import Columns
 from rovval.diagnose.residuals.sensitivities import linearise
 from rovval.diagnose.windows.windows import Windows
@@ -100,21 +98,8 @@ def worsened_axes(reduction: GapReduction) -> dict[str, float]:
 
 def held_out_residuals(problem: Problem, fitted: HypothesisFit) -> list[Array]:
     """Residual (m, n, c) of each run's windows with the parameters that the other folds give, best initial states taken out."""
-    moved = held_out_linearisations(problem, fitted)
-    return [nuisance_corrected(one, windows.ok, problem.gap.variance, initial_state_sd(windows)) for windows, one in zip(problem.runs, moved, strict=True)]
-
-
-def held_out_linearisations(problem: Problem, fitted: HypothesisFit) -> list[Linearisation]:
-    """Each run linearised about the fitted point, its residual moved to what the folds without the window give."""
-    step = np.zeros((problem.window_count, len(fitted.slots)))
-    for fold, own in held_out_steps(problem, fitted):
-        step[fold.test] = own
-    ends = np.cumsum([windows.count for windows in problem.runs])[:-1]
-    found = []
-    for windows, own in zip(problem.runs, np.split(step, ends), strict=True):
-        one = linearise(windows, fitted.beta, fitted.slots)
-        found.append(replace(one, r=np.where(windows.ok, one.r - np.einsum("wtck,wk->wtc", one.S, own), 0.0)))
-    return found
+    about = [linearise(windows, fitted.beta, fitted.slots) for windows in problem.runs]
+    return corrected_of(problem, held_out_linearisations(problem, fitted, about))
 
 
 def _explainable(problem: Problem, loss: Array) -> float:

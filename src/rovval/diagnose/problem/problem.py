@@ -155,9 +155,13 @@ def equations_at(problem: Problem, beta: Array, columns: tuple[int, ...], displa
 
 def gap_equations_at(problem: Problem, beta: Array, columns: tuple[int, ...]) -> tuple[NormalEquations, NormalEquations]:
     """Normal equations about ``beta`` (k,) in the metric of the gap: (of the dynamics alone, with parity)."""
-    linear = [linearise(windows, beta, columns) for windows in problem.runs]
+    return gap_equations_of(problem, beta, [linearise(windows, beta, columns) for windows in problem.runs])
+
+
+def gap_equations_of(problem: Problem, beta: Array, linear: Sequence[Linearisation]) -> tuple[NormalEquations, NormalEquations]:
+    """The same of linearisations of the runs about ``beta`` (k,)."""
     dynamics = equations_of_runs(problem.runs, linear, problem.gap.variance, initial_state_sd)
-    return dynamics, dynamics + _parity_at(problem, beta, columns)
+    return dynamics, dynamics + _parity_at(problem, beta, dynamics.columns)
 
 
 def whitened(problem: Problem, linear: Sequence[Linearisation]) -> tuple[Whitened, ...]:
@@ -190,7 +194,11 @@ def equations_with_frozen(problem: Problem, beta: Array, linear: Sequence[Whiten
 
 def corrected_residuals(problem: Problem, beta: Array | None = None) -> list[Array]:
     """Residual of each run's windows (m, n, c), measured minus simulated, their best initial states taken out; at the nominal vehicle by default."""
-    linear = problem.nominal if beta is None else tuple(linearise(windows, beta, ()) for windows in problem.runs)
+    return corrected_of(problem, problem.nominal if beta is None else tuple(linearise(windows, beta, ()) for windows in problem.runs))
+
+
+def corrected_of(problem: Problem, linear: Sequence[Linearisation]) -> list[Array]:
+    """Residual (m, n, c) of the linearisation of each run, the best initial states of its windows taken out."""
     return [
         nuisance_corrected(one, windows.ok, problem.gap.variance, initial_state_sd(windows))
         for windows, one in zip(problem.runs, linear, strict=True)

@@ -8,6 +8,7 @@ dynamics, so that a sensor fault has to explain both.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -84,6 +85,31 @@ class ParityResiduals:
         checked = np.abs(self.rows).max(axis=1, initial=0.0) > 0.0
         return np.asarray(np.where(checked, design_effect / self.design_effect * self.rows.shape[1], 0.0))
 
+    def losses(self, beta: Array, design_effect: float, which: Flags) -> dict[str, float]:
+        """Squared residuals of each relation about ``beta`` (p,), summed over the windows ``which`` (m,), in the units of `normal_equations`."""
+        rows, signatures = self.at_delays(beta)
+        own = [self.columns.index(c) for c in self.equations.columns]
+        left = rows - signatures[..., own] @ self._faults(beta)[0]
+        return self._by_relation(left[which] ** 2, design_effect)
+
+    def tolerated(self, sd: Mapping[int, float], design_effect: float) -> dict[str, float]:
+        """The same of sensors alone whose parameters are off by one standard deviation ``sd`` (by slot), each by itself."""
+        own = [i for i, c in enumerate(self.columns) if c in sd]
+        return self._by_relation(self.signatures[..., own] ** 2 @ np.array([sd[self.columns[i]] ** 2 for i in own]), design_effect)
+
+    def _by_relation(self, square: Array, design_effect: float) -> dict[str, float]:
+        """Squares (m, q) summed over the samples of each relation."""
+        if not self.relations:
+            return {}
+        whole = square.reshape(-1, len(self.relations)).sum(axis=0)
+        return {name: float(design_effect / self.design_effect * value) for name, value in zip(self.relations, whole, strict=True)}
+
+    def _faults(self, beta: Array) -> tuple[Array, Array]:
+        """What the residuals are linear in, of each column of the equations, at ``beta`` (p,), and its derivative: delays are none, a factor s makes the
+        measured velocity 1 + s times the true one, and the residual is one of the measured."""
+        given = np.where(self.is_delay, 0.0, beta[list(self.equations.columns)])
+        return np.where(self.is_factor, given / (1.0 + given), given), np.where(self.is_factor, (1.0 + given) ** -2, 1.0)
+
     def normal_equations(self, beta: Array, columns: tuple[int, ...], design_effect: float, summed: bool = False) -> NormalEquations:
         """Normal equations of the parity residuals about ``beta`` (p,) in ``columns``, times ``design_effect`` over their own: beside the dynamics, one
         common design effect then suits both. ``summed``: of all windows in one.
@@ -94,9 +120,7 @@ class ParityResiduals:
         """
         null = self._about_delays(beta).summed() if summed else self._about_delays(beta)
         m, k = len(null.c), len(columns)
-        given = np.where(self.is_delay, 0.0, beta[list(null.columns)])
-        taken = np.where(self.is_factor, given / (1.0 + given), given)
-        slope = np.where(self.is_factor, (1.0 + given) ** -2, 1.0)
+        taken, slope = self._faults(beta)
         b = null.b - null.A @ taken
         c = null.c - (null.b + b) @ taken
         place = {column: i for i, column in enumerate(null.columns)}

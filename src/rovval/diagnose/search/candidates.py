@@ -77,6 +77,8 @@ def candidates(
             start = progressive_start(problem, alone(h, slots), slots)
         for begin in (start, *_departed(problem, base, h, start)):
             fit_from(h, begin, slots)
+        if chosen and fits[h.name][1].posterior.predicted_cost() > base.predicted_cost():  # worse than without it: led astray
+            fit_from(h, alone(h, slots), slots)
 
     tries = Counter[str]()
     for h in ordered:

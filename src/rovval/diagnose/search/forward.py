@@ -13,7 +13,7 @@ from math import log
 import numpy as np
 
 from rovval.diagnose.criteria import MOST_CAUSES
-from rovval.diagnose.effort import NEGLIGIBLE
+from rovval.diagnose.effort import NEGLIGIBLE, SETS_WEIGHED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import refit_healthy
@@ -22,7 +22,7 @@ from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.search.baseline import Candidate, baseline_of, healthy_baseline
 from rovval.diagnose.search.candidates import candidates
-from rovval.diagnose.search.joint import reconsidered, refitted
+from rovval.diagnose.search.joint import reconsidered, settled
 from rovval.diagnose.search.model import Model, ModelPrior
 from rovval.diagnose.search.onset import Onset, suspected_onset
 from rovval.diagnose.search.plausible import plausible
@@ -81,8 +81,9 @@ def search(
         if not found:
             break
         tried.append(found)
-        models += [_model(prior, front, c) for c in found]
-        front = refitted(problem, max(models[-len(found) :], key=lambda m: m.log_posterior))
+        added = settled(problem, [_model(prior, front, c) for c in found], 1)
+        models += added
+        front = max(added, key=lambda m: m.log_posterior)
         best = max(best, front, key=lambda m: m.log_posterior)
         if front.log_posterior < best.log_posterior + log(NEGLIGIBLE):
             break
@@ -111,7 +112,7 @@ def _extended(
 def _model(prior: ModelPrior, front: Model, one: Candidate) -> Model:
     """The model that a candidate is."""
     causes = (*front.causes, one.hypothesis)
-    return Model(causes, one.fit, one.fit.evidence, prior.log_mass(causes))
+    return Model(causes, one.fit, one.fit.evidence, prior.log_mass(causes), careful=bool(one.fit.posterior.whitened))
 
 
 def _reconsidered(
@@ -124,12 +125,13 @@ def _reconsidered(
     models = [Model((), None, laplace_evidence(problem, healthy), models[0].log_prior), *models[1:]]
     known = {m.names for m in models}
     while len(best.causes) > 1:
-        models += reconsidered(problem, prior, best, tried, known)
+        models = settled(problem, [*models, *reconsidered(problem, prior, best, tried, known)], 1)
         better = max(models, key=lambda m: m.log_posterior)
         if better.fit is None or better.log_posterior <= best.log_posterior:
             break
-        best = refitted(problem, better)
-    return healthy, [m.without_sensitivities() for m in models], best
+        best = better
+    models = settled(problem, models, SETS_WEIGHED)
+    return healthy, models, max((m for m in models if m.fit), key=lambda m: m.log_posterior)
 
 
 def _ranking(problem: Problem, library: list[Hypothesis], best: Model, steps: Sequence[Sequence[Row]]) -> tuple[tuple[str, float], ...]:

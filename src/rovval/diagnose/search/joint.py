@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import log
 
-from rovval.diagnose.effort import MOST_ALTERNATIVES
+from rovval.diagnose.effort import MOST_ALTERNATIVES, NEGLIGIBLE
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
-from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, fit_hypothesis, fit_quickly
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, fit_hypothesis, fit_quickly, only_places
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.search.baseline import Candidate
-from rovval.diagnose.search.model import Model, ModelPrior
+from rovval.diagnose.search.model import Model, ModelPrior, best_of_each_set
 
 
 def reconsidered(problem: Problem, prior: ModelPrior, best: Model, tried: Sequence[Sequence[Candidate]], known: set[frozenset[str]]) -> list[Model]:
@@ -33,22 +34,49 @@ def reconsidered(problem: Problem, prior: ModelPrior, best: Model, tried: Sequen
         rest = [h for h in best.causes if h is not cause]
         step = next((one for one in tried if cause.name in {c.hypothesis.name for c in one}), ())
         others = [c for c in step if c.hypothesis.name not in best.names][:MOST_ALTERNATIVES]
+        without = joint_fit(problem, best.fit, rest)
         for other in (None, *others):
             causes = (*rest, other.hypothesis) if other else tuple(rest)
             if frozenset(h.name for h in causes) not in known:
-                fit = joint_fit(problem, best.fit, rest, other).without_sensitivities()
+                fit = (_exchanged(problem, best.fit, rest, other, without) if other else without).without_sensitivities()
                 found.append(Model(causes, fit, fit.evidence, prior.log_mass(causes)))
                 known.add(found[-1].names)
     return found
 
 
+def _exchanged(problem: Problem, whole: HypothesisFit, rest: Sequence[Hypothesis], other: Candidate, without: HypothesisFit) -> HypothesisFit:
+    """The fit of ``rest`` and another cause; of one that ends worse than ``without`` that cause, again from there, with no more of it than its place."""
+    fit = joint_fit(problem, whole, rest, other)
+    if fit.posterior.predicted_cost() <= without.posterior.predicted_cost():
+        return fit
+    start, placed = without.posterior.beta.copy(), [s for s in other.hypothesis.slots if only_places(problem, s)]
+    start[placed] = other.fit.beta[placed]
+    again = fit_quickly(problem, start, fit.slots, without.posterior.whitened)
+    return max(fit, again, key=lambda one: one.evidence)
+
+
+def settled(problem: Problem, models: Sequence[Model], count: int) -> list[Model]:
+    """The models, the ``count`` most probable sets of which are fitted with care, and have sensitivities; sets of no probability beside the best
+    (`NEGLIGIBLE`) are left as they are."""
+    found = list(models)
+    while True:
+        top = max(m.log_posterior for m in found)
+        sets = best_of_each_set(m for m in found if m.fit).values()
+        leading = [m for m in sorted(sets, key=lambda m: -m.log_posterior)[:count] if m.log_posterior > top + log(NEGLIGIBLE)]
+        there = {id(m) for m in leading}
+        again = [refitted(problem, m) if id(m) in there else m for m in found]
+        if all(new is old for new, old in zip(again, found, strict=True)):
+            return [m if id(m) in there else m.without_sensitivities() for m in found]
+        found = again
+
+
 def refitted(problem: Problem, model: Model) -> Model:
     """The model fitted with care, with its sensitivities."""
     assert model.fit is not None
-    if model.fit.posterior.whitened:
+    if model.careful and model.fit.posterior.whitened:
         return model
     fit = fit_hypothesis(problem, model.fit.posterior.beta, model.fit.slots)
-    return replace(model, fit=fit, evidence=max(fit.evidence, model.evidence))
+    return replace(model, fit=fit, evidence=fit.evidence, careful=True)
 
 
 def joint_fit(problem: Problem, whole: HypothesisFit, kept: Sequence[Hypothesis], other: Candidate | None = None) -> HypothesisFit:

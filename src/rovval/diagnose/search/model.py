@@ -27,12 +27,14 @@ class Model:
         fit: their joint fit; None for the healthy vehicle.
         evidence: twice the log Bayes factor over the healthy vehicle.
         log_prior: logarithm of its prior mass.
+        careful: whether its fit has sensitivities made at its own point. A quick one keeps those of another point, and may claim more than there is.
     """
 
     causes: tuple[Hypothesis, ...]
     fit: HypothesisFit | None
     evidence: float
     log_prior: float
+    careful: bool = False
 
     @property
     def names(self) -> Names:
