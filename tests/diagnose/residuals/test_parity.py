@@ -81,6 +81,26 @@ def test_parity_about_another_point_is_that_of_its_moved_rows():
         assert np.abs(found - 2.0 * want).max() < 1e-12 * np.abs(want).max()
 
 
+def test_losses_by_relation_add_up_and_show_where_a_fault_is():
+    """A gyro that drifts in yaw spoils the heading, and nothing of the depth; told what it is, it spoils neither."""
+    part = cut_run(spoilt({"gyro_bias.r": 0.01}), merlin(), "fossen", 10.0)
+    sensors = tuple(i for i, s in enumerate(part.plant.slots) if load(s.effect).place == "sensor")
+    check, null, everywhere = parity_residuals(part, sensors), part.plant.null.copy(), np.ones(part.count, dtype=bool)
+    told = null.copy()
+    told[part.plant.index["gyro_bias.r"]], told[part.plant.index["dvl_scale.scale"]] = 0.01, 0.02
+    for beta in (null, told):
+        losses = check.losses(beta, 2.0, everywhere)
+        assert sum(losses.values()) == pytest.approx(check.normal_equations(beta, (), 2.0).c.sum(), rel=1e-9)
+        half = everywhere & (np.arange(part.count) % 2 == 0)
+        for name, loss in losses.items():
+            assert check.losses(beta, 2.0, half)[name] + check.losses(beta, 2.0, ~half)[name] == pytest.approx(loss)
+    told[part.plant.index["dvl_scale.scale"]] = 0.0
+    before, after = check.losses(null, 2.0, everywhere), check.losses(told, 2.0, everywhere)
+    assert after["psi"] < 0.2 * before["psi"] and after["z"] == pytest.approx(before["z"], rel=0.2)
+    tolerated = check.tolerated({part.plant.index["gyro_bias.r"]: 0.01}, 2.0)
+    assert max(tolerated, key=lambda name: tolerated[name]) == "psi" and tolerated["psi"] == pytest.approx(before["psi"] - after["psi"], rel=0.2)
+
+
 def test_a_velocity_scale_is_read_without_the_bias_of_its_tangent():
     """12 % too large: the tangent at nothing would say 0.12 / 1.12."""
     part = cut_run(spoilt({"dvl_scale.scale": 0.12}), merlin(), "fossen", 10.0)
