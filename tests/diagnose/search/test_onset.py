@@ -130,8 +130,8 @@ def test_a_cause_from_some_moment_on_is_weighed_on_every_window(logs: tuple[Run,
 
 @pytest.mark.parametrize(
     ("hinted", "verdict", "searched"),
-    [(10.0, "explained", False), (250.0, "explained", True), (10.0, "partly_explained", False), (10.0, "unknown", True)],
+    [(10.0, "explained", False), (250.0, "explained", True), (10.0, "partly_explained", True), (10.0, "unknown", True)],
 )
-def test_a_part_that_promises_little_beside_causes_that_are_named_is_not_searched(hinted: float, verdict: str, searched: bool) -> None:
+def test_a_part_that_promises_little_beside_a_log_that_is_explained_is_not_searched(hinted: float, verdict: str, searched: bool) -> None:
     whole = answered(Onset(40.0, hinted), 300.0, verdict)
     assert whole.onset == (Onset(40.0, hinted) if searched else None)

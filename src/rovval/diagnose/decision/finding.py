@@ -51,8 +51,7 @@ class Finding:
         onset = self.selection.onset
         if onset is None or self.is_event:
             return None
-        named = self.decision.verdict in ("explained", "partly_explained")
-        return onset if not named or onset.evidence >= ONSET_SEARCHED * self.decision.evidence else None
+        return onset if self.decision.verdict != "explained" or onset.evidence >= ONSET_SEARCHED * self.decision.evidence else None
 
 
 def more_probable(late: Finding, whole: Finding, onset: Onset) -> bool:
