@@ -39,13 +39,13 @@ from rovval.diagnose.criteria import (
     PRIOR_SOMETHING_ELSE,
     SHOWS_BESIDE,
 )
-from rovval.diagnose.inference.gap import errors_by_part, noise_by_part, parity_errors, tolerated_by_part, weighted_errors
+from rovval.diagnose.inference.gap import TINY, errors_by_part, noise_by_part, parity_errors, tolerated_by_part, weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 from rovval.diagnose.inference.shrinkage import explainable_left
-from rovval.diagnose.problem.problem import Problem, corrected_residuals, gap_equations_at
+from rovval.diagnose.problem.problem import Problem, corrected_of, corrected_residuals, gap_equations_of
+from rovval.diagnose.residuals.sensitivities import linearise
 from rovval.diagnose.search.model import Model, Names
 
-TINY = 1e-9  # share of a gap, or a squared error: next to none, to divide by
 NOTHING_LEFT = 1e-3  # share of the gap: rounding of a ratio to what is left
 FALLS = np.array([1.0, 3.0, 10.0, 30.0])  # means of an exponential: where its integral is cut into parts
 NODES = 40  # of the integral over each part
@@ -95,11 +95,12 @@ def gap_left_from(problem: Problem, names: Names, late: HypothesisFit, time: flo
     """The same of causes that are at work from ``time`` (s since the run's start) on, fitted to the windows from there on; what the windows before lack
     is left."""
     before = [part.start * part.run.dt < time for part in problem.runs]
+    linear = [linearise(windows, late.beta, ()) for windows in problem.runs]
     switched = [
         np.where(then[:, None, None], nominal, found)
-        for then, nominal, found in zip(before, corrected_residuals(problem), corrected_residuals(problem, late.beta), strict=True)
+        for then, nominal, found in zip(before, corrected_residuals(problem), corrected_of(problem, linear), strict=True)
     ]
-    dynamics, total = gap_equations_at(problem, late.beta, ())
+    dynamics, total = gap_equations_of(problem, late.beta, linear)
     then = np.concatenate(before)
     loss = np.array([np.where(then, gap.c, found.c).sum() for gap, found in ((problem.gap.dynamics, dynamics), (problem.gap.total, total))])
     shares = np.maximum(explainable_left(problem, [loss])[0], NOTHING_LEFT)

@@ -14,7 +14,7 @@ from rovval.diagnose.windows.windows import axis_channels
 
 ANGULAR = ("roll", "pitch", "yaw")
 PARITY = "parity"  # of a relation of the pose, its name behind it
-TINY = 1e-9  # of a squared error over its variance: next to none, to divide by
+TINY = 1e-9  # of a squared error over its variance, or a share of a gap: next to none, to divide by
 
 
 @dataclass(frozen=True, slots=True)
