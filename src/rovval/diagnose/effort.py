@@ -57,7 +57,6 @@ MOST_RELINEARISED = 4  # candidates that are fitted again with sensitivities mad
 SERIOUS_EVIDENCE = 0.5  # share of the best evidence from which a candidate's gain counts (chosen)
 MOST_ALTERNATIVES = 2  # candidates against which a cause is weighed again in the end (chosen)
 ONSETS_TRIED = 12  # first windows with it that are tried, evenly spread, before those about the best of them (chosen)
-ONSET_SEARCHED = 0.2  # share of the evidence of the best on the whole log: with less, linearised, no part is searched (opened logs: 0.25 of a true one)
 
 # -- result: attribution, next experiment, recalibration ----------------------------------------------------------------------------
 

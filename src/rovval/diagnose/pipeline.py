@@ -3,17 +3,16 @@
 Logs are cut into windows, each simulated from its measured start (multiple shooting). An estimation problem is posed about the nominal vehicle; the
 effects of the library are its hypotheses. A healthy vehicle is fitted first, with every coefficient within its tolerance; beside it causes are added
 one at a time (forward search), and the most probable of all models that were fitted is the answer. Where something seems to begin in mid-log, the part
-after that is analysed by itself, and its answer counts if it is the more probable model of the whole log.
+after that is analysed by itself, and the causes found in it, at work from then on, are further models of the whole log.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 from rovval.core.data import Run
 from rovval.core.errors import BadInput
-from rovval.diagnose.decision.finding import Finding, more_probable
+from rovval.diagnose.decision.finding import Finding, began, weighed_with
 from rovval.diagnose.decision.verdict import decide
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses, initialised
@@ -64,10 +63,12 @@ def diagnose(
     say = progress or _silent
     windows, left_out = cut(runs, vehicle, model, window_s)
     found = analyse(windows, without, calibration_slop, say)
-    if onset := found.onset:
+    if onset := found.selection.onset:
         say(f"searching the part from {onset.time:.0f} s on", 0.85)
-        late = _analysed_from(onset.time, windows[0], without, calibration_slop)
-        found = late if late and more_probable(late, found, onset) else found
+        late, time = _analysed_from(onset.time, windows[0], without, calibration_slop), onset.time
+        if late and (moved := began(late, found, time)) != time:
+            late, time = _analysed_from(moved, windows[0], without, calibration_slop), moved
+        found = weighed_with(late, found, time) if late else found
     return assemble(found, left_out, calibration_slop, seed, say)
 
 
@@ -88,7 +89,7 @@ def analyse(windows: tuple[Windows, ...], without: Sequence[str], tolerance: flo
 def _analysed_from(time: float, windows: Windows, without: Sequence[str], tolerance: float) -> Finding | None:
     """The same over the windows from ``time`` (s) on; None where too few of them can be simulated: the log as a whole was."""
     try:
-        return replace(analyse((windows_from(windows, time),), without, tolerance, _silent), since=time)
+        return analyse((windows_from(windows, time),), without, tolerance, _silent)
     except BadInput:
         return None
 

@@ -16,15 +16,16 @@ from rovval.core.data import Run
 from rovval.core.errors import BadInput
 from rovval.diagnose import diagnose, pipeline
 from rovval.diagnose.decision.finding import Finding
-from rovval.diagnose.hypotheses.hypothesis import columns_of
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
-from rovval.diagnose.inference.laplace import laplace_evidence
+from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import healthy_fit
-from rovval.diagnose.problem.problem import pose
+from rovval.diagnose.problem.problem import Problem, pose
 from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.residuals.ridge import Prior
-from rovval.diagnose.search.onset import Onset, Stretch, evidence_with_onset, onset_cost, windows_from
+from rovval.diagnose.search.model import Part
+from rovval.diagnose.search.onset import Onset, Stretch, moved_onset, onset_cost, windows_from, with_onset
 from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.diagnose.windows.windows import Windows
 from rovval.report.diagnosis.json import document as written
@@ -77,10 +78,10 @@ def test_the_windows_before_deny_what_they_do_not_hold() -> None:
     assert early.explained(at, wide, 1.0) < 0.0
 
 
-def answered(onset: Onset, best: float = 0.0, verdict: str = "unknown") -> Finding:
-    """A pass over the whole log whose best causes have the evidence ``best``."""
+def answered(onset: Onset) -> Finding:
+    """A pass over the whole log that suspects an onset and names nothing."""
     selection: Any = SimpleNamespace(onset=onset, healthy=None)
-    decision: Any = SimpleNamespace(causes=(), evidence=best, fit=None, verdict=verdict)
+    decision: Any = SimpleNamespace(causes=(), fit=None)
     problem: Any = None
     return Finding(problem, {}, selection, [], (), decision)
 
@@ -102,36 +103,52 @@ def test_a_part_that_cannot_be_simulated_leaves_the_answer_of_the_whole(monkeypa
     assert windows == [part.count, int((part.start * part.run.dt >= 40.0).sum())]
 
 
-def test_a_cause_that_never_begins_is_a_healthy_vehicle_with_its_own_tolerance(logs: tuple[Run, Run]) -> None:
+@pytest.fixture(scope="module")
+def posed(logs: tuple[Run, Run]) -> tuple[Problem, Windows, list[Hypothesis], Posterior]:
+    """The log with a loss from mid-log on as an estimation problem: with its windows, the library and the healthy fit."""
+    (windows,), _ = cut([logs[0]], merlin(), "fossen", 10.0)
+    library, _ = hypotheses((windows,))
+    problem = pose((windows,), columns_of(library), 0.05)
+    return problem, windows, library, healthy_fit(problem)
+
+
+def named(library: list[Hypothesis], name: str) -> Hypothesis:
+    return next(h for h in library if h.name == name)
+
+
+def test_a_cause_that_never_begins_is_a_healthy_vehicle_with_its_own_tolerance(posed: tuple[Problem, Windows, list[Hypothesis], Posterior]) -> None:
     """A coefficient that the cause takes is as free before it as any other."""
-    parts, _ = cut([logs[0]], merlin(), "fossen", 10.0)
-    library, _ = hypotheses(parts)
-    problem = pose(parts, columns_of(library), 0.05)
-    drag = next(h for h in library if h.name == "linear_drag[surge]")
-    always, alone = fit_hypothesis(problem, problem.origin, drag.slots), healthy_fit(problem)
+    problem, _, library, alone = posed
+    drag = named(library, "linear_drag[surge]")
+    always = fit_hypothesis(problem, problem.origin, drag.slots)
     assert set(drag.slots) <= set(problem.tolerance.sd)
-    assert evidence_with_onset(problem, always, 1e6, alone) == pytest.approx(laplace_evidence(problem, alone), abs=1.0)
-    assert evidence_with_onset(problem, always, 0.0, alone) == pytest.approx(always.evidence, abs=5.0)  # sensitivities of tolerances made anew where it ended
+    never, throughout = (with_onset(problem, [drag], -1.0, Part(t, problem, always), alone) for t in (1e6, 0.0))
+    assert never.evidence + onset_cost(problem) == pytest.approx(laplace_evidence(problem, alone), abs=1.0)
+    assert throughout.evidence + onset_cost(problem) == pytest.approx(always.evidence, abs=5.0)  # sensitivities of tolerances made anew where it ended
 
 
-def test_a_cause_from_some_moment_on_is_weighed_on_every_window(logs: tuple[Run, Run]) -> None:
+def test_a_cause_from_some_moment_on_is_weighed_on_every_window(posed: tuple[Problem, Windows, list[Hypothesis], Posterior]) -> None:
     """From before the log on it is the cause itself; from after its end on, a healthy vehicle; at its own beginning it is worth more than all through."""
-    parts, _ = cut([logs[0]], merlin(), "fossen", 10.0)
-    library, _ = hypotheses(parts)
-    problem = pose(parts, columns_of(library), 0.05)
-    slots = next(h.slots for h in library if h.name == "inflow_loss")
-    always = fit_hypothesis(problem, problem.origin, slots)
-    alone = healthy_fit(problem)
-    assert evidence_with_onset(problem, always, 0.0, alone) == pytest.approx(always.evidence, rel=1e-3)
-    late = fit_hypothesis(pose((windows_from(parts[0], BEGINS),), columns_of(library), 0.05), always.beta, slots)
-    assert evidence_with_onset(problem, late, BEGINS, alone) > always.evidence + onset_cost(problem)
-    assert evidence_with_onset(problem, always, 1e6, alone) == pytest.approx(laplace_evidence(problem, alone), abs=1.0)
+    problem, windows, library, alone = posed
+    loss = named(library, "inflow_loss")
+    always = fit_hypothesis(problem, problem.origin, loss.slots)
+    throughout, never = (with_onset(problem, [loss], -1.0, Part(t, problem, always), alone) for t in (0.0, 1e6))
+    assert throughout.evidence + onset_cost(problem) == pytest.approx(always.evidence, rel=1e-3)
+    assert never.evidence + onset_cost(problem) == pytest.approx(laplace_evidence(problem, alone), abs=1.0)
+    there = pose((windows_from(windows, BEGINS),), columns_of(library), 0.05)
+    begun = with_onset(problem, [loss], -1.0, Part(BEGINS, there, fit_hypothesis(there, always.beta, loss.slots)), alone)
+    assert begun.evidence > always.evidence and begun.names == {"inflow_loss"} and begun.log_prior == -1.0
+    assert begun.fit is not None and never.fit is not None and throughout.fit is not None
+    assert begun.fit.loss.sum() < throughout.fit.loss.sum() < never.fit.loss.sum() == pytest.approx(problem.gap.total.c.sum())
+    assert begun.fit.posterior.dynamics_loss().sum() < always.posterior.dynamics_loss().sum()
 
 
-@pytest.mark.parametrize(
-    ("hinted", "verdict", "searched"),
-    [(10.0, "explained", False), (250.0, "explained", True), (10.0, "partly_explained", True), (10.0, "unknown", True)],
-)
-def test_a_part_that_promises_little_beside_a_log_that_is_explained_is_not_searched(hinted: float, verdict: str, searched: bool) -> None:
-    whole = answered(Onset(40.0, hinted), 300.0, verdict)
-    assert whole.onset == (Onset(40.0, hinted) if searched else None)
+def test_an_onset_is_moved_to_where_the_causes_begin(posed: tuple[Problem, Windows, list[Hypothesis], Posterior]) -> None:
+    """The fit to the windows from late in the effect on says where it began; one that begins where it does stays."""
+    problem, windows, library, alone = posed
+    loss = named(library, "inflow_loss")
+    there = pose((windows_from(windows, BEGINS + 40.0),), columns_of(library), 0.05)
+    late = fit_hypothesis(there, there.origin, loss.slots)
+    moved = moved_onset(problem, late, BEGINS + 40.0, alone)
+    assert moved == pytest.approx(BEGINS, abs=15.0)
+    assert moved_onset(problem, late, moved, alone) == moved

@@ -26,7 +26,7 @@ def file_evidence(problem: Problem, selection: Selection) -> dict[Names, float]:
     beside it counted, or in a few that no effect which competes is about: beside no cause, and beside each of the most probable sets of causes."""
     plant = problem.plant
     compete = {s for name, _ in selection.ranking for s in plant.hypotheses[name]}
-    causes = sorted((m for m in selection.models if m.fit), key=lambda m: -m.log_posterior)[:SETS_WEIGHED]
+    causes = sorted((m for m in selection.models if m.fit and not m.part), key=lambda m: -m.log_posterior)[:SETS_WEIGHED]
     found = dict[Names, float]()
     for model in (selection.models[0], *causes):
         point = model.fit.posterior if model.fit else selection.healthy

@@ -39,11 +39,9 @@ from rovval.diagnose.criteria import (
     PRIOR_SOMETHING_ELSE,
     SHOWS_BESIDE,
 )
-from rovval.diagnose.inference.gap import TINY, errors_by_part, noise_by_part, parity_errors, tolerated_by_part, weighted_errors
-from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
+from rovval.diagnose.inference.gap import TINY, errors_by_part, noise_by_part, tolerated_by_part
 from rovval.diagnose.inference.shrinkage import explainable_left
-from rovval.diagnose.problem.problem import Problem, corrected_of, corrected_residuals, gap_equations_of
-from rovval.diagnose.residuals.sensitivities import linearise
+from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.search.model import Model, Names
 
 NOTHING_LEFT = 1e-3  # share of the gap: rounding of a ratio to what is left
@@ -89,24 +87,6 @@ def gap_left(problem: Problem, models: Iterable[Model]) -> Left:
             acting[names] = gap.left_where_it_acts(fit.parts)
         shares[names] = np.minimum(np.maximum(share, NOTHING_LEFT), shares.get(names, np.inf))
     return Left(shares, acting)
-
-
-def gap_left_from(problem: Problem, names: Names, late: HypothesisFit, time: float) -> Left:
-    """The same of causes that are at work from ``time`` (s since the run's start) on, fitted to the windows from there on; what the windows before lack
-    is left."""
-    before = [part.start * part.run.dt < time for part in problem.runs]
-    linear = [linearise(windows, late.beta, ()) for windows in problem.runs]
-    switched = [
-        np.where(then[:, None, None], nominal, found)
-        for then, nominal, found in zip(before, corrected_residuals(problem), corrected_of(problem, linear), strict=True)
-    ]
-    dynamics, total = gap_equations_of(problem, late.beta, linear)
-    then = np.concatenate(before)
-    loss = np.array([np.where(then, gap.c, found.c).sum() for gap, found in ((problem.gap.dynamics, dynamics), (problem.gap.total, total))])
-    shares = np.maximum(explainable_left(problem, [loss])[0], NOTHING_LEFT)
-    parity = parity_errors(problem, problem.origin, before), parity_errors(problem, late.beta, [~then for then in before])
-    errors = weighted_errors(problem, switched) | {part: size + parity[1][part] for part, size in parity[0].items()}
-    return Left({names: shares}, {names: _Gap.of(problem).left_where_it_acts(errors)})
 
 
 @dataclass(frozen=True, slots=True)

@@ -55,6 +55,7 @@ class Decision:
             windows.
         unexplained: what is left; None where nothing is.
         indications: what points to a cause where none is named; None where causes are.
+        since: s since the run's start from which on the causes are at work, where they are fitted to that part alone; else None.
     """
 
     verdict: Verdict
@@ -73,6 +74,7 @@ class Decision:
     open_gap: float
     unexplained: Unexplained | None
     indications: Indications | None = None
+    since: float | None = None
 
 
 def decide(problem: Problem, selection: Selection, residuals: list[Array], faults: Sequence[FittedFault]) -> Decision:
@@ -82,8 +84,9 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
     unexplained_gap = open_gap(problem, [selection.healthy, *(m.fit.posterior for m in met if m.fit)])
     beside, varies, weigh = dict[Names, GenericForces](), dict[Names, Variation](), _leading(problem, selection)
     while True:  # the sets that lead are weighed, and then each that would be named
-        beside |= {m.names: generic_forces(problem, m.fit.posterior) for m in weigh if m.fit}
-        varies |= {m.names: variation(problem, m.fit.posterior, m.causes) for m in weigh if m.fit}
+        at_work = [(m, *_where_at_work(problem, m, m.fit)) for m in weigh if m.fit]
+        beside |= {m.names: generic_forces(there, fit.posterior) for m, there, fit in at_work}
+        varies |= {m.names: variation(there, fit.posterior, m.causes) for m, there, fit in at_work}
         more = {names: forces.sparse()[0] for names, forces in beside.items()}
         belief = probabilities(met, file, evidence, more, varies, evidence_of_something_else(unexplained_gap), gap_left(problem, met))
         best = _fitted(problem, selection, met, belief.best)
@@ -113,6 +116,11 @@ def _leading(problem: Problem, selection: Selection) -> list[Model]:
     return [refitted(problem, m) for m in found if m.log_posterior > selection.log_posterior + log(NEGLIGIBLE)]
 
 
+def _where_at_work(problem: Problem, model: Model, fit: HypothesisFit) -> tuple[Problem, HypothesisFit]:
+    """The windows in which the causes of a model are at work, and the ``fit`` of the model, or the one to these windows."""
+    return (model.part.problem, model.part.fit) if model.part else (problem, fit)
+
+
 def _fitted(problem: Problem, selection: Selection, met: Sequence[Model], names: Names) -> Model:
     """The model of a set of causes fitted with care, from where the causes are in a larger set where none of the models ``met`` has them alone; the healthy
     vehicle where there are none."""
@@ -134,6 +142,7 @@ def _named(
     """The causes of the best set are named; they explain a part where generic forces ``beside`` them, or sizes ``varying`` along the log, are likelier than
     not, or where they leave more of the gap than noise and tolerances make."""
     belief, evidence, left = found.probabilities, beside.sparse()[0], left_open(problem, fit)
+    problem, fit = _where_at_work(problem, best, fit)
     probability = {h.name: belief.of(h.name) for h in best.causes}
     rest = None
     if something_beside(evidence, varying):
@@ -152,6 +161,7 @@ def _named(
         departure=fit.posterior.largest_departure(),
         open_gap=left,
         unexplained=rest,
+        since=best.part.since if best.part else None,
     )
 
 

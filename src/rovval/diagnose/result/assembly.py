@@ -72,10 +72,10 @@ def assemble(
     found = settings(problem, decision.fit)
     return Diagnosis(
         **_settings(problem, tolerance),
-        since_s=finding.since,
+        since_s=decision.since,
         verdict=decision.verdict,
         gap=_gap(problem, before, seed),
-        causes=causes(problem, decision, before, finding.since, seed),
+        causes=causes(problem, decision, before, decision.since, seed),
         shrinkage=Shrinkage(**asdict(shrunk)),
         within_tolerance=_within_tolerance(problem, selection, decision, seed),
         ranking=tuple(Score(effect=name, score=score) for name, score in selection.ranking),

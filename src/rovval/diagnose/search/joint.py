@@ -71,9 +71,9 @@ def settled(problem: Problem, models: Sequence[Model], count: int) -> list[Model
 
 
 def refitted(problem: Problem, model: Model) -> Model:
-    """The model fitted with care, with its sensitivities."""
+    """The model fitted with care, with its sensitivities; one that begins in mid-log has those of its part."""
     assert model.fit is not None
-    if model.careful and model.fit.posterior.whitened:
+    if model.part or (model.careful and model.fit.posterior.whitened):
         return model
     fit = fit_hypothesis(problem, model.fit.posterior.beta, model.fit.slots)
     return replace(model, fit=fit, evidence=fit.evidence, careful=True)

@@ -14,8 +14,24 @@ from math import factorial, log
 from rovval.diagnose.criteria import PRIOR_CAUSES, PRIOR_HEALTHY
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
+from rovval.diagnose.problem.problem import Problem
 
 Names = frozenset[str]  # of a set of causes
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """The part of a log in which causes are at work that began with it.
+
+    Attributes:
+        since: s since the run's start from which on they are at work.
+        problem: of the windows from there on.
+        fit: of the causes to these windows alone, with sensitivities.
+    """
+
+    since: float
+    problem: Problem
+    fit: HypothesisFit
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +44,7 @@ class Model:
         evidence: twice the log Bayes factor over the healthy vehicle.
         log_prior: logarithm of its prior mass.
         careful: whether its fit has sensitivities made at its own point. A quick one keeps those of another point, and may claim more than there is.
+        part: of causes that begin in mid-log, the part in which they are at work; ``fit`` and ``evidence`` are of all windows, with a healthy vehicle before.
     """
 
     causes: tuple[Hypothesis, ...]
@@ -35,6 +52,7 @@ class Model:
     evidence: float
     log_prior: float
     careful: bool = False
+    part: Part | None = None
 
     @property
     def names(self) -> Names:

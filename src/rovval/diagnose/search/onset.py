@@ -9,19 +9,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import log
 
 import numpy as np
 
-from rovval.core.data import Array
+from rovval.core.data import Array, Flags
 from rovval.diagnose.criteria import WINDOWS_AFTER_ONSET, WINDOWS_BEFORE_ONSET
-from rovval.diagnose.effort import ONSETS_TRIED
+from rovval.diagnose.effort import NEGLIGIBLE, ONSETS_TRIED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of
+from rovval.diagnose.inference.gap import parity_errors, weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, only_places
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import posterior_at
-from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.problem.problem import Problem, corrected_of, corrected_residuals, gap_equations_of
 from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.residuals.ridge import Prior, eliminated, free_columns
+from rovval.diagnose.residuals.sensitivities import linearise
+from rovval.diagnose.search.model import Model, Part
 from rovval.diagnose.windows.windows import Windows
 
 
@@ -99,40 +103,101 @@ def windows_from(windows: Windows, time: float) -> Windows:
     )
 
 
-def evidence_with_onset(problem: Problem, late: HypothesisFit, time: float, healthy: Posterior) -> float:
-    """Twice the log Bayes factor over the nominal vehicle, on every window, of the causes that the fit ``late`` shows from ``time`` (s) on and of a healthy
-    vehicle before.
+def with_onset(problem: Problem, causes: Sequence[Hypothesis], log_prior: float, part: Part, healthy: Posterior) -> Model:
+    """The model in which ``causes`` fitted to a part of the log are at work from its beginning on, and a healthy vehicle is before, on every window."""
+    first = _before(problem, part.since)
+    point, evidence = _best_switched(problem, part.fit, first, healthy)
+    fit = replace(_on_every_window(problem, part.fit, first), posterior=point, evidence=evidence)
+    return Model(tuple(causes), fit, evidence - onset_cost(problem), log_prior, careful=True, part=part)
 
-    Coefficients and sensors that are healthy are the same all through the log; they are fitted from where they are beside the causes, or from where they
-    are at the ``healthy`` fit, whichever is better.
-    """
+
+def moved_onset(problem: Problem, late: HypothesisFit, time: float, healthy: Posterior) -> float:
+    """When (s) the causes of a fit to the windows from ``time`` on begin: at the most probable of all windows, where that makes ``time`` negligible."""
+    windows = problem.runs[0]
+    times = (windows.start * windows.run.dt)[WINDOWS_BEFORE_ONSET : problem.window_count - WINDOWS_AFTER_ONSET + 1]
+    switches = _switches(problem, late, healthy)
+    evidence = {float(t): max(laplace_evidence(problem, one.at(_before(problem, t))) for one in switches) for t in times}
+    best = max(evidence, key=lambda t: evidence[t])
+    return best if evidence[best] > evidence.get(time, -np.inf) - 2.0 * log(NEGLIGIBLE) else time
+
+
+def _best_switched(problem: Problem, late: HypothesisFit, first: Flags, healthy: Posterior) -> tuple[Posterior, float]:
+    """The posterior of the causes of ``late`` at work but in the windows ``first`` (m,), and its evidence."""
+    points = [one.at(first) for one in _switches(problem, late, healthy)]
+    evidence = [laplace_evidence(problem, point) for point in points]
+    best = int(np.argmax(evidence))
+    return points[best], evidence[best]
+
+
+def _switches(problem: Problem, late: HypothesisFit, healthy: Posterior) -> list[_Switch]:
+    """Coefficients and sensors that are healthy are the same all through the log: where they are beside the causes of ``late``, or where they are at the
+    ``healthy`` fit."""
     own, sized = list(late.slots), [s for s in late.slots if not only_places(problem, s)]  # what only places the causes has no null value
     beside, alone, none = late.posterior.beta, healthy.beta.copy(), healthy.beta.copy()
     without = beside.copy()
     alone[own], without[sized], none[own] = beside[own], healthy.beta[sized], beside[own]
     none[sized] = healthy.beta[sized]
-    starts = (beside, without), (alone, none)
-    return max(laplace_evidence(problem, _switched(problem, late.slots, now, then, time)) for now, then in starts)
+    return [_Switch.of(problem, late.slots, now, then) for now, then in ((beside, without), (alone, none))]
 
 
-def _switched(problem: Problem, own: tuple[int, ...], now: Array, then: Array, time: float) -> Posterior:
-    """The windows before ``time`` linearised about ``then``, the others about ``now``. A coefficient that the causes take is one of the vehicle's own, with
-    its tolerance, before they do."""
-    columns = (*own, *(c for c in problem.tolerance.sd if c not in own))
-    begun, before = posterior_at(problem, now, columns, len(own)), posterior_at(problem, then, columns, len(own))
-    taken = [i for i, slot in enumerate(own) if slot in problem.tolerance.sd]
-    k, slots = len(columns), [own[i] for i in taken]
-    late, early = np.eye(k + len(taken), k), np.eye(k + len(taken), k)
-    early[: len(own)] = 0.0
-    early[np.arange(k, k + len(taken)), taken] = 1.0
-    first = np.concatenate([part.start * part.run.dt < time for part in problem.runs])
-    A = np.where(first[:, None, None], early @ before.total.A @ early.T, late @ begun.total.A @ late.T)
-    b = np.where(first[:, None], before.total.b @ early.T, begun.total.b @ late.T)
-    none = np.zeros(len(taken))
+def _before(problem: Problem, time: float) -> Flags:
+    """Which windows (m,) begin before ``time`` (s)."""
+    return np.concatenate([part.start * part.run.dt < time for part in problem.runs])
+
+
+def _on_every_window(problem: Problem, late: HypothesisFit, first: Flags) -> HypothesisFit:
+    """The fit ``late``, and of the windows ``first`` (m,) the vehicle as its file has it: losses, and errors by part."""
+    linear = [linearise(windows, late.beta, ()) for windows in problem.runs]
+    before = np.split(first, np.cumsum([windows.count for windows in problem.runs])[:-1])
+    nominal, found = corrected_residuals(problem), corrected_of(problem, linear)
+    switched = [np.where(then[:, None, None], old, new) for then, old, new in zip(before, nominal, found, strict=True)]
+    dynamics, total = gap_equations_of(problem, late.beta, linear)
+    parity = parity_errors(problem, problem.origin, before), parity_errors(problem, late.beta, [~then for then in before])
     return replace(
-        begun,
-        columns=(*columns, *slots), total=NormalEquations(A, b, np.where(first, before.total.c, begun.total.c), (*columns, *slots)),
-        precision=np.concatenate([begun.precision, [problem.tempering / problem.tolerance.sd[s] ** 2 for s in slots]]),
-        departure=np.concatenate([begun.departure, (then - problem.origin)[slots]]),
-        bound_side=np.concatenate([begun.bound_side, none]), tangent_only=np.concatenate([begun.tangent_only, none > 0]),
-    )  # fmt: skip
+        late,
+        loss=np.where(first, problem.gap.total.c, total.c),
+        dynamics_loss=np.where(first, problem.gap.dynamics.c, dynamics.c),
+        parts=weighted_errors(problem, switched) | {name: size + parity[1][name] for name, size in parity[0].items()},
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Switch:
+    """All windows linearised about causes at work (``begun``) and about a vehicle without them (``before``). A coefficient that the causes take is one of the
+    vehicle's own, with its tolerance, before they do (``taken``, positions of columns)."""
+
+    begun: Posterior
+    before: Posterior
+    taken: tuple[int, ...]
+    tolerance: Array
+
+    @classmethod
+    def of(cls, problem: Problem, own: tuple[int, ...], now: Array, then: Array) -> _Switch:
+        """About the parameters ``now`` with the causes, of slots ``own``, at work, and ``then``."""
+        columns = (*own, *(c for c in problem.tolerance.sd if c not in own))
+        begun, before = posterior_at(problem, now, columns, len(own)), posterior_at(problem, then, columns, len(own))
+        taken = tuple(i for i, slot in enumerate(own) if slot in problem.tolerance.sd)
+        return cls(begun, before, taken, np.array([problem.tolerance.sd[own[i]] for i in taken]))
+
+    def at(self, first: Flags) -> Posterior:
+        """The causes at work but in the windows ``first`` (m,)."""
+        begun, taken, k = self.begun, list(self.taken), len(self.begun.columns)
+        columns = (*begun.columns, *(begun.columns[i] for i in taken))
+        late, early = np.eye(k + len(taken), k), np.eye(k + len(taken), k)
+        early[: begun.effect_count] = 0.0
+        early[np.arange(k, k + len(taken)), taken] = 1.0
+
+        def switched(old: NormalEquations, new: NormalEquations) -> NormalEquations:
+            A = np.where(first[:, None, None], early @ old.A @ early.T, late @ new.A @ late.T)
+            b = np.where(first[:, None], old.b @ early.T, new.b @ late.T)
+            return NormalEquations(A, b, np.where(first, old.c, new.c), columns)
+
+        none = np.zeros(len(taken))
+        return replace(
+            begun,
+            columns=columns, whitened=(),
+            dynamics=switched(self.before.dynamics, begun.dynamics), total=switched(self.before.total, begun.total),
+            precision=np.concatenate([begun.precision, begun.tempering / self.tolerance**2]),
+            departure=np.concatenate([begun.departure, self.before.departure[taken]]),
+            bound_side=np.concatenate([begun.bound_side, none]), tangent_only=np.concatenate([begun.tangent_only, none > 0]),
+        )  # fmt: skip
