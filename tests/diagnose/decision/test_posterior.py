@@ -129,6 +129,15 @@ def test_what_a_cause_that_wanders_leaves_is_its_own():
     assert sure["waves"] > 0.9 > 0.8 > sure["inflow_loss"]
 
 
+@pytest.mark.parametrize("leaves", [0.05, 0.5, 1.0])
+def test_how_a_cause_that_wanders_goes_on_says_nothing_against_it(leaves: float):
+    """A sea is another one in the windows that are held out; a lag is the same."""
+    waves, lag = (belief({(name,): 60.0}, left={(name,): leaves}) for name in ("waves", "thrust_lag"))
+    assert waves.of("waves") == pytest.approx(belief({("waves",): 60.0}).of("waves"))
+    assert (lag.of("thrust_lag") > waves.of("waves")) == (leaves < 0.2)
+
+
+
 @pytest.mark.parametrize(("form", "alike"), [(30.0, 30.0), (30.0, 24.0), (24.0, 30.0)])
 def test_a_cause_that_varies_is_another_form_of_it_or_something_else(form: float, alike: float):
     """Which of the two, the evidence of a little and of much variation says."""

@@ -6,10 +6,10 @@ beside causes (model discrepancy: Kennedy and O'Hagan 2001), or forces that go w
 
 No log tells two explanations apart that predict the same; they share its probability by their priors, and by how much of the gap is left where windows are
 held out (`resemblance`). So something else has a part of the mass of every set of causes, and no cause is ever certain; a larger part where a force that goes
-with the motion shows beside them (what causes that wander by nature leave is their own). And the set without the cause that adds least has another part, since
-that cause may be what the equations of the others are off by. A cause of which the size varies is that cause in another form, or something else that comes
-near it (`constancy`). Which of several sets of as many causes it is, is less sure than how well they fit: each is only nearly right in its form
-(`BETWEEN_CAUSES`).
+with the motion shows beside them. What causes that wander by nature leave is their own: how they are in some windows does not tell how they go on in others.
+And the set without the cause that adds least has another part, since that cause may be what the equations of the others are off by. A cause of which the size
+varies is that cause in another form, or something else that comes near it (`constancy`). Which of several sets of as many causes it is, is less sure than how
+well they fit: each is only nearly right in its form (`BETWEEN_CAUSES`).
 
 The set that is named has as many causes as is most probable, and of such sets it is the one that the true one is expected to share the most causes with
 (centroid estimator: Carvalho and Lawrence 2008). The most probable single set may hold a cause that most of the others do without.
@@ -158,8 +158,9 @@ def probabilities(
     share, causes = dict(believed), {h.name: h for m in models for h in m.causes}
     for kind, names in believed:
         if names and kind in (*CAUSES, FORM):
-            shows = beside.get(names, -inf) > -inf and not all(causes[name].effect.wanders for name in names)
-            share[kind, names] *= 1.0 - none_of_the_library(names, left, shows)
+            wanders = all(causes[name].effect.wanders for name in names)
+            shows = beside.get(names, -inf) > -inf and not wanders
+            share[kind, names] *= 1.0 - none_of_the_library(names, None if wanders else left, shows)
     for names in varying:
         share["beside", names] = share.get(("beside", names), 0.0) + share.pop((FORM, names))
     _move_form_errors(share, best, left)
