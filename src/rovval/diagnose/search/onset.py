@@ -122,9 +122,12 @@ def moved_onset(problem: Problem, late: HypothesisFit, time: float, healthy: Pos
 
 
 def _best_switched(problem: Problem, late: HypothesisFit, first: Flags, healthy: Posterior) -> tuple[Posterior, float]:
-    """The posterior of the causes of ``late`` at work but in the windows ``first`` (m,), and its evidence."""
-    points = [one.at(first) for one in _switches(problem, late, healthy)]
-    evidence = [laplace_evidence(problem, point) for point in points]
+    """The posterior of the causes of ``late`` at work but in the windows ``first`` (m,), and its evidence, less what its start gains over the ``healthy`` fit
+    without any cause: every fit is local, and a cause must not gain by another start alone."""
+    switches, nothing, never = _switches(problem, late, healthy), laplace_evidence(problem, healthy), np.ones(problem.window_count, dtype=bool)
+    points = [one.at(first) for one in switches]
+    started = [max(laplace_evidence(problem, one.at(never)) - nothing, 0.0) for one in switches]
+    evidence = [laplace_evidence(problem, point) - gained for point, gained in zip(points, started, strict=True)]
     best = int(np.argmax(evidence))
     return points[best], evidence[best]
 
