@@ -90,6 +90,7 @@ PRIOR_CAUSES = (0.30, 0.10, 0.03)  # of one, two and three causes of the library
 PRIOR_FILE = 0.02  # of a file that is off in many numbers at once (chosen),
 PRIOR_SOMETHING_ELSE = 0.05  # and of something that the library does not hold (chosen)
 LIBRARY_ALIKE = 2.0 / 3.0  # share of what the library lacks that looks like something of it (opened and development sets of three plants: 11 of 16)
+NOT_FOUND = 0.07  # share of logs of the library's effects that no set of causes that is fitted explains (374 opened logs of two plants: 27)
 SHOWS_BESIDE = (0.08, 0.5)  # share of logs with generic forces beside causes that are right, and that only look it (three plants: 6 of 87, 26 of 52)
 HEALTHY_GAP = 0.20  # mean gap above noise of healthy vehicles over what tolerances could make (36 healthy logs of two plants: 0.22, 0.07 to 0.78)
 CAUSES_LEAVE = 0.15  # mean share that right causes leave where they act on held-out windows (58 effects of two plants: 0.04 to 0.15; real runs: more),

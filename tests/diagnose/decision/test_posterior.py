@@ -8,7 +8,7 @@ from math import inf
 import numpy as np
 import pytest
 
-from rovval.diagnose.criteria import BETWEEN_CAUSES, GROUP_PROBABILITY
+from rovval.diagnose.criteria import BETWEEN_CAUSES, GROUP_PROBABILITY, NOT_FOUND, PRIOR_CAUSES, PRIOR_SOMETHING_ELSE
 from rovval.diagnose.decision.constancy import Variation
 from rovval.diagnose.decision.open_gap import evidence_of_something_else
 from rovval.diagnose.decision.posterior import Probabilities, probabilities, something_beside
@@ -44,7 +44,7 @@ def belief(
 def test_they_sum_to_one_and_grow_with_evidence(worth: float):
     varies, both = Variation(0.5, {"inflow_loss": 0.5}), ("inflow_loss", "dvl_scale")
     found = belief({("inflow_loss",): worth, ("dvl_scale",): 3.0, both: worth + 1.0}, file=-3.0, forces=2.0, beside=1.0, varying=varies)
-    assert found.healthy + found.causes + found.file + found.something_else == pytest.approx(1.0)
+    assert found.healthy + found.causes + found.file + found.unexplained == pytest.approx(1.0)
     less = belief({("inflow_loss",): worth - 2.0, ("dvl_scale",): 3.0, both: worth - 1.0}, file=-3.0, forces=2.0, beside=1.0, varying=varies)
     assert found.of("inflow_loss") >= less.of("inflow_loss")
 
@@ -76,8 +76,18 @@ def test_a_group_is_of_one_cause_beside_the_others():
     assert found.of("inflow_loss") > SURE > found.of("thrust_lag")
 
 
+def test_what_no_cause_explains_may_be_of_the_library_all_the_same():
+    """Something else and causes that were not found are as their priors, whatever the evidence, and are surest by what they have of these."""
+    some, much = (belief({("inflow_loss",): 10.0}, forces=forces) for forces in (30.0, 3000.0))
+    missed = NOT_FOUND * sum(PRIOR_CAUSES)
+    for found in (some, much):
+        assert found.not_found / found.something_else == pytest.approx(missed / PRIOR_SOMETHING_ELSE)
+        assert found.something_else > found.not_found > 0.2
+    assert much.something_else < PRIOR_SOMETHING_ELSE / (PRIOR_SOMETHING_ELSE + missed) + 1e-6
+
+
 def test_something_else_takes_what_no_cause_explains():
-    assert belief({("inflow_loss",): 10.0}, forces=80.0).something_else > 0.99
+    assert belief({("inflow_loss",): 10.0}, forces=80.0).unexplained > 0.99
     assert belief({("inflow_loss",): 80.0}, forces=60.0).causes > SURE
 
 
@@ -86,8 +96,8 @@ def test_no_cause_is_certain(worth: float):
     """Whatever the evidence and however many causes: what the library lacks may look like something of it."""
     one, two = belief({("inflow_loss",): worth}), belief({("inflow_loss",): worth, ("inflow_loss", "dvl_scale"): 2.0 * worth})
     for found in (one, two):
-        assert 0.05 < found.something_else < 0.1
-        assert found.causes + found.something_else == pytest.approx(1.0)
+        assert 0.05 < found.unexplained < 0.1
+        assert found.causes + found.unexplained == pytest.approx(1.0)
     assert one.of("inflow_loss") == pytest.approx(two.of("inflow_loss"), abs=1e-6)
 
 
@@ -99,7 +109,7 @@ def test_a_healthy_vehicle_may_be_certain():
 def test_a_gap_that_no_model_explains_is_something_else_and_beside_causes_too():
     """It tells healthy from something else, and no cause from another."""
     pair: dict[tuple[str, ...], float] = {("inflow_loss",): 40.0, ("dvl_scale",): 38.0}
-    assert belief({("inflow_loss",): -60.0}, open_gap=30.0).something_else > 0.99
+    assert belief({("inflow_loss",): -60.0}, open_gap=30.0).unexplained > 0.99
     closed, left = belief(pair), belief(pair, open_gap=30.0)
     loss = frozenset({"inflow_loss"})
     assert left.beside[loss] > left.sets[loss] and closed.beside[loss] < closed.sets[loss]
@@ -157,7 +167,7 @@ def test_causes_are_at_work_whatever_else_of_the_file_is_off():
     """Causes with a file that is off in further numbers are those causes; what more is off is told beside them."""
     found = belief({("inflow_loss",): 80.0}, file=100.0, filed=120.0)
     assert found.causes > SURE and found.of("inflow_loss") > SURE and found.off_beside(frozenset({"inflow_loss"}))
-    assert found.healthy + found.causes + found.file + found.something_else == pytest.approx(1.0)
+    assert found.healthy + found.causes + found.file + found.unexplained == pytest.approx(1.0)
     assert not belief({("inflow_loss",): 80.0}, filed=70.0).off_beside(frozenset({"inflow_loss"}))
 
 
@@ -185,7 +195,7 @@ def test_what_is_said_is_likelier_than_not():
     split = [belief({("inflow_loss",): worth}, forces=forces) for worth in np.linspace(0.0, 10.0, 21) for forces in np.linspace(0.0, 8.0, 17)]
     assert all((one.causes > 0.5) == (one.likelier_than_not == "causes") for one in split)
     undecided = [one for one in split if one.likelier_than_not is None]
-    assert undecided and any(one.causes > max(one.healthy, one.something_else) for one in undecided)
+    assert undecided and any(one.causes > max(one.healthy, one.unexplained) for one in undecided)
 
 
 @pytest.mark.parametrize("left", [0.0, 0.1, 0.4, 0.7, 0.95, 1.2])
@@ -193,7 +203,7 @@ def test_causes_are_believed_by_what_they_leave_of_the_gap(left: float):
     """However much better they are than any other model of the log: a real run was "explained" at 0.93 by a snag that predicted it worse than nothing did."""
     found = belief({("inflow_loss",): 4000.0}, left={("inflow_loss",): left})
     more = belief({("inflow_loss",): 4000.0}, left={("inflow_loss",): left + 0.05})
-    assert found.healthy + found.causes + found.file + found.something_else == pytest.approx(1.0)
+    assert found.healthy + found.causes + found.file + found.unexplained == pytest.approx(1.0)
     assert found.causes > 0.95 if left <= 0.1 else found.causes < 0.1 if left >= 0.95 else 0.1 < found.causes < 0.95
     assert more.causes <= found.causes and found.causes < 0.995
 
@@ -206,7 +216,7 @@ def test_a_further_cause_that_closes_nothing_more_is_not_named():
     assert idle.best == {"inflow_loss"} and closing.best == {"inflow_loss", "dvl_scale"}
     assert idle.of("dvl_scale") < 0.01 and closing.of("dvl_scale") > SURE
     for found in (idle, closing):
-        assert found.of("inflow_loss") > 0.9 and found.healthy + found.causes + found.file + found.something_else == pytest.approx(1.0)
+        assert found.of("inflow_loss") > 0.9 and found.healthy + found.causes + found.file + found.unexplained == pytest.approx(1.0)
 
 
 def test_the_cause_that_stays_is_the_one_that_closes_the_gap():

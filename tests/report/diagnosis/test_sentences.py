@@ -116,7 +116,7 @@ def test_a_formula_that_helps_little_is_not_offered() -> None:
 @pytest.mark.parametrize(
     ("likely", "said", "then"),
     [
-        ("something_else", "no effect of the library is its cause: something else is at work (probability 0.90), most in surge and yaw.", "worst stretches"),
+        ("something_else", "no effect of the library explains: something else is at work (probability 0.90), most in surge and yaw.", "worst stretches"),
         ("miscalibrated_file", "No single cause: many numbers of the vehicle's file seem to be off at once (probability 0.90).", "rovval fit"),
     ],
 )
@@ -126,6 +126,12 @@ def test_an_unknown_gap_says_which_kind_of_answer_is_the_most_probable(likely: s
     d = null(0.1, 0.1, verdict="unknown", left=left, probabilities=p)
     assert said in answer(d) and then in first_screen(d).next
     assert "a force in surge and yaw that nothing in the library explains; it varies with u, and with a formula for it the error falls to 76 %" in sentence(d)
+
+
+def test_an_effect_that_was_not_found_is_told_beside_something_else() -> None:
+    p = {"healthy": 0.0, "causes": 0.0, "miscalibrated_file": 0.0, "something_else": 0.62, "not_found": 0.38}
+    d = null(0.1, 0.1, verdict="unknown", left={"axes": ["yaw"], "depends_on": []}, probabilities=p)
+    assert "something else is at work (probability 0.62), or one in another form (0.38), most in yaw." in answer(d)
 
 
 def test_a_log_that_contradicts_itself_is_said_to_be_why_no_cause_is_named() -> None:

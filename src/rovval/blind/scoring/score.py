@@ -115,10 +115,11 @@ def score_logs(
 
 
 def _stated(diagnosis: Diagnosis | None) -> dict[str, Any]:
-    """What is said first, its probability, and those of the kinds of model."""
+    """What is said first, its probability, and those of the kinds of model; causes that were not found are causes."""
     first, p = outcomes.said(diagnosis) if diagnosis else ("failed", None)
     belief = diagnosis.probabilities if diagnosis else None
-    return {"said": first, "p_said": p if belief else None, "p_kinds": belief.model_dump() if belief else None}
+    kinds = belief.model_dump(exclude={"not_found"}) | {"causes": belief.causes + belief.not_found} if belief else None
+    return {"said": first, "p_said": p if belief else None, "p_kinds": kinds}
 
 
 def _at_least(best: Mapping[str, float], label: Mapping[str, Any], diagnosis: Diagnosis | None) -> dict[str, float]:

@@ -2,7 +2,8 @@
 
 All are on one scale: prior mass times marginal likelihood, the likelihood tempered for equations that are only nearly right (coarsened posterior:
 Miller and Dunson 2019; `problem.Problem.tempering`). Something else is what no effect of the library is: a few generic forces, on a healthy vehicle or
-beside causes (model discrepancy: Kennedy and O'Hagan 2001), or forces that go with nothing that was logged; either leaves an open gap (`open_gap`).
+beside causes (model discrepancy: Kennedy and O'Hagan 2001), or forces that go with nothing that was logged; either leaves an open gap (`open_gap`). A log
+that no set of causes explains may be of one all the same: the search may not come near it, or its equations may be others here (`NOT_FOUND`).
 
 No log tells two explanations apart that predict the same; they share its probability by their priors, and by how much of the gap is left where windows are
 held out (`resemblance`). So something else has a part of the mass of every set of causes, and no cause is ever certain; a larger part where a force that goes
@@ -28,6 +29,7 @@ from rovval.diagnose.criteria import (
     BETWEEN_CAUSES,
     EVEN_ODDS,
     GROUP_PROBABILITY,
+    NOT_FOUND,
     PRIOR_CAUSES,
     PRIOR_FILE,
     PRIOR_HEALTHY,
@@ -55,7 +57,8 @@ class Probabilities:
         file: of a file that is off in many numbers, and of no cause.
         something_else: of something else alone, of what looks like a set of causes and is none, or of what comes near to a set of causes whose sizes would have
             to vary along the log.
-        varying: the latter part of it.
+        not_found: the part of that which is of the library all the same: the search did not come near it, or its equations are others here.
+        varying: the part of both whose size would have to vary.
     """
 
     sets: Mapping[Names, float]
@@ -63,6 +66,7 @@ class Probabilities:
     filed: Mapping[Names, float]
     file: float
     something_else: float
+    not_found: float
     varying: float
 
     @property
@@ -74,6 +78,11 @@ class Probabilities:
     def causes(self) -> float:
         """Of causes, whatever is beside them."""
         return sum(self._whole().values())
+
+    @property
+    def unexplained(self) -> float:
+        """That no model which was fitted is so: of something else, and of causes that were not found."""
+        return self.something_else + self.not_found
 
     @property
     def likelier_than_not(self) -> Literal["causes", "healthy"] | None:
@@ -166,12 +175,14 @@ def probabilities(
     _move_form_errors(share, best, left)
     _coarsen(share)
     inconstant = sum(p for (kind, _), p in share.items() if kind.startswith(VARYING))
+    unexplained = share["else", frozenset()] + inconstant + sum(believed.values()) - sum(share.values())
+    missed = NOT_FOUND * sum(PRIOR_CAUSES) / (NOT_FOUND * sum(PRIOR_CAUSES) + PRIOR_SOMETHING_ELSE)
     return Probabilities(
         sets={names: p for (kind, names), p in share.items() if kind == "sets"},
         beside={names: p for (kind, names), p in share.items() if kind == "beside"},
         filed={names: p for (kind, names), p in share.items() if kind == "filed" and names},
         file=share.get(("filed", frozenset()), 0.0), varying=inconstant,
-        something_else=share["else", frozenset()] + inconstant + sum(believed.values()) - sum(share.values()),
+        something_else=(1.0 - missed) * unexplained, not_found=missed * unexplained,
     )  # fmt: skip
 
 

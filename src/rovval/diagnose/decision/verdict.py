@@ -103,9 +103,9 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
     found = replace(found, indications=indications(selection.steps[0] if selection.steps else (), known, faults))
     if belief.likelier_than_not == "healthy":
         return found
-    inconstant = [h.name for h in best.causes] if belief.varying > 0.5 * belief.something_else else []
+    inconstant = [h.name for h in best.causes] if belief.varying > 0.5 * belief.unexplained else []
     goes_with = varies[best.names].goes_with if inconstant else None
-    if belief.something_else > max(belief.healthy, belief.causes) and evidence <= 0.0 and not inconstant:
+    if belief.unexplained > max(belief.healthy, belief.causes) and evidence <= 0.0 and not inconstant:
         return replace(found, verdict="unknown", unexplained=unexplained_by_any(problem, known.share, residuals))
     return replace(found, verdict="unknown", unexplained=unexplained(problem, nominal_forces(problem), selection.healthy, inconstant, goes_with))
 

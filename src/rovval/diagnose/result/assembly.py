@@ -156,7 +156,9 @@ def _within_tolerance(problem: Problem, selection: Selection, decision: Decision
 def _probabilities(decision: Decision) -> Probabilities:
     """Of the four kinds of model."""
     found = decision.probabilities
-    return Probabilities(healthy=found.healthy, causes=found.causes, miscalibrated_file=found.file, something_else=found.something_else)
+    return Probabilities(
+        healthy=found.healthy, causes=found.causes, miscalibrated_file=found.file, something_else=found.something_else, not_found=found.not_found,
+    )  # fmt: skip
 
 
 def _detection(decision: Decision) -> Detection:

@@ -153,12 +153,15 @@ class Candidate(Record):
 
 
 class Probabilities(Record):
-    """How probable each kind of model is; the four sum to one."""
+    """How probable each kind of model is; the five sum to one."""
 
     healthy: float = Field(description="a vehicle as its file has it, within tolerance")
     causes: float = Field(description="causes of the library, alone or with something else beside them")
     miscalibrated_file: float = Field(description="a file that is off in many numbers at once")
     something_else: float = Field(description="something that the library does not hold")
+    not_found: float = Field(
+        default=0.0, description="an effect of the library that no fit explains the log with: the search did not come near it, or its equations are others here"
+    )
 
 
 class Detection(Record):

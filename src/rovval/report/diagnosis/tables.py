@@ -65,5 +65,7 @@ def models(d: Diagnosis) -> list[tuple[str, float]]:
     kinds = {
         "causes": "one or more effects of the library", "healthy": "nothing: the vehicle is as its file has it, each number within its tolerance",
         "miscalibrated_file": "a vehicle file that is off in many numbers at once", "something_else": "something that the library does not hold",
+        "not_found": "an effect of the library that was not found, or has other equations here",
     }  # fmt: skip
-    return [(kinds[kind], p) for kind, p in sorted(d.probabilities.model_dump().items(), key=lambda item: -item[1])]
+    known = {kind: p for kind, p in d.probabilities.model_dump().items() if p or kind != "not_found"}  # a document of before it was told has none
+    return [(kinds[kind], p) for kind, p in sorted(known.items(), key=lambda item: -item[1])]

@@ -37,7 +37,8 @@ def unknown(d: Diagnosis) -> str:
         return f"There is a gap that nothing here explains{sure}: {known(d)} account for only {per_cent(d.left.accounted)} of it, and no effect for the rest."
     if likely == "file":
         return f"No single cause: many numbers of the vehicle's file seem to be off at once{sure}."
-    return f"There is a gap, and no effect of the library is its cause: something else is at work{sure}{_acting(d)}."
+    missed = f", or one in another form ({probability(p.not_found)})" if p and p.not_found else ""
+    return f"There is a gap that no effect of the library explains: something else is at work{sure}{missed}{_acting(d)}."
 
 
 def unexplained(d: Diagnosis) -> str:
