@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -63,6 +64,16 @@ def test_what_is_always_there_has_no_beginning(logs: tuple[Run, Run]) -> None:
     document = found.document()
     assert document["since_s"] is None and since(found) == "" and [c["effect"] for c in document["causes"]] == ["inflow_loss"]
     assert document["causes"][0]["onset_s"] is None
+
+
+@pytest.mark.slow
+def test_what_begins_by_itself_stands_beside_what_begins_in_mid_log(tmp_path: Path) -> None:
+    """A weight from mid-log on and a payload that is taken up then push alike: neither hides the other."""
+    flight = fly(LIBRARY / "merlin.toml", "rich", [Planted("buoyancy_error", None, 1.5, BEGINS)], 22, 240.0, 0.02)
+    write_csv(flight, tmp_path / "log.csv")
+    [cause] = diagnose([open_run(tmp_path / "log.csv", "merlin", tmp_path / "archive")], merlin()).causes
+    assert {"buoyancy_error", "payload_change"} <= set(cause.group) and cause.probability < 0.9
+    assert cause.onset_s == pytest.approx(BEGINS, abs=15.0)
 
 
 def test_the_windows_before_deny_what_they_do_not_hold() -> None:
