@@ -10,9 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from rovval import effects
 from rovval.core.data import Run
 from rovval.core.errors import BadInput
-from rovval.diagnose.decision.finding import Finding, began, weighed_with
+from rovval.diagnose.decision.finding import Finding, began, may_begin, weighed_with
 from rovval.diagnose.decision.verdict import decide
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses, initialised
@@ -63,7 +64,7 @@ def diagnose(
     say = progress or _silent
     windows, left_out = cut(runs, vehicle, model, window_s)
     found = analyse(windows, without, calibration_slop, say)
-    if onset := found.selection.onset:
+    if (onset := found.selection.onset) and may_begin(found, onset.time):
         say(f"searching the part from {onset.time:.0f} s on", 0.85)
         late, time = _analysed_from(onset.time, windows[0], without, calibration_slop), onset.time
         if late and (moved := began(late, found, time)) != time:
@@ -87,9 +88,11 @@ def analyse(windows: tuple[Windows, ...], without: Sequence[str], tolerance: flo
 
 
 def _analysed_from(time: float, windows: Windows, without: Sequence[str], tolerance: float) -> Finding | None:
-    """The same over the windows from ``time`` (s) on; None where too few of them can be simulated: the log as a whole was."""
+    """The same over the windows from ``time`` (s) on, without the effects that have an onset of their own, which the whole log shows; None where too few
+    windows can be simulated: the log as a whole was."""
+    events = [name for name in effects.names() if effects.load(name).begins]
     try:
-        return analyse((windows_from(windows, time),), without, tolerance, _silent)
+        return analyse((windows_from(windows, time),), [*without, *events], tolerance, _silent)
     except BadInput:
         return None
 

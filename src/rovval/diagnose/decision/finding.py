@@ -5,16 +5,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from math import log
 
 from rovval.core.data import Array
 from rovval.diagnose.decision.verdict import Decision, decide
-from rovval.diagnose.effort import SETS_WEIGHED
+from rovval.diagnose.effort import NEGLIGIBLE, SETS_WEIGHED
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.sensor_faults import FittedFault
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.search.joint import refitted
 from rovval.diagnose.search.model import Model, Part, best_of_each_set
-from rovval.diagnose.search.onset import moved_onset, with_onset
+from rovval.diagnose.search.onset import moved_onset, onset_cost, with_onset
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +37,16 @@ class Finding:
     residuals: list[Array]
     faults: tuple[FittedFault, ...]
     decision: Decision
+
+
+def may_begin(whole: Finding, time: float) -> bool:
+    """Whether the most probable causes of the ``whole`` log, where they have no onset of their own, may as well be at work from ``time`` (s) on alone (not
+    negligible beside all through, `NEGLIGIBLE`): where something else begins on a healthy vehicle the windows before do not hold them."""
+    problem, best, healthy = whole.problem, whole.selection.best, whole.selection.healthy
+    if best.fit is None or any(h.effect.begins for h in best.causes):
+        return True
+    begun = with_onset(problem, best.causes, best.log_prior, Part(time, problem, best.fit), healthy)
+    return begun.log_posterior > best.log_posterior + log(NEGLIGIBLE) - 0.5 * onset_cost(problem)
 
 
 def began(late: Finding, whole: Finding, time: float) -> float:
