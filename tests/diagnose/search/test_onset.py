@@ -91,7 +91,7 @@ def test_the_windows_before_deny_what_they_do_not_hold() -> None:
 
 def answered(onset: Onset) -> Finding:
     """A pass over the whole log that suspects an onset and names nothing."""
-    selection: Any = SimpleNamespace(onset=onset, healthy=None)
+    selection: Any = SimpleNamespace(onset=onset, healthy=None, best=SimpleNamespace(fit=None))
     decision: Any = SimpleNamespace(causes=(), fit=None)
     problem: Any = None
     return Finding(problem, {}, selection, [], (), decision)
