@@ -64,9 +64,9 @@ def diagnose(
     say = progress or _silent
     windows, left_out = cut(runs, vehicle, model, window_s)
     found = analyse(windows, without, calibration_slop, say)
-    if (onset := found.selection.onset) and may_begin(found, onset.time):
-        say(f"searching the part from {onset.time:.0f} s on", 0.85)
-        late, time = _analysed_from(onset.time, windows[0], without, calibration_slop), onset.time
+    if (time := found.selection.onset) and may_begin(found, time):
+        say(f"searching the part from {time:.0f} s on", 0.85)
+        late = _analysed_from(time, windows[0], without, calibration_slop)
         if late and (moved := began(late, found, time)) != time:
             late, time = _analysed_from(moved, windows[0], without, calibration_slop), moved
         found = weighed_with(late, found, time) if late else found

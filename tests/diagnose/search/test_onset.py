@@ -26,7 +26,7 @@ from rovval.diagnose.problem.problem import Problem, pose
 from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.search.model import Part
-from rovval.diagnose.search.onset import Onset, Stretch, moved_onset, onset_cost, windows_from, with_onset
+from rovval.diagnose.search.onset import Stretch, moved_onset, onset_cost, windows_from, with_onset
 from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.diagnose.windows.windows import Windows
 from rovval.report.diagnosis.json import document as written
@@ -89,7 +89,7 @@ def test_the_windows_before_deny_what_they_do_not_hold() -> None:
     assert early.explained(at, wide, 1.0) < 0.0
 
 
-def answered(onset: Onset) -> Finding:
+def answered(onset: float) -> Finding:
     """A pass over the whole log that suspects an onset and names nothing."""
     selection: Any = SimpleNamespace(onset=onset, healthy=None, best=SimpleNamespace(fit=None))
     decision: Any = SimpleNamespace(causes=(), fit=None)
@@ -98,7 +98,7 @@ def answered(onset: Onset) -> Finding:
 
 
 def test_a_part_that_cannot_be_simulated_leaves_the_answer_of_the_whole(monkeypatch: pytest.MonkeyPatch):
-    windows, whole = list[int](), answered(Onset(40.0, 500.0))
+    windows, whole = list[int](), answered(40.0)
     run = own((), 5, 100.0)
 
     def analysed(some: tuple[Windows, ...], *_: Any) -> Any:

@@ -15,7 +15,7 @@ from rovval.diagnose.residuals.sensor_faults import FittedFault
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.search.joint import refitted
 from rovval.diagnose.search.model import Model, Part, best_of_each_set
-from rovval.diagnose.search.onset import moved_onset, onset_cost, with_onset
+from rovval.diagnose.search.onset import evidence_with_onset, moved_onset, with_onset
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,8 +45,7 @@ def may_begin(whole: Finding, time: float) -> bool:
     problem, best, healthy = whole.problem, whole.selection.best, whole.selection.healthy
     if best.fit is None or any(h.effect.begins for h in best.causes):
         return True
-    begun = with_onset(problem, best.causes, best.log_prior, Part(time, problem, best.fit), healthy)
-    return begun.log_posterior > best.log_posterior + log(NEGLIGIBLE) - 0.5 * onset_cost(problem)
+    return evidence_with_onset(problem, best.fit, time, healthy) > best.evidence + 2.0 * log(NEGLIGIBLE)
 
 
 def began(late: Finding, whole: Finding, time: float) -> float:

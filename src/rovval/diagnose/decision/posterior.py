@@ -156,7 +156,7 @@ def probabilities(
     known |= {("filed", names): best[names].log_prior + filed + 0.5 * evidence for names, evidence in file.items()}
     known["else", frozenset()] = nothing.log_posterior + doubt + _something_else(forces, open_gap)
     for names, more in varying.items():  # what only comes near a cause, or that cause in another form
-        known[FORM, names], alike = log_varying(best[names], more)
+        known[FORM, names], alike = _log_varying(best[names], more)
         known |= {(VARYING + name, names): value for name, value in alike.items()}
     top = max(known.values())
     weight = {key: exp(value - top) for key, value in known.items()}
@@ -186,7 +186,7 @@ def probabilities(
     )  # fmt: skip
 
 
-def log_varying(model: Model, varying: Variation) -> tuple[float, dict[str, float]]:
+def _log_varying(model: Model, varying: Variation) -> tuple[float, dict[str, float]]:
     """Log posterior of the causes of a model in another form, of which the size varies, and of something else that comes near to each of them; the one is as
     likely beforehand as the other, and both together as something else beside causes."""
     whole = model.log_posterior + log(PRIOR_SOMETHING_ELSE / PRIOR_HEALTHY) - log(2.0)

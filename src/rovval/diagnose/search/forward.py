@@ -24,7 +24,7 @@ from rovval.diagnose.search.baseline import Candidate, baseline_of, healthy_base
 from rovval.diagnose.search.candidates import candidates
 from rovval.diagnose.search.joint import reconsidered, settled
 from rovval.diagnose.search.model import Model, ModelPrior
-from rovval.diagnose.search.onset import Onset, suspected_onset
+from rovval.diagnose.search.onset import suspected_onset
 from rovval.diagnose.search.plausible import plausible
 from rovval.diagnose.search.screening import linearised, screened
 
@@ -41,7 +41,7 @@ class Selection:
         healthy: the fit of coefficients within tolerance, without causes.
         ranking: every hypothesis with the reduction of the gap that it makes by itself, held out: the causes first, then by that.
         steps: candidates of each step that had any.
-        onset: from when on something seems to be at work that was not there before; None where nothing does.
+        onset: from when on (s since the run's start) something seems to be at work that was not there before; None where nothing does.
         prior: prior mass of any set of causes.
     """
 
@@ -50,7 +50,7 @@ class Selection:
     healthy: Posterior
     ranking: tuple[tuple[str, float], ...]
     steps: tuple[tuple[Row, ...], ...]
-    onset: Onset | None
+    onset: float | None
     prior: ModelPrior
 
     @property
@@ -95,7 +95,7 @@ def search(
 
 def _extended(
     problem: Problem, prior: ModelPrior, library: list[Hypothesis], front: Model, healthy: Posterior, least: float
-) -> tuple[list[Candidate], Onset | None]:
+) -> tuple[list[Candidate], float | None]:
     """Candidates for one cause more than ``front`` has, none where none promises a log posterior of ``least``; and the onset that the log suggests."""
     baseline = baseline_of(front.fit) if front.fit else healthy_baseline(problem, healthy)
     chosen = front.fit.slots if front.fit else ()

@@ -30,15 +30,6 @@ from rovval.diagnose.windows.windows import Windows
 
 
 @dataclass(frozen=True, slots=True)
-class Onset:
-    """When something seems to begin: ``time`` (s since the run's start), and its ``evidence`` from there on (twice the log Bayes factor over
-    coefficients within tolerance, linearised)."""
-
-    time: float
-    evidence: float
-
-
-@dataclass(frozen=True, slots=True)
 class Stretch:
     """Normal equations of neighbouring windows, summed, coefficients within tolerance eliminated: ``A`` (k, k), ``b`` (k,)."""
 
@@ -58,9 +49,9 @@ class Stretch:
         return float(slope @ np.linalg.solve(H, slope) / tempering - np.linalg.slogdet(H)[1] + np.log(ridge).sum())
 
 
-def suspected_onset(problem: Problem, data: NormalEquations, library: Sequence[Hypothesis]) -> Onset | None:
-    """From when on something is at work that was not there before; None where nothing says so, and for several logs, each of which would have an onset
-    of its own. ``data`` is the library linearised at the healthy fit."""
+def suspected_onset(problem: Problem, data: NormalEquations, library: Sequence[Hypothesis]) -> float | None:
+    """From when on (s since the run's start) something is at work that was not there before; None where nothing says so, and for several logs, each of
+    which would have an onset of its own. ``data`` is the library linearised at the healthy fit."""
     if len(problem.runs) > 1 or problem.window_count < WINDOWS_BEFORE_ONSET + WINDOWS_AFTER_ONSET:
         return None
     priors = {h.label: prior_of(problem, h) for h in library if not h.effect.begins}
@@ -74,7 +65,7 @@ def suspected_onset(problem: Problem, data: NormalEquations, library: Sequence[H
     found |= {k: _evidence_from(problem, data, priors, always, k) for k in near if k not in found}
     best = max(found, key=lambda k: found[k])
     windows = problem.runs[0]
-    return Onset(float(windows.start[best] * windows.run.dt), found[best]) if found[best] else None
+    return float(windows.start[best] * windows.run.dt) if found[best] else None
 
 
 def _evidence_from(problem: Problem, data: NormalEquations, priors: Mapping[str, Prior], always: Mapping[str, float], k: int) -> float:
@@ -105,10 +96,15 @@ def windows_from(windows: Windows, time: float) -> Windows:
 
 def with_onset(problem: Problem, causes: Sequence[Hypothesis], log_prior: float, part: Part, healthy: Posterior) -> Model:
     """The model in which ``causes`` fitted to a part of the log are at work from its beginning on, and a healthy vehicle is before, on every window."""
-    first = _before(problem, part.since)
-    point, evidence = _best_switched(problem, part.fit, first, healthy)
-    fit = replace(_on_every_window(problem, part.fit, first), posterior=point, evidence=evidence)
+    point, evidence = _best_switched(problem, part.fit, part.since, healthy)
+    fit = replace(_on_every_window(problem, part.fit, part.since), posterior=point, evidence=evidence)
     return Model(tuple(causes), fit, evidence - onset_cost(problem), log_prior, careful=True, part=part)
+
+
+def evidence_with_onset(problem: Problem, fit: HypothesisFit, time: float, healthy: Posterior) -> float:
+    """Twice the log Bayes factor over the nominal vehicle, on every window, of the causes of a ``fit`` at work from ``time`` (s) on and of a healthy vehicle
+    before; that they begin in one window rather than another is not paid for."""
+    return _best_switched(problem, fit, time, healthy)[1]
 
 
 def moved_onset(problem: Problem, late: HypothesisFit, time: float, healthy: Posterior) -> float:
@@ -116,16 +112,16 @@ def moved_onset(problem: Problem, late: HypothesisFit, time: float, healthy: Pos
     windows = problem.runs[0]
     times = (windows.start * windows.run.dt)[WINDOWS_BEFORE_ONSET : problem.window_count - WINDOWS_AFTER_ONSET + 1]
     switches = _switches(problem, late, healthy)
-    evidence = {float(t): max(laplace_evidence(problem, one.at(_before(problem, t))) for one in switches) for t in times}
+    evidence = {float(t): max(laplace_evidence(problem, one.at(np.concatenate(_before(problem, t)))) for one in switches) for t in times}
     best = max(evidence, key=lambda t: evidence[t])
     return best if evidence[best] > evidence.get(time, -np.inf) - 2.0 * log(NEGLIGIBLE) else time
 
 
-def _best_switched(problem: Problem, late: HypothesisFit, first: Flags, healthy: Posterior) -> tuple[Posterior, float]:
-    """The posterior of the causes of ``late`` at work but in the windows ``first`` (m,), and its evidence, less what its start gains over the ``healthy`` fit
-    without any cause: every fit is local, and a cause must not gain by another start alone."""
+def _best_switched(problem: Problem, late: HypothesisFit, time: float, healthy: Posterior) -> tuple[Posterior, float]:
+    """The posterior of the causes of ``late`` at work from ``time`` (s) on, and its evidence, less what its start gains over the ``healthy`` fit without any
+    cause: every fit is local, and a cause must not gain by another start alone."""
     switches, nothing, never = _switches(problem, late, healthy), laplace_evidence(problem, healthy), np.ones(problem.window_count, dtype=bool)
-    points = [one.at(first) for one in switches]
+    points = [one.at(np.concatenate(_before(problem, time))) for one in switches]
     started = [max(laplace_evidence(problem, one.at(never)) - nothing, 0.0) for one in switches]
     evidence = [laplace_evidence(problem, point) - gained for point, gained in zip(points, started, strict=True)]
     best = int(np.argmax(evidence))
@@ -143,15 +139,15 @@ def _switches(problem: Problem, late: HypothesisFit, healthy: Posterior) -> list
     return [_Switch.of(problem, late.slots, now, then) for now, then in ((beside, without), (alone, none))]
 
 
-def _before(problem: Problem, time: float) -> Flags:
-    """Which windows (m,) begin before ``time`` (s)."""
-    return np.concatenate([part.start * part.run.dt < time for part in problem.runs])
+def _before(problem: Problem, time: float) -> list[Flags]:
+    """Which windows (m,) of each run begin before ``time`` (s)."""
+    return [part.start * part.run.dt < time for part in problem.runs]
 
 
-def _on_every_window(problem: Problem, late: HypothesisFit, first: Flags) -> HypothesisFit:
-    """The fit ``late``, and of the windows ``first`` (m,) the vehicle as its file has it: losses, and errors by part."""
-    linear = [linearise(windows, late.beta, ()) for windows in problem.runs]
-    before = np.split(first, np.cumsum([windows.count for windows in problem.runs])[:-1])
+def _on_every_window(problem: Problem, late: HypothesisFit, time: float) -> HypothesisFit:
+    """The fit ``late``, and of the windows before ``time`` (s) the vehicle as its file has it: losses, and errors by part."""
+    linear, before = [linearise(windows, late.beta, ()) for windows in problem.runs], _before(problem, time)
+    first = np.concatenate(before)
     nominal, found = corrected_residuals(problem), corrected_of(problem, linear)
     switched = [np.where(then[:, None, None], old, new) for then, old, new in zip(before, nominal, found, strict=True)]
     dynamics, total = gap_equations_of(problem, late.beta, linear)
