@@ -14,7 +14,7 @@ import numpy as np
 from rovval.diagnose.criteria import FILE_WIDTH, MOST_CAUSES
 from rovval.diagnose.effort import SETS_WEIGHED
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
-from rovval.diagnose.inference.map_fit import map_fit
+from rovval.diagnose.inference.map_fit import map_fit, map_refit
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.search.forward import Selection
@@ -42,7 +42,8 @@ def _fitted(problem: Problem, point: Posterior, file: Departures) -> float:
     """Evidence of a file that is off, fitted by re-simulation from where the linearisation begins: far from there it says little."""
     wide = Prior({s: sd * (FILE_WIDTH if s in file.slots else 1.0) for s, sd in problem.tolerance.sd.items()})
     there = replace(problem, tolerance=wide)
-    return laplace_evidence(there, map_fit(there, point.beta, point.columns[: point.effect_count])) - file.cost
+    fit = map_refit(there, point) if point.whitened else map_fit(there, point.beta, point.columns[: point.effect_count])
+    return laplace_evidence(there, fit) - file.cost
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,13 +37,12 @@ def map_fit(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[
     """
     if near is not None:
         return _descended(problem, posterior_at(problem, start, _columns(problem, slots), len(slots), near), near, rounds)
-    point = posterior_at(problem, start, _columns(problem, slots), len(slots))
-    for _ in range(RELINEARISED_TIMES):
-        reached = _descended(problem, point, point.whitened, rounds)
-        if point.cost() - reached.cost() < RELINEARISED_FROM * problem.tempering:
-            return reached
-        point = posterior_at(problem, reached.beta, point.columns, point.effect_count)
-    return _descended(problem, point, point.whitened, rounds)
+    return _followed(problem, posterior_at(problem, start, _columns(problem, slots), len(slots)), rounds)
+
+
+def map_refit(problem: Problem, point: Posterior) -> Posterior:
+    """The MAP fit under the priors of ``problem`` from where one under others ended, at first with the sensitivities that it has there."""
+    return _followed(problem, _point(problem, point.beta, point.effect_count, point.whitened), MAP_STEPS)
 
 
 def healthy_fit(problem: Problem) -> Posterior:
@@ -89,6 +88,16 @@ def _begun(problem: Problem, seconds: float) -> Problem:
 def _columns(problem: Problem, slots: tuple[int, ...]) -> tuple[int, ...]:
     """The slots, then every other one that has a tolerance."""
     return (*slots, *(c for c in problem.tolerance.sd if c not in slots))
+
+
+def _followed(problem: Problem, point: Posterior, rounds: int) -> Posterior:
+    """The optimum from ``point``, its sensitivities taken anew `RELINEARISED_TIMES` times at most where it ends far from there."""
+    for _ in range(RELINEARISED_TIMES):
+        reached = _descended(problem, point, point.whitened, rounds)
+        if point.cost() - reached.cost() < RELINEARISED_FROM * problem.tempering:
+            return reached
+        point = posterior_at(problem, reached.beta, point.columns, point.effect_count)
+    return _descended(problem, point, point.whitened, rounds)
 
 
 def _descended(problem: Problem, point: Posterior, slopes: tuple[Whitened, ...], rounds: int) -> Posterior:

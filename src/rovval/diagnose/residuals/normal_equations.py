@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import solve_triangular
+from scipy.linalg.lapack import dtrtri
 
 from rovval.core.data import Array
 from rovval.core.large_arrays import columns_first, joined, zeros
@@ -171,7 +171,8 @@ def _window(linear: Linearisation, w: int, ok: np.ndarray, variance: Array, spre
     root = np.where(ok[w], 1.0 / np.sqrt(variance), 0.0).reshape(-1)
     x = linear.S[w].reshape(len(root), -1) * root[:, None]
     j = linear.J[w].reshape(len(root), -1)[:, : len(spread)] * root[:, None] * spread
-    q = solve_triangular(np.linalg.cholesky(np.eye(j.shape[1]) + j.T @ j), j.T, lower=True, check_finite=False).T
+    inverse, _ = dtrtri(np.linalg.cholesky(np.eye(j.shape[1]) + j.T @ j), lower=1)  # well conditioned: no smaller than one
+    q = j @ inverse.T
     return root, q, x, q.T @ x
 
 

@@ -72,12 +72,11 @@ def linearise(
         valid[which] = ran[0]
         for i, lane in enumerate(lanes):
             if lane.step and (lane.state >= 0 or lane.column >= 0):
-                derivative = channel_difference(windows, out[i], out[lane.against]) / lane.step
-                derivative[~(ran[0] & ran[i] & ran[lane.against])] = 0.0
-                if lane.state >= 0:
-                    J[here, ..., lane.state] = derivative
-                else:
-                    S[here, ..., place[lane.column]] = derivative
+                derivative = J[here, ..., lane.state] if lane.state >= 0 else S[here, ..., place[lane.column]]
+                channel_difference(windows, out[i], out[lane.against], derivative)
+                derivative /= lane.step
+                if not (alike := ran[0] & ran[i] & ran[lane.against]).all():
+                    derivative[~alike] = 0.0
         r[which] = np.where(windows.ok[which], channel_difference(windows, windows.y[which], out[0]), 0.0)
     J[~valid] = 0.0
     return Linearisation(r, S, J, ids, valid)

@@ -38,8 +38,9 @@ Start = Callable[[Hypothesis, tuple[int, ...]], Array]
 
 
 def candidates(
-    problem: Problem, data: NormalEquations, library: list[Hypothesis], promised: Mapping[str, float], baseline: Baseline, chosen: tuple[int, ...]
-) -> list[Candidate]:
+    problem: Problem, data: NormalEquations, library: list[Hypothesis], promised: Mapping[str, float], needed: Mapping[str, float],
+    baseline: Baseline, chosen: tuple[int, ...],
+) -> list[Candidate]:  # fmt: skip
     """The best initial point of each of the best hypotheses, fitted jointly with what was chosen before; best evidence first.
 
     Args:
@@ -47,6 +48,7 @@ def candidates(
         data: normal equations of the library, linearised at the baseline.
         library: hypotheses to choose from.
         promised: evidence of each initial point in that linearisation, by label.
+        needed: evidence with which it is not negligible, by label; what promises less, or has less, is fitted quickly and no further.
         baseline: the model that they are added to.
         chosen: slots of the causes of the baseline.
     """
@@ -92,8 +94,8 @@ def candidates(
     if included := _included(problem, library, fits):
         h, begin = included
         fit_from(h, begin, tuple(dict.fromkeys((*chosen, *h.slots))))
-    carefully = _refitted(problem, promised, fits, alone if chosen else None, baseline.evidence)
-    return _relinearised(problem, _compared(list(carefully.values()), baseline), baseline)
+    carefully = _refitted(problem, promised, needed, fits, alone if chosen else None, baseline.evidence)
+    return _relinearised(problem, _compared(list(carefully.values()), baseline), needed, baseline)
 
 
 def _like_the_best(data: NormalEquations, ordered: list[Hypothesis], fits: Fits) -> list[Hypothesis]:
@@ -138,13 +140,15 @@ def _has_local_minima(h: Hypothesis) -> bool:
     return (h.from_full_size and not h.evident) or h.effect.has("period")
 
 
-def _refitted(problem: Problem, promised: Mapping[str, float], fits: Fits, alone: Start | None, ground: float) -> Fits:
+def _refitted(
+    problem: Problem, promised: Mapping[str, float], needed: Mapping[str, float], fits: Fits, alone: Start | None, ground: float
+) -> Fits:
     """The fits; those that promise most, and of which a quick fit with fixed sensitivities kept little, made with care: from where it ended, and from
     ``alone``, where there is one. ``ground`` is the evidence of the baseline."""
     promise = {name: promised[h.label] for name, (h, _) in fits.items()}
     kept = {name: quick.evidence - ground for name, (_, quick) in fits.items()}
-    least = REFITTED_EVIDENCE * max(kept.values(), default=0.0)
-    short = sorted((name for name in fits if kept[name] < TANGENT_KEPT * promise[name] and promise[name] >= least), key=lambda name: -promise[name])
+    least = {name: max(REFITTED_EVIDENCE * max(kept.values()), needed[h.label]) for name, (h, _) in fits.items()}
+    short = sorted((name for name in fits if kept[name] < TANGENT_KEPT * promise[name] and promise[name] >= least[name]), key=lambda name: -promise[name])
     found = dict(fits)
     for name in short[:MOST_REFITTED]:
         h, quick = fits[name]
@@ -154,9 +158,9 @@ def _refitted(problem: Problem, promised: Mapping[str, float], fits: Fits, alone
     return found
 
 
-def _relinearised(problem: Problem, some: list[Candidate], baseline: Baseline) -> list[Candidate]:
+def _relinearised(problem: Problem, some: list[Candidate], needed: Mapping[str, float], baseline: Baseline) -> list[Candidate]:
     """The best of the candidates fitted with sensitivities made at their own point, the others as they are; best evidence first."""
-    serious = [c for c in some if c.evidence > SERIOUS_EVIDENCE * some[0].evidence][:MOST_RELINEARISED] if some else []
+    serious = [c for c in some if c.evidence > max(SERIOUS_EVIDENCE * some[0].evidence, needed[c.hypothesis.label])][:MOST_RELINEARISED]
     again = [(c.hypothesis, fit_hypothesis(problem, c.fit.posterior.beta, c.fit.slots)) for c in serious]
     return _compared(again + [(c.hypothesis, c.fit) for c in some if c not in serious], baseline)
 

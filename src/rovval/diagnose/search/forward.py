@@ -106,7 +106,7 @@ def _extended(
     needed = {h.label: 2.0 * (least - prior.log_mass((*front.causes, h))) - baseline.evidence for h in open_now}
     if not any(h.evident or promised[h.label] > needed[h.label] for h in open_now):
         return [], onset
-    return [c for c in candidates(problem, data, open_now, promised, baseline, chosen) if plausible(problem, c)], onset
+    return [c for c in candidates(problem, data, open_now, promised, needed, baseline, chosen) if plausible(problem, c)], onset
 
 
 def _model(prior: ModelPrior, front: Model, one: Candidate) -> Model:

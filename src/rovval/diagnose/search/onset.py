@@ -22,7 +22,7 @@ from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, only_places
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import posterior_at
 from rovval.diagnose.problem.problem import Problem, corrected_of, corrected_residuals, gap_equations_of
-from rovval.diagnose.residuals.normal_equations import NormalEquations
+from rovval.diagnose.residuals.normal_equations import NormalEquations, Whitened
 from rovval.diagnose.residuals.ridge import Prior, eliminated, free_columns
 from rovval.diagnose.residuals.sensitivities import linearise
 from rovval.diagnose.search.model import Model, Part
@@ -136,7 +136,8 @@ def _switches(problem: Problem, late: HypothesisFit, healthy: Posterior) -> list
     without = beside.copy()
     alone[own], without[sized], none[own] = beside[own], healthy.beta[sized], beside[own]
     none[sized] = healthy.beta[sized]
-    return [_Switch.of(problem, late.slots, now, then) for now, then in ((beside, without), (alone, none))]
+    near = late.posterior.whitened if len(late.loss) == problem.window_count else ()
+    return [_Switch.of(problem, late.slots, now, then, near, healthy.whitened) for now, then in ((beside, without), (alone, none))]
 
 
 def _before(problem: Problem, time: float) -> list[Flags]:
@@ -171,10 +172,13 @@ class _Switch:
     tolerance: Array
 
     @classmethod
-    def of(cls, problem: Problem, own: tuple[int, ...], now: Array, then: Array) -> _Switch:
-        """About the parameters ``now`` with the causes, of slots ``own``, at work, and ``then``."""
+    def of(
+        cls, problem: Problem, own: tuple[int, ...], now: Array, then: Array, near: tuple[Whitened, ...], healthy: tuple[Whitened, ...]
+    ) -> _Switch:
+        """About the parameters ``now`` with the causes, of slots ``own``, at work, and ``then``: sensitivities to all else are those of ``near`` and of
+        ``healthy`` where there are such, or else taken there."""
         columns = (*own, *(c for c in problem.tolerance.sd if c not in own))
-        begun, before = posterior_at(problem, now, columns, len(own)), posterior_at(problem, then, columns, len(own))
+        begun, before = (posterior_at(problem, at, columns, len(own), known or None) for at, known in ((now, near), (then, healthy)))
         taken = tuple(i for i, slot in enumerate(own) if slot in problem.tolerance.sd)
         return cls(begun, before, taken, np.array([problem.tolerance.sd[own[i]] for i in taken]))
 

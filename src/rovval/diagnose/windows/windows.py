@@ -105,13 +105,13 @@ def predicted_channels(windows: Windows, which: NDArray[np.int64], nu: Array, et
     return predicted
 
 
-def channel_difference(windows: Windows, a: Array, b: Array) -> Array:
-    """a - b (..., c) by channel, angles wrapped to (-pi, pi]; rotation vectors are no longer than that."""
-    out = a - b
+def channel_difference(windows: Windows, a: Array, b: Array, out: Array | None = None) -> Array:
+    """a - b (..., c) by channel, angles wrapped to (-pi, pi]; rotation vectors are no longer than that. It is written to ``out`` where that is given."""
+    out = np.asarray(np.subtract(a, b, out=out))
     for i, name in enumerate(windows.channels):
-        if name in ANGLES and (np.abs(out[..., i]) > np.pi).any():
+        if name in ANGLES and max(out[..., i].max(), -out[..., i].min()) > np.pi:
             out[..., i] = wrap(out[..., i])
-    return np.asarray(out)
+    return out
 
 
 def axis_channels(windows: Windows) -> dict[str, int]:
