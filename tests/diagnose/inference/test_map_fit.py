@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +13,9 @@ from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
 from rovval.diagnose.inference.laplace import resampled_evidence
-from rovval.diagnose.inference.map_fit import healthy_fit, map_fit, refit_healthy
+from rovval.diagnose.inference.map_fit import healthy_fit, map_fit, map_refit, refit_healthy
 from rovval.diagnose.problem.problem import Problem, pose
+from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.search.discrepancy import generic_forces
 from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.vehicle import load
@@ -70,3 +72,14 @@ def test_the_true_effect_has_more_evidence_than_tolerances_alone_and_no_step_mak
     assert found.beta[own_slot] == pytest.approx(0.3, abs=0.05)
     assert resampled_evidence(p, found, ones)[0] > resampled_evidence(p, alone, ones)[0] + 50
     assert map_fit(p, found.beta, (own_slot,)).cost() <= found.cost() * (1 + 1e-9)
+
+
+def test_a_refit_under_wider_priors_is_the_fit_under_these():
+    """It begins with the sensitivities of the other fit, and ends where a fit with its own does."""
+    p, _ = posed(("inflow_loss:loss=0.4",))
+    healthy, freed = map_fit(p, p.origin, ()), slot(p, "linear_drag[surge].scale")
+    wide = replace(p, tolerance=Prior({s: sd * (10.0 if s == freed else 1.0) for s, sd in p.tolerance.sd.items()}))
+    again, anew = map_refit(wide, healthy), map_fit(wide, healthy.beta, ())
+    assert again.predicted_cost() == pytest.approx(anew.predicted_cost(), rel=0.02)
+    assert again.predicted_cost() < healthy.predicted_cost()
+    assert abs(again.beta[freed] - p.origin[freed]) > abs(healthy.beta[freed] - p.origin[freed])

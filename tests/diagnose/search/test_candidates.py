@@ -10,8 +10,10 @@ from rovval.diagnose.hypotheses.hypothesis import displaced
 from rovval.diagnose.hypotheses.library import initialised
 from rovval.diagnose.inference.map_fit import healthy_fit
 from rovval.diagnose.residuals.normal_equations import NormalEquations
-from rovval.diagnose.search.candidates import start_of
+from rovval.diagnose.search.baseline import healthy_baseline
+from rovval.diagnose.search.candidates import candidates, start_of
 from rovval.diagnose.search.forward import search
+from rovval.diagnose.search.screening import linearised, screened
 
 
 @pytest.mark.parametrize(("before", "after"), [(0.0, np.pi), (np.pi / 2, -np.pi / 2)])
@@ -31,3 +33,15 @@ def test_what_an_effect_includes_is_searched_for_from_its_fit():
     begun = [h for h in initialised(problem, tether, healthy) if h.name == "tether_drag" or h.label == "tether_tension@lever0"]
     worth = {m.names: m.log_posterior for m in search(problem, tether, begun, healthy, lambda text, share: None).models}
     assert worth[frozenset({"tether_tension"})] > worth[frozenset({"tether_drag"})] - 5.0
+
+
+def test_what_would_be_negligible_is_fitted_no_further_than_quickly():
+    problem, library = posed(("inflow_loss:loss=0.3",), seconds=60.0)
+    healthy, few = healthy_fit(problem), [h for h in library if h.name in ("inflow_loss", "linear_drag[surge]")]
+    base = healthy_baseline(problem, healthy)
+    data = linearised(problem, few, healthy)
+    promised = screened(problem, data, few, ())
+    quick, careful = (candidates(problem, data, few, promised, dict.fromkeys(promised, needed), base, ()) for needed in (np.inf, -np.inf))
+    assert quick[0].hypothesis.name == careful[0].hypothesis.name == "inflow_loss"
+    assert not any(c.fit.posterior.whitened for c in quick) and careful[0].fit.posterior.whitened
+    assert careful[0].evidence == pytest.approx(quick[0].evidence, rel=0.1)

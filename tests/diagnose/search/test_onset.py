@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from diagnose_case import LIBRARY, merlin, own
 
+from rovval import effects
 from rovval.blind.cases.csv_log import write_csv
 from rovval.blind.cases.flight import fly
 from rovval.blind.plant.spec import Planted
@@ -56,6 +57,8 @@ def test_what_begins_in_mid_log_is_named_from_there_on(logs: tuple[Run, Run]) ->
     assert document["causes"][0]["effect"] == "inflow_loss"
     assert document["causes"][0]["onset_s"] == document["since_s"] and document["shrinkage"]["total"] > 0.5
     assert document["sentence"].startswith(since(found)) and since(found)
+    told = {row["effect"].partition("[")[0] for part in ("ranking", "not_testable") for row in document[part]}
+    assert told == {name for name in effects.names() if effects.load(name).competes}  # those with an onset of their own, too, which only the whole log shows
 
 
 @pytest.mark.slow

@@ -60,7 +60,15 @@ def weighed_with(late: Finding, whole: Finding, time: float) -> Finding:
     problem, selection = whole.problem, whole.selection
     later = [with_onset(problem, m.causes, selection.prior.log_mass(m.causes), part, selection.healthy) for m, part in _leading(late, time)]
     decision = decide(problem, replace(selection, models=(*selection.models, *later)), whole.residuals, whole.faults)
-    return replace(whole if decision.since is None else late, decision=decision)
+    return replace(whole, decision=decision) if decision.since is None else replace(_with_the_rest(late, whole), decision=decision)
+
+
+def _with_the_rest(late: Finding, whole: Finding) -> Finding:
+    """The finding of a part of the log, with what the ``whole`` of it says of effects that were left out there because they have an onset of their own."""
+    told = {name for name, _ in late.selection.ranking} | set(late.untestable)
+    rest = tuple(row for row in whole.selection.ranking if row[0] not in told)
+    untestable = {name: why for name, why in whole.untestable.items() if name not in told}
+    return replace(late, selection=replace(late.selection, ranking=(*late.selection.ranking, *rest)), untestable={**late.untestable, **untestable})
 
 
 def _leading(late: Finding, time: float) -> list[tuple[Model, Part]]:
