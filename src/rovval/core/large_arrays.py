@@ -15,7 +15,7 @@ import numpy as np
 from rovval.core.data import Array
 from rovval.core.long_columns import no_room
 
-LARGE = 1 << 26  # bytes, 64 MB: the sensitivities of five minutes of log to every coefficient; below, a file costs more than it saves (measured)
+LARGE = 1 << 24  # bytes, 16 MB: the sensitivities of a minute of log to every effect of the library; below, it is not worth a file
 
 
 def zeros(*shape: int) -> Array:

@@ -66,9 +66,10 @@ def diagnose(
     found = analyse(windows, without, calibration_slop, say)
     if (time := found.selection.onset) and may_begin(found, time):
         say(f"searching the part from {time:.0f} s on", 0.85)
-        late = _analysed_from(time, windows[0], without, calibration_slop)
+        unasked = [*without, *found.untestable]  # what the whole log does not show, a part of it does not
+        late = _analysed_from(time, windows[0], unasked, calibration_slop)
         if late and (moved := began(late, found, time)) != time:
-            late, time = _analysed_from(moved, windows[0], without, calibration_slop), moved
+            late, time = _analysed_from(moved, windows[0], unasked, calibration_slop), moved
         found = weighed_with(late, found, time) if late else found
     return assemble(found, left_out, calibration_slop, seed, say)
 
