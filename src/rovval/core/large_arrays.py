@@ -15,7 +15,7 @@ import numpy as np
 from rovval.core.data import Array
 from rovval.core.long_columns import no_room
 
-LARGE = 1 << 24  # bytes, 16 MB: the sensitivities of a minute of log to every effect of the library; below, it is not worth a file
+LARGE = 1 << 26  # bytes, 64 MB: the sensitivities of four minutes of log to every effect of the library; below, a file costs more than it saves (measured)
 
 
 def zeros(*shape: int) -> Array:
