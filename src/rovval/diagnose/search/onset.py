@@ -28,6 +28,8 @@ from rovval.diagnose.residuals.sensitivities import linearise
 from rovval.diagnose.search.model import Model, Part
 from rovval.diagnose.windows.windows import Windows
 
+Known = tuple[Whitened, ...] | None  # sensitivities of a fit nearby; None: to be taken anew
+
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
@@ -103,8 +105,8 @@ def with_onset(problem: Problem, causes: Sequence[Hypothesis], log_prior: float,
 
 def evidence_with_onset(problem: Problem, fit: HypothesisFit, time: float, healthy: Posterior) -> float:
     """Twice the log Bayes factor over the nominal vehicle, on every window, of the causes of a ``fit`` at work from ``time`` (s) on and of a healthy vehicle
-    before; that they begin in one window rather than another is not paid for."""
-    return _best_switched(problem, fit, time, healthy)[1]
+    before; that they begin in one window rather than another is not paid for. Quickly: sensitivities to all but the causes are those of the two fits."""
+    return _best_switched(problem, fit, time, healthy, quickly=True)[1]
 
 
 def moved_onset(problem: Problem, late: HypothesisFit, time: float, healthy: Posterior) -> float:
@@ -117,18 +119,19 @@ def moved_onset(problem: Problem, late: HypothesisFit, time: float, healthy: Pos
     return best if evidence[best] > evidence.get(time, -np.inf) - 2.0 * log(NEGLIGIBLE) else time
 
 
-def _best_switched(problem: Problem, late: HypothesisFit, time: float, healthy: Posterior) -> tuple[Posterior, float]:
+def _best_switched(problem: Problem, late: HypothesisFit, time: float, healthy: Posterior, quickly: bool = False) -> tuple[Posterior, float]:
     """The posterior of the causes of ``late`` at work from ``time`` (s) on, and its evidence, less what its start gains over the ``healthy`` fit without any
     cause: every fit is local, and a cause must not gain by another start alone."""
-    switches, nothing, never = _switches(problem, late, healthy), laplace_evidence(problem, healthy), np.ones(problem.window_count, dtype=bool)
-    points = [one.at(np.concatenate(_before(problem, time))) for one in switches]
+    switches, nothing, never = _switches(problem, late, healthy, quickly), laplace_evidence(problem, healthy), np.ones(problem.window_count, dtype=bool)
+    first = np.concatenate(_before(problem, time))
+    points = [one.at(first) for one in switches]
     started = [max(laplace_evidence(problem, one.at(never)) - nothing, 0.0) for one in switches]
     evidence = [laplace_evidence(problem, point) - gained for point, gained in zip(points, started, strict=True)]
     best = int(np.argmax(evidence))
     return points[best], evidence[best]
 
 
-def _switches(problem: Problem, late: HypothesisFit, healthy: Posterior) -> list[_Switch]:
+def _switches(problem: Problem, late: HypothesisFit, healthy: Posterior, quickly: bool = False) -> list[_Switch]:
     """Coefficients and sensors that are healthy are the same all through the log: where they are beside the causes of ``late``, or where they are at the
     ``healthy`` fit."""
     own, sized = list(late.slots), [s for s in late.slots if not only_places(problem, s)]  # what only places the causes has no null value
@@ -136,8 +139,8 @@ def _switches(problem: Problem, late: HypothesisFit, healthy: Posterior) -> list
     without = beside.copy()
     alone[own], without[sized], none[own] = beside[own], healthy.beta[sized], beside[own]
     none[sized] = healthy.beta[sized]
-    near = late.posterior.whitened if len(late.loss) == problem.window_count else ()
-    return [_Switch.of(problem, late.slots, now, then, near, healthy.whitened) for now, then in ((beside, without), (alone, none))]
+    known = (late.posterior.whitened or None, healthy.whitened or None) if quickly else (None, None)
+    return [_Switch.of(problem, late.slots, (now, then), known) for now, then in ((beside, without), (alone, none))]
 
 
 def _before(problem: Problem, time: float) -> list[Flags]:
@@ -172,13 +175,10 @@ class _Switch:
     tolerance: Array
 
     @classmethod
-    def of(
-        cls, problem: Problem, own: tuple[int, ...], now: Array, then: Array, near: tuple[Whitened, ...], healthy: tuple[Whitened, ...]
-    ) -> _Switch:
-        """About the parameters ``now`` with the causes, of slots ``own``, at work, and ``then``: sensitivities to all else are those of ``near`` and of
-        ``healthy`` where there are such, or else taken there."""
+    def of(cls, problem: Problem, own: tuple[int, ...], points: tuple[Array, Array], known: tuple[Known, Known]) -> _Switch:
+        """About two ``points`` (p,): with the causes, of slots ``own``, at work, and without; sensitivities to all else are those ``known`` of each."""
         columns = (*own, *(c for c in problem.tolerance.sd if c not in own))
-        begun, before = (posterior_at(problem, at, columns, len(own), known or None) for at, known in ((now, near), (then, healthy)))
+        begun, before = (posterior_at(problem, at, columns, len(own), near) for at, near in zip(points, known, strict=True))
         taken = tuple(i for i, slot in enumerate(own) if slot in problem.tolerance.sd)
         return cls(begun, before, taken, np.array([problem.tolerance.sd[own[i]] for i in taken]))
 
