@@ -28,7 +28,9 @@ from rovval.diagnose.residuals.sensitivities import linearise
 from rovval.diagnose.search.model import Model, Part
 from rovval.diagnose.windows.windows import Windows
 
-Known = tuple[Whitened, ...] | None  # sensitivities of a fit nearby; None: to be taken anew
+Near = tuple[Whitened, ...] | None  # sensitivities of a fit nearby; None: to be taken anew
+Known = tuple[Near, Near]  # of all but the causes, with these at work and without
+ANEW: Known = (None, None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,23 +108,23 @@ def with_onset(problem: Problem, causes: Sequence[Hypothesis], log_prior: float,
 def evidence_with_onset(problem: Problem, fit: HypothesisFit, time: float, healthy: Posterior) -> float:
     """Twice the log Bayes factor over the nominal vehicle, on every window, of the causes of a ``fit`` at work from ``time`` (s) on and of a healthy vehicle
     before; that they begin in one window rather than another is not paid for. Quickly: sensitivities to all but the causes are those of the two fits."""
-    return _best_switched(problem, fit, time, healthy, quickly=True)[1]
+    return _best_switched(problem, fit, time, healthy, (fit.posterior.whitened or None, healthy.whitened or None))[1]
 
 
 def moved_onset(problem: Problem, late: HypothesisFit, time: float, healthy: Posterior) -> float:
     """When (s) the causes of a fit to the windows from ``time`` on begin: at the most probable of all windows, where that makes ``time`` negligible."""
     windows = problem.runs[0]
     times = (windows.start * windows.run.dt)[WINDOWS_BEFORE_ONSET : problem.window_count - WINDOWS_AFTER_ONSET + 1]
-    switches = _switches(problem, late, healthy)
+    switches = _switches(problem, late, healthy, (None, healthy.whitened or None))  # good enough to tell one window from another
     evidence = {float(t): max(laplace_evidence(problem, one.at(np.concatenate(_before(problem, t)))) for one in switches) for t in times}
     best = max(evidence, key=lambda t: evidence[t])
     return best if evidence[best] > evidence.get(time, -np.inf) - 2.0 * log(NEGLIGIBLE) else time
 
 
-def _best_switched(problem: Problem, late: HypothesisFit, time: float, healthy: Posterior, quickly: bool = False) -> tuple[Posterior, float]:
+def _best_switched(problem: Problem, late: HypothesisFit, time: float, healthy: Posterior, known: Known = ANEW) -> tuple[Posterior, float]:
     """The posterior of the causes of ``late`` at work from ``time`` (s) on, and its evidence, less what its start gains over the ``healthy`` fit without any
     cause: every fit is local, and a cause must not gain by another start alone."""
-    switches, nothing, never = _switches(problem, late, healthy, quickly), laplace_evidence(problem, healthy), np.ones(problem.window_count, dtype=bool)
+    switches, nothing, never = _switches(problem, late, healthy, known), laplace_evidence(problem, healthy), np.ones(problem.window_count, dtype=bool)
     first = np.concatenate(_before(problem, time))
     points = [one.at(first) for one in switches]
     started = [max(laplace_evidence(problem, one.at(never)) - nothing, 0.0) for one in switches]
@@ -131,7 +133,7 @@ def _best_switched(problem: Problem, late: HypothesisFit, time: float, healthy: 
     return points[best], evidence[best]
 
 
-def _switches(problem: Problem, late: HypothesisFit, healthy: Posterior, quickly: bool = False) -> list[_Switch]:
+def _switches(problem: Problem, late: HypothesisFit, healthy: Posterior, known: Known) -> list[_Switch]:
     """Coefficients and sensors that are healthy are the same all through the log: where they are beside the causes of ``late``, or where they are at the
     ``healthy`` fit."""
     own, sized = list(late.slots), [s for s in late.slots if not only_places(problem, s)]  # what only places the causes has no null value
@@ -139,7 +141,6 @@ def _switches(problem: Problem, late: HypothesisFit, healthy: Posterior, quickly
     without = beside.copy()
     alone[own], without[sized], none[own] = beside[own], healthy.beta[sized], beside[own]
     none[sized] = healthy.beta[sized]
-    known = (late.posterior.whitened or None, healthy.whitened or None) if quickly else (None, None)
     return [_Switch.of(problem, late.slots, (now, then), known) for now, then in ((beside, without), (alone, none))]
 
 
@@ -175,7 +176,7 @@ class _Switch:
     tolerance: Array
 
     @classmethod
-    def of(cls, problem: Problem, own: tuple[int, ...], points: tuple[Array, Array], known: tuple[Known, Known]) -> _Switch:
+    def of(cls, problem: Problem, own: tuple[int, ...], points: tuple[Array, Array], known: Known) -> _Switch:
         """About two ``points`` (p,): with the causes, of slots ``own``, at work, and without; sensitivities to all else are those ``known`` of each."""
         columns = (*own, *(c for c in problem.tolerance.sd if c not in own))
         begun, before = (posterior_at(problem, at, columns, len(own), near) for at, near in zip(points, known, strict=True))
