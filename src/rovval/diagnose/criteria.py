@@ -4,29 +4,26 @@ The sections follow the rooms of `diagnose`, from the ground up. How hard it loo
 without a published source; "opened sets" are development logs with a known answer (`rovval blind`). What belongs to one effect stands in that effect's file.
 """
 
+MATERIAL = 0.05  # share of a sum of squares (of a variance, of a gap) from which something is worth acting on or telling (chosen)
+
 # -- windows: what of a log is measurement, and how it is cut -----------------------------------------------------------------------
 
 LEAST_NOISE = {  # m/s, rad/s, rad, m: standard deviation below which no sensor of an ROV is believed (chosen; a noise-free log divides by nothing)
     "u": 1e-3, "v": 1e-3, "w": 1e-3, "p": 1e-3, "q": 1e-3, "r": 1e-3, "phi": 1e-3, "theta": 1e-3, "psi": 2e-3, "x": 5e-3, "y": 5e-3, "z": 5e-3,
 }  # fmt: skip
 OUTLIER_SIGMA = 8.0  # standard deviations: a sample this far from the mean of its neighbours is an outlier of the sensor (chosen)
-QUANTISED_LEVELS, QUANTISED_REPEATS = 3, 5  # values that repeat themselves, and how often each does on average, in a channel of coarse steps (chosen)
-QUANTISED_ROUNDING = 1e-6  # of the largest step between values: a smaller one is rounding (chosen)
-QUANTISED_MISFIT = 0.1  # of a step: by how much values may miss the grid of steps (chosen)
+QUANTISED_REPEATS = 5  # how often each value repeats itself on average in a channel of coarse steps (chosen)
 SATURATED_SAMPLES = 8  # samples at the end of a range that are no coincidence (chosen)
 SATURATED_PROMINENCE = 5  # times as many as at any of the next three values (chosen)
-SATURATED_LEVELS = 100  # values that a channel takes at least: with fewer the log is written in coarse steps (chosen)
-SATURATED_RISE = 3.0  # times the sensor's noise by which the end of a range is reached in one sample: a steady state is neared slowly (chosen)
-SATURATED_LEAST_RISE = 1e-3  # m/s, rad/s: the same of a log without noise (chosen)
+SATURATED_RISE = 3.0  # times the sensor's noise, or rounding, by which the end of a range is reached in one sample: a steady state is neared slowly (chosen)
 HELD_SHARE = 0.3  # of the samples that repeat the one before: more is a slow sensor, written at the log's rate (chosen)
 SLOWEST_PING, PING_REGULARITY = 30, 0.9  # samples between pings at most, and share of the pings that keep such a period (chosen)
 AT_REST_S, AT_REST_M = 3.0, 0.03  # s, m: aground is at rest so long within the noise of a depth sensor (chosen)
 CONTACT_DEPTH_RANGE = 0.3  # m: contact is looked for in logs that change depth by more (chosen)
 CONTACT_DEPTH_MARGIN = 0.08  # m: within this of the ends of the depth range that the log covers (chosen)
-LOOP_LEAST_SAMPLES = 10  # samples from which a loop gain is estimated at all (chosen)
-LOOP_EXPLAINED = 0.05  # share of a moment's variance that angle and rate must account for, for an autopilot to be seen (chosen)
-FEWEST_WINDOWS = 3  # windows of a run: one to hold out, two to fit on
-MANY_WINDOWS = 6  # windows of a run: with fewer, shorter windows are tried (chosen)
+LEAST_WINDOWS = 3  # of a run, of a level between two changes, before an onset: one to hold out, two to fit on
+FEW_WINDOWS = 6  # windows: fewer are too few to average model-form error over, or to tell a steady force from a disturbance (chosen)
+SMOOTHING = 11  # samples, 1 s at 10 Hz: over which form error is averaged, and motion smoothed for what would drown in noise, as a delay's slope (chosen)
 MEASURED_SHARE = 0.6  # of a window's samples: with fewer measured it is left out (chosen)
 
 
@@ -41,43 +38,32 @@ ATTITUDE_DRIFT_SD = 0.004  # rad: slow error of an AHRS within a window, 0.2 deg
 SIGN_SMOOTHING = 0.1  # of a velocity's rms: from there on a generic force that depends on its sign has reached its size (chosen)
 LEAST_AXIS_FORCE = 0.01  # of the largest axis's force, and that of the weight: no axis is held to have less, so that none is mute (chosen)
 PARITY_LEAST_SD = (0.005, 0.005, 0.002, 0.001, 0.001, 0.001)  # m, rad: noise of a parity relation below which no sensor is believed (chosen)
-PARITY_SMOOTHING = 11  # samples of the quadratic by which motion is smoothed for fault signatures: a delay's is a slope, which noise would drown
 PARITY_MEASURED_SHARE = 0.9  # of a window's samples, of every velocity and angle: with fewer measured, bridged gaps would look like faults (chosen)
 DEAD_RECKONED_SHARE = 0.5  # of its noise: a position that follows the integrated velocity closer was integrated from it (chosen)
-FAULT_SHARE = 0.05  # of the squared parity residuals, that a sensor fault must account for to be called significant (chosen)
 FAULT_SPARE_WINDOWS = 5  # windows more than parameters, from which their scatter says how sure a sensor fault is: six for one
 
 
 # -- problem and inference: prior, noise model, disturbance, cross-validation, MAP fit, intervals -----------------------------------
 
-HEALTHY_DEPARTURE = 3.5  # standard deviations of tolerance that healthy coefficients reach (tuning set: 3.3 of some hundred)
 OUT_OF_TOLERANCE = 5.0  # standard deviations of tolerance from which a coefficient is off by more than a tolerance of the stated size
 HELD_OUT_RUNS = 3  # runs from which one is held out at a time; of fewer, windows are (chosen)
 HELD_OUT_FOLDS = 5  # folds of windows (Hastie, Tibshirani and Friedman 2009, 7.10: five to ten)
 HELD_OUT_BLOCK = 2  # neighbouring windows that are held out together: 20 s, beyond the memory of hull and thrusters
-FORM_ERROR_SMOOTHING = 11  # samples, 1 s at 10 Hz: over which the variance of model-form error is smoothed along the window (chosen)
-DISTURBANCE_WINDOWS = 6  # in fewer windows a steady force and a disturbance cannot be told apart, and none is fitted
 STEADY_FORCE_SD = 0.1  # prior of a steady force of the environment, as a share of the thrusters' rms on its axis
 SEGMENT_CORRELATION = (0.02, 0.98)  # limits of a disturbance's correlation from one segment of a window to the next
-COVERED_BY_NOISE = 0.05  # of the noise's variance: a component of a disturbance that does less than this changes no weight
 INTERVAL_PROBABILITY = 0.90  # of every interval that is stated
-HARMED_AXIS = 0.05  # an axis whose squared error grows by this share is named (chosen)
-IDENTIFIABLE_ALONE = 3.0  # standard errors with which a typical size shows while nothing else moves (chosen)
+OBSERVABLE_SIGMA = 3.0  # standard errors with which an effect of typical size must show in a log for its absence to mean anything (chosen)
 IDENTIFIABLE_JOINTLY = 1.5  # the same while all that is tuned, and every tolerance, moves with it (chosen: a 90 % interval within a typical size)
 WIDEST_INTERVAL = 2.0  # typical sizes: a half interval beyond it, at the fitted point, is no answer (chosen)
 EXACT_WINDOWS = 8.0  # windows for which the equations are as good as exact: of m, each says 1 / (1 + m / this) of what it seems to (development logs)
 PRIOR_WIDTH = 4.0  # wide prior, in typical sizes, in which effects are fitted: keeps a parameter that the log does not see from running away
 PRIOR_FREEDOM = 3.0  # of Student's t, scaled by the typical size, the prior in which effects are compared: large ones are rare, not impossible (chosen)
-FEW_WINDOWS = 6  # windows: fewer are too few to average model-form error over (chosen)
 
 
 # -- hypotheses: which could be told by this log, and where their fits begin --------------------------------------------------------
 
-OBSERVABLE_SIGMA = 3.0  # standard errors with which an effect of typical size must show in a log for its absence to mean anything (chosen)
 LARGE_SIZE = 3.0  # typical sizes: an effect so large must show as much, or it does not compete (chosen); in few windows a typical one must
 CHANGE_FALSE_ALARM = 0.01  # rate at which a log without a change of level is split all the same (chosen)
-CHANGE_LEAST_WINDOWS = 3  # windows on each side of a change point (chosen)
-CHANGE_LEAST_TESTED = 10  # windows that a part of a log needs to be tested for a change of level (chosen)
 SHORTEST_PERIOD_S = 2.0  # s: the shortest period of an effect of the library; ten samples of it are enough
 SPRING_LEAST_STIFFNESS = 5.0  # N/m: half of what is typical of `tether_snag`; softer is an even pull (opened sets: snags 8 to 900, an even pull 0 to 3)
 
@@ -103,10 +89,6 @@ LEAST_EVIDENCE = 6.0  # evidence that is called strong (Kass and Raftery 1995): 
 VARIATIONS = (0.2, 0.8)  # of its size: how much a cause varies whose form is another, and what only comes near one (two plants: 0.1 to 0.3, mostly 0.3 to 2)
 GROUP_PROBABILITY = 0.90  # of a confusion group
 MOST_CAUSES = 3  # at once (chosen)
-FURTHER_GAIN = 0.18  # share of what causes leave of the gap, that a recalibration of the file must take away beyond them (opened sets)
-WINDOWS_BEFORE_ONSET = 3  # windows without what begins during a log, at least (chosen),
-WINDOWS_AFTER_ONSET = 6  # and with it (chosen)
-OWN_FORCE = 0.05  # of what a generic force does, that nothing else does: with less it is not one of its own (opened logs: one on speed beside drag 0.02)
 MOST_FORCES = 4  # generic forces that stand for something else (chosen)
 GENERIC_SIZES = (0.01, 0.1, 1.0)  # prior sizes of a generic force that are tried, in the rms of the thrusters' own on that axis (chosen)
 
@@ -116,28 +98,18 @@ GENERIC_SIZES = (0.01, 0.1, 1.0)  # prior sizes of a generic force that are trie
 OPEN_GAP_RIGHT = 0.06  # mean open gap where the equations are right (164 healthy development logs, in seven groups of 0.00 to 0.15),
 OPEN_GAP_ELSE = 1.0  # and median where something else is at work: as large as what noise and tolerances make (chosen)
 INCONSISTENT_SHARE = 0.1  # of what causes reduce most (opened sets: right ones 0.005 at most, a real run 0.05; a gyro that clips as inertia 0.22)
-INCONSISTENT_DRIFT = 0.01  # rad within a window: an AHRS errs by less, as its tolerance says
-ACTING_FORCE = 0.3  # of the evidence of the generic forces on the strongest axis: others with more are told as well (chosen),
-MOST_ACTING = 3  # so many axes at most (chosen)
-VARYING_FORCE = 0.5  # of the evidence of the strongest feature: others with more are told as well (chosen),
-MOST_VARYING = 4  # so many features at most (chosen)
 
 
 # -- result: attribution, next experiment, recalibration ----------------------------------------------------------------------------
 
 STRONG_QUANTILE = 0.8  # chosen: of a velocity's size in the log, above which its regime is "strong"; an acceleration above it is a transient
-WEAK_SHARE = 0.33  # chosen: of that level, below which the regime is "weak"
 LEAST_SPEED, LEAST_TURN_RATE = 0.05, 1.0  # m/s, deg/s; chosen: a vehicle that is slower nearly all the time has no regimes of that velocity
 LEAST_DEPTH_SPAN = 1.0  # m; chosen: a log that spans less has no regimes of depth
 LOW_ALTITUDES = (1.0, 2.0, 4.0)  # m; chosen: regimes near the bottom
 WORKING_SHARE = 0.3  # chosen: of the 95 % quantile of a thruster's speed, above which it counts as turning
-REGIME_TIME = (0.02, 0.98)  # chosen: share of the time below and above which a regime is no part of the log worth telling
-SLICE_WINDOWS = 4  # chosen: windows; a slice that touches fewer carries no interval
-SLICE_LIFT = 1.3  # chosen: below it a slice holds hardly more of the gap than its time would
+SLICE_LIFT = 1.3  # chosen: below it a slice holds hardly more of the gap than its time would, and of some hundred one does by chance
 SLICES_AN_AXIS, SLICES = 3, 5  # chosen: slices told of one axis, and in all
 PARAMETER_FORM_ERROR = 0.10  # of a parameter's departure, one standard error: equations are only nearly right (logs of two independent plants ask for it)
 GROUP_NAMES = 3  # chosen: members told of a confusion group
 BUSY_QUANTILE, BUSY_LEAST = 0.98, 0.2  # chosen: quantile of a thruster's speed that counts as the most it does, and its least share of the busiest one's peak
-EXPERIMENT_WINDOW_S = 10.0  # s: windows in which a simulated manoeuvre is judged, as those of a log
 RECALIBRATION_LEAST = 3  # chosen: coefficients; one or two are what an effect of the library, or its nearest relative, leaves
-SURELY_BEYOND = 1.0  # tolerances: a coefficient whose whole interval is further off is surely beyond what a healthy file has

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from diagnose_case import merlin, own
 
-from rovval.diagnose.criteria import CHANGE_LEAST_WINDOWS
+from rovval.diagnose.criteria import LEAST_WINDOWS
 from rovval.diagnose.hypotheses.change_points import change_points, largest_changes
 from rovval.diagnose.windows.multiple_shooting import cut_run
 from rovval.diagnose.windows.windows import Windows
@@ -24,8 +24,8 @@ def test_a_break_is_where_the_level_steps(at):
     noise = np.random.default_rng(at).normal(0.0, 0.2, 20)
     found = largest_changes(noise + np.where(np.arange(20) < at, 0.0, 2.0), 2, 5)
     assert max(found)[1] == 5 + at
-    assert all(5 + CHANGE_LEAST_WINDOWS <= i <= 25 - CHANGE_LEAST_WINDOWS for _, i in found)
-    assert largest_changes(noise[: 2 * CHANGE_LEAST_WINDOWS - 1], 2) == []
+    assert all(5 + LEAST_WINDOWS <= i <= 25 - LEAST_WINDOWS for _, i in found)
+    assert largest_changes(noise[: 2 * LEAST_WINDOWS - 1], 2) == []
 
 
 def test_a_change_point_is_found_and_none_invented(part):

@@ -30,7 +30,7 @@ def test_a_healthy_log_is_left_as_it_is():
 def test_a_steady_speed_is_no_stop(noise: float):
     t = np.arange(3000) * 0.1
     speed = 0.8 * np.tanh(5.0 * np.sin(0.05 * t)) + noise * 0.004 * np.random.default_rng(0).normal(size=len(t))
-    assert not saturated(np.round(speed, 4)).any()
+    assert not saturated(np.round(speed, 4), 1e-3).any()
 
 
 def test_a_rate_that_clips_is_masked_where_it_does_and_said():

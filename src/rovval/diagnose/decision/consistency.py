@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rovval.diagnose.criteria import INCONSISTENT_DRIFT, INCONSISTENT_SHARE
+from rovval.diagnose.criteria import ATTITUDE_DRIFT_SD, INCONSISTENT_SHARE, OBSERVABLE_SIGMA
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.parity import ParityResiduals
 from rovval.diagnose.windows.windows import Windows
@@ -38,7 +38,7 @@ def inconsistencies(problem: Problem, weight: Mapping[str, float]) -> list[Incon
         off = sum(_rate_error(problem, part, check, angle, rate) for part, check in zip(problem.runs, problem.parity, strict=True))
         if axis in weight and off > INCONSISTENT_SHARE * weight[axis]:
             for part, check in zip(problem.runs, problem.parity, strict=True):
-                if (drift := _drift(check, angle)) > INCONSISTENT_DRIFT:
+                if (drift := _drift(check, angle)) > OBSERVABLE_SIGMA * ATTITUDE_DRIFT_SD:
                     found.append(Inconsistency(part.run.id, angle, rate, drift))
     return found
 

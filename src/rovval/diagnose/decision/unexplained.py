@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rovval.core.channels import AXES
 from rovval.core.data import Array
-from rovval.diagnose.criteria import ACTING_FORCE, MOST_ACTING, MOST_VARYING, OUT_OF_TOLERANCE, VARYING_FORCE
+from rovval.diagnose.criteria import OUT_OF_TOLERANCE
 from rovval.diagnose.inference.gap import floor_losses, share_left, weighted_errors
 from rovval.diagnose.inference.laplace import Posterior
-from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.search.discrepancy import GenericForces
 from rovval.diagnose.windows.windows import axis_channels
 
@@ -40,8 +39,8 @@ class Unexplained:
     """What the causes leave unexplained; all of the gap where none is named.
 
     Attributes:
-        axes: axes on which generic forces would take most of it away, the first most; of an open gap the one with the largest share of the gap.
-        depends_on: features that such a force on the first axis varies with, the strongest first; empty where it varies with none.
+        axes: axes on which a few generic forces would take most of it away, the first most; where none would, the one with the largest share of the gap.
+        depends_on: features that those on the first axis vary with, the strongest first; empty where there are none.
         share: share (1) of the squared error that generic forces take away on held-out windows; 0 of an open gap.
         departed: coefficient furthest beyond its tolerance and its standardised departure; None where none is.
         inconstant: effects that come near, but whose value would have to change along the log.
@@ -68,19 +67,24 @@ def accounted(problem: Problem, healthy: Posterior) -> Accounted:
 def unexplained(
     problem: Problem, forces: GenericForces, point: Posterior, inconstant: Sequence[str] = (), goes_with: tuple[str, str] | None = None
 ) -> Unexplained:
-    """On which axes generic forces would take away most of what is left at ``point``, and what that resembles; the last two as of `Unexplained`."""
-    by_axis = sorted(((axis, forces.evidence([axis])) for axis in AXES), key=lambda item: -item[1])
-    axes = [axis for axis, gain in by_axis if gain > ACTING_FORCE * by_axis[0][1]][:MOST_ACTING] or [by_axis[0][0]]
-    by_feature = sorted(((f, forces.evidence([axes[0]], f)) for f in forces.features), key=lambda item: -item[1])
-    depends = [f for f, gain in by_feature if gain > VARYING_FORCE * by_feature[0][1] and gain > 0][:MOST_VARYING]
+    """Where the few generic forces act that would take away most of what is left at ``point``, and with what they vary; where none does, the axis of the
+    largest part. The last two as of `Unexplained`."""
+    _, found = forces.sparse()
+    axes = tuple(dict.fromkeys(axis for axis, _ in found)) or (_largest_part(problem, corrected_residuals(problem, point.beta)),)
+    depends = tuple(feature for axis, feature in found if axis == axes[0])
     departures = zip(point.columns[point.effect_count :], point.standardised_departures(), strict=True)
     beyond = [(problem.plant.slots[c].key, float(z)) for c, z in departures if abs(z) > OUT_OF_TOLERANCE]
     departed = max(beyond, key=lambda one: abs(one[1]), default=None)
-    return Unexplained(tuple(axes), tuple(depends), forces.held_out_gain(problem.folds), departed, tuple(inconstant), goes_with)
+    return Unexplained(axes, depends, forces.held_out_gain(problem.folds), departed, tuple(inconstant), goes_with)
 
 
 def unexplained_by_any(problem: Problem, accounted: float, residuals: list[Array]) -> Unexplained:
     """A gap that goes with nothing that was logged: the axis of its largest part. ``residuals`` are the nominal vehicle's, or with the causes that are named;
     noise and tolerance account for a share ``accounted`` of it."""
+    return Unexplained((_largest_part(problem, residuals),), accounted=accounted)
+
+
+def _largest_part(problem: Problem, residuals: list[Array]) -> str:
+    """The axis on which the weighted squared error is largest."""
     weight = weighted_errors(problem, residuals)
-    return Unexplained((max(axis_channels(problem.runs[0]), key=lambda axis: weight[axis]),), accounted=accounted)
+    return max(axis_channels(problem.runs[0]), key=lambda axis: weight[axis])

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import CHANGE_FALSE_ALARM, CHANGE_LEAST_TESTED, CHANGE_LEAST_WINDOWS
+from rovval.diagnose.criteria import CHANGE_FALSE_ALARM, LEAST_WINDOWS
 from rovval.diagnose.effort import GAP_CHANGE_SPLITS
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.windows.windows import Windows
@@ -39,11 +39,11 @@ def change_points(windows: Windows, score: Array, seed: int, level: float = CHAN
 
 def _segments(signal: Array, offset: int, rng: np.random.Generator, level: float) -> Iterator[int]:
     """Windows at which a new level begins, counted from ``offset``."""
-    if len(signal) < CHANGE_LEAST_TESTED or signal.shape[1] == 0:
+    if len(signal) < 2 * LEAST_WINDOWS or signal.shape[1] == 0:
         return
     value, k = _cusum(signal)
     null = np.array([_cusum(signal[rng.permutation(len(signal))])[0] for _ in range(PERMUTATIONS)])
-    if (null >= value).mean() < level and CHANGE_LEAST_WINDOWS <= k <= len(signal) - CHANGE_LEAST_WINDOWS:
+    if (null >= value).mean() < level and LEAST_WINDOWS <= k <= len(signal) - LEAST_WINDOWS:
         yield offset + k
         yield from _segments(signal[:k], offset, rng, level / 2)
         yield from _segments(signal[k:], offset + k, rng, level / 2)
@@ -63,7 +63,7 @@ def gap_change_points(problem: Problem) -> tuple[float, ...]:
 def largest_changes(series: Array, splits: int, first: int = 0) -> list[tuple[float, int]]:
     """(Standardised difference of the means, index at which the second part begins) of a series (n,) that is split ``splits`` times over; indices
     count from ``first``."""
-    if splits == 0 or len(series) < 2 * CHANGE_LEAST_WINDOWS:
+    if splits == 0 or len(series) < 2 * LEAST_WINDOWS:
         return []
     jump, k = _cusum(series[:, None])
     before, after = largest_changes(series[:k], splits - 1, first), largest_changes(series[k:], splits - 1, first + k)
@@ -77,5 +77,5 @@ def _cusum(signal: Array) -> tuple[float, int]:
     head = np.cumsum(signal, axis=0)[:-1]
     tail = signal.sum(axis=0) - head
     jump = np.abs(head / k - tail / (n - k)) * np.sqrt(k * (n - k) / n)
-    jump[: CHANGE_LEAST_WINDOWS - 1], jump[1 - CHANGE_LEAST_WINDOWS :] = 0.0, 0.0
+    jump[: LEAST_WINDOWS - 1], jump[1 - LEAST_WINDOWS :] = 0.0, 0.0
     return float(jump.max()), int(jump.max(axis=1).argmax()) + 1

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import IDENTIFIABLE_ALONE, IDENTIFIABLE_JOINTLY, PRIOR_WIDTH, WIDEST_INTERVAL
+from rovval.diagnose.criteria import IDENTIFIABLE_JOINTLY, OBSERVABLE_SIGMA, PRIOR_WIDTH, WIDEST_INTERVAL
 from rovval.diagnose.inference.hypothesis_fit import (
     HypothesisFit,
     confidence_interval,
@@ -53,7 +53,7 @@ class IdentifiableFit:
 def identifiable(problem: Problem, wanted: Sequence[int]) -> tuple[tuple[int, ...], dict[int, Unidentified]]:
     """Which of the slots ``wanted`` these logs can determine, and why not the others.
 
-    First each by itself (`IDENTIFIABLE_ALONE`), then jointly with coefficients within tolerance, by the covariance of the linearised fit; the least
+    First each by itself (`OBSERVABLE_SIGMA`), then jointly with coefficients within tolerance, by the covariance of the linearised fit; the least
     determined is left out until all that are left are determined (`IDENTIFIABLE_JOINTLY`).
     """
     out, left = dict[int, Unidentified](), list(wanted)
@@ -61,9 +61,9 @@ def identifiable(problem: Problem, wanted: Sequence[int]) -> tuple[tuple[int, ..
     typical = {s: problem.plant.slots[s].parameter.typical for s in (*wanted, *problem.tolerance.sd)}
     for slot in wanted:
         at = int(problem.likelihood.total.place((slot,))[0])
-        if (errors := float(np.sqrt(information[at, at])) * typical[slot]) < IDENTIFIABLE_ALONE:
+        if (errors := float(np.sqrt(information[at, at])) * typical[slot]) < OBSERVABLE_SIGMA:
             left.remove(slot)
-            why = f"not excited: a typical size would show with {errors:.1f} standard errors in these logs, {IDENTIFIABLE_ALONE:g} are needed"
+            why = f"not excited: a typical size would show with {errors:.1f} standard errors in these logs, {OBSERVABLE_SIGMA:g} are needed"
             out[slot] = Unidentified(why)
     while left:
         tolerated = [c for c in problem.tolerance.sd if c not in left]

@@ -14,7 +14,7 @@ import numpy as np
 
 from rovval.core.data import Array
 from rovval.core.large_arrays import taken
-from rovval.diagnose.criteria import HARMED_AXIS
+from rovval.diagnose.criteria import MATERIAL
 from rovval.diagnose.effort import MOST_REFITS
 from rovval.diagnose.inference.bootstrap import shrinkage_interval
 from rovval.diagnose.inference.gap import explainable_gap, floor_losses, squared_errors
@@ -92,8 +92,8 @@ def explainable_left(problem: Problem, losses: Sequence[Array]) -> list[Array]:
 
 
 def worsened_axes(reduction: GapReduction) -> dict[str, float]:
-    """Relative growth of the squared error on each axis where it grows by more than `HARMED_AXIS` with the effects added."""
-    return {axis: -share for axis, share in reduction.axes.items() if share < -HARMED_AXIS}
+    """Relative growth of the squared error on each axis where it grows by more than `MATERIAL` with the effects added."""
+    return {axis: -share for axis, share in reduction.axes.items() if share < -MATERIAL}
 
 
 def held_out_residuals(problem: Problem, fitted: HypothesisFit) -> list[Array]:

@@ -19,7 +19,7 @@ from scipy.linalg import block_diag
 from rovval.core.channels import AXES
 from rovval.core.data import Array
 from rovval.core.large_arrays import zeros
-from rovval.diagnose.criteria import COVERED_BY_NOISE, SEGMENT_CORRELATION, STEADY_FORCE_SD
+from rovval.diagnose.criteria import MATERIAL, SEGMENT_CORRELATION, STEADY_FORCE_SD
 from rovval.diagnose.effort import DISTURBANCE_ROUNDS, DISTURBANCE_SEGMENTS, INITIAL_DISTURBANCE, INITIAL_MEMORY_S
 from rovval.diagnose.residuals.external_forces import force_sensitivities, generic_force_responses, typical_wrench
 from rovval.diagnose.residuals.normal_equations import Linearisation, NormalEquations, concatenated, normal_equations
@@ -122,7 +122,7 @@ def principal_parts(runs: Sequence[Windows], response: Sequence[Array], variance
         for w in range(windows.count):
             weighted = np.where(windows.ok[w], 1.0 / np.sqrt(variance), 0.0)[..., None] * one[w]
             power, way = np.linalg.eigh(np.einsum("tci,tcj->ij", weighted, weighted, optimize=True))
-            found[-1].append(one[w] @ way[:, power > COVERED_BY_NOISE])
+            found[-1].append(one[w] @ way[:, power > MATERIAL])
             most = max(most, found[-1][-1].shape[-1])
     return tuple(np.stack([np.pad(x, ((0, 0), (0, 0), (0, most - x.shape[-1]))) for x in one]) for one in found)
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from rovval.core.data import Array
 from rovval.core.large_arrays import side_by_side
-from rovval.diagnose.criteria import DISTURBANCE_WINDOWS, FORM_ERROR_SMOOTHING, LEAST_NOISE
+from rovval.diagnose.criteria import FEW_WINDOWS, LEAST_NOISE, SMOOTHING
 from rovval.diagnose.effort import INITIAL_DESIGN_EFFECT, NOISE_MODEL_ROUNDS
 from rovval.diagnose.problem.cross_validation import Fold, FoldSums, cross_validate
 from rovval.diagnose.problem.disturbance import (
@@ -81,7 +81,7 @@ def fit_noise_model(
     best = cross_validate(FoldSums.of(first, folds), library, design_effect).step
     white = expected + _form_variance(runs, plain, expected, best)
     total = white * channel_factor
-    if sum(windows.count for windows in runs) < DISTURBANCE_WINDOWS:
+    if sum(windows.count for windows in runs) < FEW_WINDOWS:
         design_effect, _ = _library_fit(runs, linear, total, library, folds, design_effect)
         return NoiseModel(runs, linear, total, total, design_effect, no_disturbance())
     responses = unit_responses(runs, origin)
@@ -143,7 +143,7 @@ def _form_variance(runs: Sequence[Windows], linear: Sequence[Linearisation], var
         rest = nuisance_corrected(left, windows.ok, variance, nuisance_sd(windows))
         total += (rest**2 * windows.ok).sum(axis=0)
         count += windows.ok.sum(axis=0)
-    kernel = np.ones(FORM_ERROR_SMOOTHING) / FORM_ERROR_SMOOTHING
+    kernel = np.ones(SMOOTHING) / SMOOTHING
     mean = total / np.maximum(count, 1)
-    padded = np.pad(mean, ((FORM_ERROR_SMOOTHING // 2, FORM_ERROR_SMOOTHING // 2), (0, 0)), mode="edge")
+    padded = np.pad(mean, ((SMOOTHING // 2, SMOOTHING // 2), (0, 0)), mode="edge")
     return np.stack([np.convolve(padded[:, i], kernel, mode="valid") for i in range(mean.shape[1])], axis=1)

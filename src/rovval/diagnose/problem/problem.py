@@ -14,7 +14,7 @@ import numpy as np
 
 from rovval.core.data import Array
 from rovval.core.errors import BadInput
-from rovval.diagnose.criteria import EXACT_WINDOWS, FEWEST_WINDOWS
+from rovval.diagnose.criteria import EXACT_WINDOWS, LEAST_WINDOWS
 from rovval.diagnose.problem.cross_validation import Fold, make_folds
 from rovval.diagnose.problem.disturbance import Disturbance
 from rovval.diagnose.problem.noise_model import equations_of_runs, fit_noise_model
@@ -138,9 +138,9 @@ def pose(runs: tuple[Windows, ...], asked: Columns, tolerance: float) -> Problem
 
 def _without_stopped(windows: Windows, valid: np.ndarray) -> Windows:
     """The windows with nothing to compare where the simulation of the nominal vehicle stops."""
-    if (stops := int((~valid).sum())) and windows.count - stops < FEWEST_WINDOWS:
+    if (stops := int((~valid).sum())) and windows.count - stops < LEAST_WINDOWS:
         raise BadInput(
-            f"run {windows.run.id}: the simulation stops in {stops} of {windows.count} windows, at least {FEWEST_WINDOWS} have to run",
+            f"run {windows.run.id}: the simulation stops in {stops} of {windows.count} windows, at least {LEAST_WINDOWS} have to run",
             "`rovval simulate` says when and why; look at the vehicle's file",
         )
     return replace(windows, ok=windows.ok & valid[:, None, None], stopped=stops)

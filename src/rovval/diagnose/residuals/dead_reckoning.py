@@ -16,7 +16,7 @@ from rovval.core.frames import (
     turned,
     wrap,
 )
-from rovval.diagnose.criteria import PARITY_MEASURED_SHARE, PARITY_SMOOTHING
+from rovval.diagnose.criteria import PARITY_MEASURED_SHARE, SMOOTHING
 from rovval.diagnose.windows.windows import Windows
 
 ROW_EVERY = 10  # samples between the poses that are compared: 1 s apart, their errors are nearly independent
@@ -73,9 +73,9 @@ def pose_drift(nu: Array, eta: Array, dt: float, tumbling: bool) -> Array:
 
 def smoothed(nu: Array, eta: Array, tumbling: bool) -> tuple[Array, Array]:
     """Motion (m, n, 6) of windows under a smoothing filter (Savitzky and Golay 1964); of a vehicle that is ``tumbling`` the attitude as quaternions."""
-    smooth, still = (signal.savgol_filter(a, PARITY_SMOOTHING, 2, axis=1) for a in (nu, eta))
+    smooth, still = (signal.savgol_filter(a, SMOOTHING, 2, axis=1) for a in (nu, eta))
     if tumbling:
-        q = signal.savgol_filter(smooth_quaternions(eta[..., 3:]), PARITY_SMOOTHING, 2, axis=1)
+        q = signal.savgol_filter(smooth_quaternions(eta[..., 3:]), SMOOTHING, 2, axis=1)
         still[..., 3:] = euler_from_quaternion(q / np.linalg.norm(q, axis=-1, keepdims=True))
     return smooth, still
 

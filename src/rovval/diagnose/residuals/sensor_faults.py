@@ -11,7 +11,7 @@ import numpy as np
 from scipy import stats
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import FAULT_SHARE, FAULT_SPARE_WINDOWS
+from rovval.diagnose.criteria import FAULT_SPARE_WINDOWS, MATERIAL
 from rovval.diagnose.residuals.parity import ParityResiduals
 from rovval.diagnose.windows.windows import Windows
 from rovval.effects import load
@@ -31,7 +31,7 @@ class FittedFault:
         was: what the vehicle's file says of it.
         unit: of all four.
         share: of the squared parity residuals that the fault accounts for.
-        significant: whether ``was`` lies outside the interval and ``share`` is above `FAULT_SHARE`.
+        significant: whether ``was`` lies outside the interval and ``share`` is above `MATERIAL`.
         check: the kinematic identity in words.
         note: how it was fitted, in words.
     """
@@ -81,7 +81,7 @@ def sensor_faults(parity: ParityResiduals, windows: Windows, origin: Array) -> l
                     was=was,
                     unit=slot.parameter.unit,
                     share=share,
-                    significant=bool(low > 0 or high < 0) and share > FAULT_SHARE,
+                    significant=bool(low > 0 or high < 0) and share > MATERIAL,
                 )
             )
     return found

@@ -16,14 +16,12 @@ from rovval.diagnose.criteria import (
     LEAST_DEPTH_SPAN,
     LEAST_SPEED,
     LEAST_TURN_RATE,
+    LEAST_WINDOWS,
     LOW_ALTITUDES,
-    REGIME_TIME,
     SLICE_LIFT,
-    SLICE_WINDOWS,
     SLICES,
     SLICES_AN_AXIS,
     STRONG_QUANTILE,
-    WEAK_SHARE,
     WORKING_SHARE,
 )
 from rovval.diagnose.windows.windows import Windows, axis_channels
@@ -59,7 +57,7 @@ class Slice:
 def regimes(stretches: Windows) -> dict[str, Flags]:
     """Regimes by name, each with the samples of m windows where it holds (m, n), from what was measured and commanded.
 
-    One that holds nearly always or nearly never is left out.
+    One that holds always or never is left out.
     """
     run, found = stretches.run, dict[str, Flags]()
     at = stretches.start[:, None] + np.arange(stretches.steps + 1)[None, :]
@@ -85,7 +83,7 @@ def regimes(stretches: Windows) -> dict[str, Flags]:
         flags = np.zeros(at.shape, dtype=bool)
         flags[part] = True
         found[f"time {run.dt * at[part].min():.0f} to {run.dt * (at[part].max() + 1):.0f} s"] = flags
-    return {name: flags for name, flags in found.items() if REGIME_TIME[0] < flags.mean() < REGIME_TIME[1]}
+    return {name: flags for name, flags in found.items() if 0.0 < flags.mean() < 1.0}
 
 
 def slices(stretches: Windows, error: Array, ok: Flags, seed: int) -> list[Slice]:
@@ -127,7 +125,7 @@ def worst(found: list[Slice], axis_share: dict[str, float], most: int = SLICES) 
     Of slices of one axis that cut the same quantity (``u > 0.3 m/s`` and ``|u| > 0.3 m/s``) only the first is kept. ``axis_share``: each
     axis's share of the whole gap.
     """
-    able = [s for s in found if s.windows >= SLICE_WINDOWS and s.lift > SLICE_LIFT and s.low > 1.0]
+    able = [s for s in found if s.windows >= LEAST_WINDOWS and s.lift > SLICE_LIFT and s.low > 1.0]
     able.sort(key=lambda s: -(s.share - s.time_share) * axis_share.get(s.axis, 0.0))
     chosen: list[Slice] = []
     for one in able:
@@ -142,12 +140,12 @@ def _quantity(one: Slice) -> str:
 
 
 def _levels(name: str, value: Array, unit: str, floor: float) -> dict[str, Flags]:
-    """Strong, weak and signed bins of a velocity, cut at its own 80th percentile rounded to two digits."""
+    """Strong, weak and signed bins of a velocity, cut at the top fifth and at the median of its size, rounded to two digits."""
     size = np.abs(np.nan_to_num(value))
     high = float(f"{np.quantile(size, STRONG_QUANTILE):.2g}")
     if high < floor:
         return {}
-    low = float(f"{WEAK_SHARE * high:.1g}")
+    low = float(f"{np.median(size):.2g}")
     return {
         f"{name} > {high:g} {unit}": value > high,
         f"{name} < {-high:g} {unit}": value < -high,

@@ -13,7 +13,7 @@ import numpy as np
 
 from rovval.core.channels import VELOCITIES
 from rovval.core.data import Array, ClockReport, Reason, Run
-from rovval.diagnose.criteria import BUSY_LEAST, BUSY_QUANTILE, EXPERIMENT_WINDOW_S, PRIOR_WIDTH
+from rovval.diagnose.criteria import BUSY_LEAST, BUSY_QUANTILE, PRIOR_WIDTH
 from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.problem.cross_validation import FoldSums, cross_validate, make_folds
 from rovval.diagnose.problem.problem import Problem
@@ -91,7 +91,7 @@ def _misfit(problem: Problem, beta: Array, members: tuple[str, ...], manoeuvre: 
     if run is None:
         return None
     plant = problem.plant
-    stretches = cut_run(run, plant.vehicle, plant.model, EXPERIMENT_WINDOW_S)
+    stretches = cut_run(run, plant.vehicle, plant.model, DT * (problem.runs[0].steps + 1))
     free = {name: plant.hypotheses[name] for name in members}
     base = np.where([slot.hypothesis in free and slot.parameter.places for slot in plant.slots], problem.prior_mean, plant.null)
     columns = tuple(sorted({s for slots in free.values() for s in slots}))

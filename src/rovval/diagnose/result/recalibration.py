@@ -15,12 +15,9 @@ from rovval import effects
 from rovval.core.data import Array
 from rovval.diagnose.criteria import (
     FEW_WINDOWS,
-    FURTHER_GAIN,
-    HEALTHY_DEPARTURE,
     OUT_OF_TOLERANCE,
     PARAMETER_FORM_ERROR,
     RECALIBRATION_LEAST,
-    SURELY_BEYOND,
 )
 from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.effort import RECALIBRATION_ROUNDS
@@ -51,8 +48,8 @@ def recalibration(
 ) -> Recalibration | None:
     """The coefficients tuned jointly, and how far the gap shrinks on data that they were not fitted to.
 
-    None where it is not asked, or where it is not shown to shrink the gap by more than the causes do, by as much as a further cause has to
-    add. ``before`` are the nominal simulator's residuals, ``tolerance`` is relative.
+    None where it is not asked, or where the interval of its shrinkage does not stay above what the causes close. ``before`` are the nominal simulator's
+    residuals, ``tolerance`` is relative.
     """
     causes = decision.fit.slots if decision.fit else ()
     if not _asked(problem, selection, decision):
@@ -68,7 +65,7 @@ def recalibration(
     progress("fitting them anew without the windows that they are scored on", 0.95)
     shrunk = refitted_shrinkage(problem, fitted, before, tolerance, seed)
     by_causes = max(shrinkage(problem, decision.fit, before, seed).total, 0.0)
-    if shrunk.low <= by_causes + FURTHER_GAIN * (1.0 - by_causes):
+    if shrunk.low <= by_causes:
         return None
     searched = {problem.plant.slots[s].hypothesis for s in fitted.slots if _effect(problem, s).searched}
     slots = [problem.plant.slots[s] for s in fitted.slots]
@@ -83,10 +80,10 @@ def recalibration(
     )
 
 
-def departing(problem: Problem, point: Posterior, limit: float) -> list[int]:
-    """Slots of the vehicle's own coefficients whose standardised departure at ``point`` exceeds ``limit``."""
+def departing(problem: Problem, point: Posterior) -> list[int]:
+    """Slots of the vehicle's own coefficients that are out of tolerance at ``point`` (`OUT_OF_TOLERANCE`)."""
     off = zip(point.columns[point.effect_count :], point.standardised_departures(), strict=True)
-    return [slot for slot, z in off if abs(z) > limit and _effect(problem, slot).place != "sensor"]
+    return [slot for slot, z in off if abs(z) > OUT_OF_TOLERANCE and _effect(problem, slot).place != "sensor"]
 
 
 def _asked(problem: Problem, selection: Selection, decision: Decision) -> bool:
@@ -96,7 +93,7 @@ def _asked(problem: Problem, selection: Selection, decision: Decision) -> bool:
     off = decision.probabilities.off_beside(frozenset(h.name for h in decision.causes))
     if not (left or off) or problem.window_count < FEW_WINDOWS:
         return False
-    return len(departing(problem, point, OUT_OF_TOLERANCE)) >= RECALIBRATION_LEAST
+    return len(departing(problem, point)) >= RECALIBRATION_LEAST
 
 
 def _fitted(problem: Problem, selection: Selection, decision: Decision) -> HypothesisFit | None:
@@ -107,7 +104,7 @@ def _fitted(problem: Problem, selection: Selection, decision: Decision) -> Hypot
     beta[list(causes)] = point.beta[list(causes)]
     near, free, refused = replace(selection.healthy, beta=beta), tuple[int, ...](), set[int]()
     for _ in range(RECALIBRATION_ROUNDS):
-        more = [s for s in departing(problem, point, HEALTHY_DEPARTURE) if s not in refused and not _effect(problem, s).searched]
+        more = [s for s in departing(problem, point) if s not in refused and not _effect(problem, s).searched]
         able, out = identifiable(problem, (*free, *more))
         refused |= out.keys()
         if set(able) == set(free):
@@ -128,7 +125,7 @@ def _coefficients(problem: Problem, fitted: HypothesisFit, causes: Sequence[int]
         rows[problem.plant.slots[slot].key] = Coefficient(
             value=value, low=low, high=high, unit=p.unit, was=was, tolerance=tolerance,
             departure=None if tolerance is None else (value - was) / tolerance,
-            beyond=tolerance is not None and slot not in causes and not low - SURELY_BEYOND * tolerance <= was <= high + SURELY_BEYOND * tolerance,
+            beyond=tolerance is not None and slot not in causes and not low - tolerance <= was <= high + tolerance,
             at_bound=slot in fitted.at_bound, of_cause=slot in causes,
         )  # fmt: skip
     return dict(sorted(rows.items(), key=lambda item: (item[1].of_cause, -abs(item[1].departure or 0.0))))

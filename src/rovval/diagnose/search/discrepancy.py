@@ -13,10 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rovval.core.channels import AXES
 from rovval.core.data import Array
 from rovval.core.large_arrays import side_by_side
-from rovval.diagnose.criteria import GENERIC_SIZES, MOST_FORCES, OWN_FORCE
+from rovval.diagnose.criteria import GENERIC_SIZES, MATERIAL, MOST_FORCES
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.cross_validation import Fold, held_out_losses
 from rovval.diagnose.problem.problem import Problem
@@ -44,11 +43,6 @@ class GenericForces:
     pull: Array
     tempering: float
 
-    def evidence(self, axes: Sequence[str] = AXES, feature: str = "") -> float:
-        """Evidence of all forces on ``axes``, or of those with one feature only."""
-        chosen = [i for i, (axis, name) in enumerate(self.names) if axis in axes and feature in ("", name)]
-        return max(self._evidence(chosen, size) for size in GENERIC_SIZES) - self._evidence([], 1.0) if chosen else 0.0
-
     def alone(self, prior_size: float) -> Array:
         """Evidence (f,) of each force by itself, of that prior standard deviation."""
         k = len(self.precision)
@@ -59,13 +53,13 @@ class GenericForces:
         """(Evidence of the few forces, each of one feature on one axis, that explain most, the names of these): up to ``most``, each beside those before and
         only where it gains, after the prior of one force and one size among all has been paid; minus infinity where none does.
 
-        One that the fit's columns can undo all but a little of (`OWN_FORCE`), as drag undoes a force that varies with speed, is none: the two
+        One that the fit's columns can undo all but a little of (`MATERIAL`), as drag undoes a force that varies with speed, is none: the two
         against each other hold the simulation to the measured speed, whatever it is that is missing.
         """
         k = len(self.precision)
         A, b = self._eliminated(self.precision)
         at_first = np.einsum("wii->i", self.data.A)
-        own = [k + i for i in range(len(self.names)) if A[k + i, k + i] > OWN_FORCE * at_first[k + i]]
+        own = [k + i for i in range(len(self.names)) if A[k + i, k + i] > MATERIAL * at_first[k + i]]
         A, b, names = A[np.ix_(own, own)], b[own], [self.names[i - k] for i in own]
         ridge, total, found = self.tempering / np.array(GENERIC_SIZES)[:, None] ** 2, 0.0, list[tuple[str, str]]()
         each = 2.0 * np.log(max(len(own) * len(ridge), 1))
@@ -79,11 +73,6 @@ class GenericForces:
             A, b = eliminated(A, b, np.array([best]), np.diag(ridge[size]), np.zeros(1))
             A, b = np.delete(np.delete(A, best, 0), best, 1), np.delete(b, best)
         return total if found else -np.inf, tuple(found)
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """What the forces depend on."""
-        return tuple(dict.fromkeys(name for _, name in self.names))
 
     def held_out_gain(self, folds: Sequence[Fold]) -> float:
         """Share by which all forces reduce the squared error on held-out windows, everything else fixed; 0 where they do not."""
@@ -100,14 +89,6 @@ class GenericForces:
     def _of_each(self, A: Array, b: Array, ridge: Array | float) -> Array:
         """Evidence of each force by itself; curvature and slope of the forces with all else eliminated."""
         return np.asarray(b**2 / (np.diag(A) + ridge) / self.tempering - np.log1p(np.diag(A) / ridge))
-
-    def _evidence(self, chosen: Sequence[int], prior_size: float) -> float:
-        k = len(self.precision)
-        free = np.array([*range(k), *(k + i for i in chosen)], dtype=int)
-        ridge = np.concatenate([self.precision, np.full(len(chosen), self.tempering / prior_size**2)])
-        H = self.data.A.sum(axis=0)[np.ix_(free, free)] + np.diag(ridge)
-        slope = self.data.b.sum(axis=0)[free] - np.concatenate([self.pull, np.zeros(len(chosen))])
-        return float(slope @ np.linalg.solve(H, slope)) / self.tempering - float(np.linalg.slogdet(H)[1] - np.log(ridge).sum())
 
 
 def generic_forces(problem: Problem, point: Posterior) -> GenericForces:

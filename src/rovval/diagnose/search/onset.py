@@ -14,7 +14,7 @@ from math import log
 import numpy as np
 
 from rovval.core.data import Array, Flags
-from rovval.diagnose.criteria import WINDOWS_AFTER_ONSET, WINDOWS_BEFORE_ONSET
+from rovval.diagnose.criteria import FEW_WINDOWS, LEAST_WINDOWS
 from rovval.diagnose.effort import NEGLIGIBLE, ONSETS_TRIED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of
 from rovval.diagnose.inference.gap import parity_errors, weighted_errors
@@ -56,12 +56,12 @@ class Stretch:
 def suspected_onset(problem: Problem, data: NormalEquations, library: Sequence[Hypothesis]) -> float | None:
     """From when on (s since the run's start) something is at work that was not there before; None where nothing says so, and for several logs, each of
     which would have an onset of its own. ``data`` is the library linearised at the healthy fit."""
-    if len(problem.runs) > 1 or problem.window_count < WINDOWS_BEFORE_ONSET + WINDOWS_AFTER_ONSET:
+    if len(problem.runs) > 1 or problem.window_count < LEAST_WINDOWS + FEW_WINDOWS:
         return None
     priors = {h.label: prior_of(problem, h) for h in library if not h.effect.begins}
     whole = Stretch.of(data, slice(None), problem.tolerance, problem.tempering)
     always = {label: whole.explained(data.place(tuple(prior.sd)), prior, problem.tempering) for label, prior in priors.items()}
-    first, last = WINDOWS_BEFORE_ONSET, problem.window_count - WINDOWS_AFTER_ONSET
+    first, last = LEAST_WINDOWS, problem.window_count - FEW_WINDOWS
     step = max(1, (last - first) // ONSETS_TRIED)
     found = {k: _evidence_from(problem, data, priors, always, k) for k in range(first, last + 1, step)}
     best = max(found, key=lambda k: found[k])
@@ -114,7 +114,7 @@ def evidence_with_onset(problem: Problem, fit: HypothesisFit, time: float, healt
 def moved_onset(problem: Problem, late: HypothesisFit, time: float, healthy: Posterior) -> float:
     """When (s) the causes of a fit to the windows from ``time`` on begin: at the most probable of all windows, where that makes ``time`` negligible."""
     windows = problem.runs[0]
-    times = (windows.start * windows.run.dt)[WINDOWS_BEFORE_ONSET : problem.window_count - WINDOWS_AFTER_ONSET + 1]
+    times = (windows.start * windows.run.dt)[LEAST_WINDOWS : problem.window_count - FEW_WINDOWS + 1]
     switches = _switches(problem, late, healthy, (None, healthy.whitened or None))  # good enough to tell one window from another
     evidence = {float(t): max(laplace_evidence(problem, one.at(np.concatenate(_before(problem, t)))) for one in switches) for t in times}
     best = max(evidence, key=lambda t: evidence[t])

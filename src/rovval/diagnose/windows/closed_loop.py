@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import LOOP_EXPLAINED, LOOP_LEAST_SAMPLES
+from rovval.diagnose.criteria import MATERIAL
 from rovval.diagnose.windows.windows import Windows
 from rovval.vehicle.model import allocation
 
@@ -42,11 +42,11 @@ def loop_gain(windows: Windows, angle: str, rate: str, axis: int) -> float:
         return 0.0
     moment = windows.plant.thrust(windows.actuation.inputs.speed) @ allocation(vehicle)[axis]
     use = run.ok(angle) & run.ok(rate) & windows.actuation.known
-    if use.sum() < LOOP_LEAST_SAMPLES or moment[use].std() == 0.0:
-        return 0.0
     X = np.column_stack([np.ones(use.sum()), run.get(angle)[use], run.get(rate)[use]])
+    if len(X) <= X.shape[1] or moment[use].std() == 0.0:
+        return 0.0
     found, *_ = np.linalg.lstsq(X, moment[use], rcond=None)
     explained = 1.0 - float(np.var(moment[use] - X @ found) / np.var(moment[use]))
     height = abs(vehicle.body.centre_of_gravity[2] - vehicle.body.centre_of_buoyancy[2])
     righting = vehicle.weight * height
-    return max(-float(found[1]), 0.0) / righting if explained > LOOP_EXPLAINED and righting > 0 else 0.0
+    return max(-float(found[1]), 0.0) / righting if explained > MATERIAL and righting > 0 else 0.0

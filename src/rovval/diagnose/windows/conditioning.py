@@ -15,14 +15,14 @@ from rovval.core.data import Array, Flags, Reason, Resampled, Run
 from rovval.core.errors import Finding
 from rovval.diagnose.criteria import (
     HELD_SHARE,
+    LEAST_NOISE,
     PING_REGULARITY,
-    SATURATED_LEAST_RISE,
-    SATURATED_LEVELS,
     SATURATED_PROMINENCE,
     SATURATED_RISE,
     SATURATED_SAMPLES,
     SLOWEST_PING,
 )
+from rovval.diagnose.windows.noise import quantisation_step
 
 NO_MEASUREMENT = ("saturated", "held")  # codes of the findings
 RATES = ("u", "v", "w", "p", "q", "r")  # channels that can reach the end of a sensor's range
@@ -39,7 +39,7 @@ def condition(run: Run) -> tuple[Run, tuple[Finding, ...]]:
             reasons[name] = np.full_like(reasons[name], Reason.SATURATED)
             found.append(Finding("saturated", name, f"says {np.nanmax(run.get(name)):.4g} (SI units) all along, which no sensor does, and was left out"))
             continue
-        stop = saturated(run.get(name))
+        stop = saturated(run.get(name), LEAST_NOISE[name])
         if stop.any():
             reasons[name] = np.where(stop, Reason.SATURATED, reasons[name]).astype(np.uint8)
             levels = " and ".join(f"{x:.4g}" for x in np.unique(values[name][stop]))
@@ -58,19 +58,20 @@ def condition(run: Run) -> tuple[Run, tuple[Finding, ...]]:
     return replace(run, values=values, reasons=reasons, resampled=resampled, findings=(*run.findings, *found)), tuple(found)
 
 
-def saturated(values: Array) -> Flags:
-    """Samples (n,) of a channel at the end of its sensor's range: the same extreme value many times, reached in a step that noise does not make."""
+def saturated(values: Array, least: float) -> Flags:
+    """Samples (n,) of a channel at the end of its sensor's range: the same extreme value many times, reached in a step that neither noise nor rounding
+    makes, larger than ``least``, below which no sensor is believed: a steady state is neared slowly."""
     known = values[np.isfinite(values)]
     stop = np.zeros(len(values), dtype=bool)
-    noise = white_noise(known, np.ones(len(known), dtype=bool))
+    noise = max(white_noise(known, np.ones(len(known), dtype=bool)), quantisation_step(known))
     for sign in (1.0, -1.0):
         levels, counts = np.unique(sign * known, return_counts=True)
-        if len(levels) < SATURATED_LEVELS or counts[-1] < max(SATURATED_SAMPLES, SATURATED_PROMINENCE * counts[-4:-1].max()):
+        if len(levels) < 2 or counts[-1] < max(SATURATED_SAMPLES, SATURATED_PROMINENCE * counts[-4:-1].max()):
             continue
         here: Flags = np.asarray(sign * values == levels[-1])
         first = np.flatnonzero(here[1:] & ~here[:-1])
         rise = sign * (values[first + 1] - values[first])
-        if len(first) and float(np.nanmedian(rise)) > max(SATURATED_RISE * noise, SATURATED_LEAST_RISE):
+        if len(first) and float(np.nanmedian(rise)) > max(SATURATED_RISE * noise, least):
             stop |= here
     return stop
 

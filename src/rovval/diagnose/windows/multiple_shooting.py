@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from rovval.alignment.duplicates import duplicates
 from rovval.core.data import Flags, Run
 from rovval.core.errors import BadInput, all_at_once
-from rovval.diagnose.criteria import FEWEST_WINDOWS, MANY_WINDOWS, MEASURED_SHARE
+from rovval.diagnose.criteria import FEW_WINDOWS, LEAST_WINDOWS, MEASURED_SHARE
 from rovval.diagnose.windows.conditioning import condition
 from rovval.diagnose.windows.contact import in_contact
 from rovval.diagnose.windows.noise import clean_channels, sample_strides
@@ -56,14 +56,14 @@ def cut_run(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Windows:
     """Cut a run into windows of ``window_s``, or of half or a quarter of it where a short log gives too few.
 
     Raises:
-        BadInput: fewer than `FEWEST_WINDOWS` windows can be simulated; says how many and why.
+        BadInput: fewer than `LEAST_WINDOWS` windows can be simulated; says how many and why.
     """
     for share in (1.0, 0.5):
         try:
             windows = _cut(run, vehicle, model, share * window_s)
         except BadInput:
             continue
-        if windows.count >= MANY_WINDOWS:
+        if windows.count >= FEW_WINDOWS:
             return windows
     return _cut(run, vehicle, model, 0.25 * window_s)
 
@@ -80,9 +80,9 @@ def _cut(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Windows:
     possible = np.mean([1.0 / stride for stride in sample_strides(run, channels)])
     enough = good[inside].mean(axis=(1, 2)) >= MEASURED_SHARE * possible if len(start) else np.zeros(0, dtype=bool)
     start = start[enough]
-    if len(start) < FEWEST_WINDOWS:
+    if len(start) < LEAST_WINDOWS:
         raise BadInput(
-            f"run {run.id}: {len(start)} windows of {window_s:g} s hold inputs and measurements throughout, at least {FEWEST_WINDOWS} are needed",
+            f"run {run.id}: {len(start)} windows of {window_s:g} s hold inputs and measurements throughout, at least {LEAST_WINDOWS} are needed",
             "use a longer log, a shorter --window, or look at the gaps with `rovval compare`",
         )
     inside = start[:, None] + np.arange(steps + 1)[None, :]
