@@ -11,6 +11,7 @@ from kinematic import spoilt
 from tumbling import bluerov2, tumbling
 
 from rovval.core.data import Array, Reason, Run
+from rovval.core.errors import Finding
 from rovval.diagnose.residuals.parity import ParityResiduals, parity_residuals
 from rovval.diagnose.residuals.sensor_faults import FittedFault, sensor_faults
 from rovval.diagnose.windows.multiple_shooting import cut_run
@@ -47,6 +48,23 @@ def test_parity_of_a_vehicle_that_tumbles_finds_a_fault_and_none_in_sound_sensor
     sound = faults_of(tumbling(), bluerov2())[fault]
     assert not sound.significant
     assert abs(sound.value) < 0.1 * abs(size)
+
+
+def test_of_a_heading_that_counts_from_the_start_the_zero_is_no_fault():
+    """It was found by turning the way that the velocities make onto that of the position."""
+    run = spoilt({"compass_deviation.offset": 0.3})
+    assert faults_of(run)["compass_deviation.offset"].significant
+    found = faults_of(replace(run, findings=(Finding("heading_zero", "psi", "17 deg between heading and position"),)))
+    assert "compass_deviation.offset" not in found, "nothing is known of it"
+    assert not any(one.significant for one in found.values())
+
+
+@pytest.mark.parametrize(
+    ("fault", "size"), [("dvl_scale.scale", 0.08), ("gyro_bias.r", 0.01), ("dvl_lever_arm.x", 0.8), ("dvl_misalignment.yaw", 0.2)]
+)
+def test_of_a_heading_that_counts_from_the_start_all_other_faults_show(fault: str, size: float):
+    found = faults_of(replace(spoilt({fault: size}), findings=(Finding("heading_zero", "psi", "left as logged"),)))[fault]
+    assert found.significant and found.value == pytest.approx(size, rel=0.15)
 
 
 def test_no_fault_is_fitted_to_fewer_windows_than_its_scatter_needs():

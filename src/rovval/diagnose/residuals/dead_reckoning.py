@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import signal
 
-from rovval.core.data import Array, Flags
+from rovval.core.data import Array, Flags, Run
 from rovval.core.frames import (
     attitude_difference,
     euler_from_quaternion,
@@ -55,9 +55,15 @@ def fully_measured(windows: Windows) -> Flags:
     return np.asarray(np.all([run.ok(c)[at].mean(axis=1) > PARITY_MEASURED_SHARE for c in needed], axis=0))
 
 
-def pose_drift(nu: Array, eta: Array, dt: float, tumbling: bool) -> Array:
+def heading_from_start(run: Run) -> bool:
+    """Whether the heading counts from where the vehicle began, so that its zero in the position's axes was found from the velocities, if at all."""
+    return any(finding.code == "heading_zero" for finding in run.findings)
+
+
+def pose_drift(nu: Array, eta: Array, dt: float, tumbling: bool, from_start: bool = False) -> Array:
     """Dead-reckoned less measured pose (m, rows, 6), m and rad, every `ROW_EVERY` samples of ``nu`` and ``eta`` (m, n, 6); the mean over the window taken
-    out. Trapezoidal rule; ``dt`` in seconds. Of a vehicle that is ``tumbling`` the attitude's three are turns in body axes, summed up."""
+    out. Trapezoidal rule; ``dt`` in seconds. Of a vehicle that is ``tumbling`` the attitude's three are turns in body axes, summed up. Of a heading that
+    counts ``from_start`` the zero is taken out too, as each window has it: a velocity log that is turned in its mount turns the way as much."""
     world = np.einsum("mnij,mnj->mni", rotation_from_euler(eta[..., 3:]), nu[..., :3])
     turn = nu[..., 3:] if tumbling else euler_rates(eta[..., 3:], nu[..., 3:])
     rates = np.concatenate([world, turn], axis=-1)
@@ -68,7 +74,17 @@ def pose_drift(nu: Array, eta: Array, dt: float, tumbling: bool) -> Array:
     off = wrap_angles(path - moved)
     off[..., 3:] = np.unwrap(off[..., 3:], axis=1)
     rows = off[:, ::ROW_EVERY]
+    if from_start:
+        rows = np.concatenate([_turned_onto(path[:, ::ROW_EVERY, :2], moved[:, ::ROW_EVERY, :2]), rows[..., 2:]], axis=-1)
     return np.asarray(rows - rows.mean(axis=1, keepdims=True))
+
+
+def _turned_onto(path: Array, moved: Array) -> Array:
+    """Ways (m, rows, 2) in the horizontal plane, each turned to where it is nearest to the way ``moved``, less that: least squares (Kabsch 1976)."""
+    way, to = (a[..., 0] + 1j * a[..., 1] for a in (path, moved))
+    way, to = (a - a.mean(axis=1, keepdims=True) for a in (way, to))
+    off = way * np.exp(1j * np.angle(np.sum(way.conj() * to, axis=1, keepdims=True))) - to
+    return np.stack([off.real, off.imag], axis=-1)
 
 
 def smoothed(nu: Array, eta: Array, tumbling: bool) -> tuple[Array, Array]:

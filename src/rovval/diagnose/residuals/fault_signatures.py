@@ -12,13 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.data import Array, Flags
-from rovval.diagnose.residuals.dead_reckoning import pose_drift, without_margin, wrap_angles
+from rovval.diagnose.residuals.dead_reckoning import heading_from_start, pose_drift, without_margin, wrap_angles
 from rovval.diagnose.windows.attitude import tumbling
 from rovval.diagnose.windows.windows import Windows
 from rovval.effects.log import Log
 from rovval.plant.sensors import observe
 
 STEP = 0.25  # finite-difference step, in typical sizes
+ROUNDING = 1e-9  # m or rad: a smaller change of the drift is none
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +42,8 @@ class FaultSignatures:
     def of(self, column: int) -> Array:
         """Signature (m, rows, 6) of the plant slot ``column``: change of the drift per unit of it, at its null value."""
         step = self._step(column)
-        return wrap_angles(self._drift({column: step}) - self.nominal) / step
+        change = wrap_angles(self._drift({column: step}) - self.nominal)
+        return change / step if np.abs(change).max(initial=0.0) > ROUNDING else np.zeros_like(change)
 
     def of_delays(self, delays: dict[int, float]) -> tuple[Array, dict[int, Array]]:
         """The part (m, rows, 6) of the drift that ``delays`` (slot: seconds) cause, and its change per second more of each.
@@ -75,7 +77,8 @@ def fault_signatures(windows: Windows, nu: Array, eta: Array, usable: Flags) -> 
 
 def _drift_of(windows: Windows, nu: Array, eta: Array, usable: Flags) -> Array:
     """Drift (m, rows, 6) of dead reckoning, zero in windows that are not usable."""
-    rows = pose_drift(without_margin(nu), without_margin(eta), windows.run.dt, tumbling(windows.run))
+    run = windows.run
+    rows = pose_drift(without_margin(nu), without_margin(eta), run.dt, tumbling(run), heading_from_start(run))
     rows[~usable] = 0.0
     return rows
 
