@@ -23,8 +23,8 @@ SECONDS_PER_MINUTE = 60.0  # thrust gains in a vehicle file are N / rpm^2, here 
 class Lanes:
     """``B`` lanes of one vehicle, ``k`` thrusters. SI, body forward-starboard-down, origin where the vehicle file says.
 
-    ``inertia`` (B, 3, 3) about the origin; ``added_mass``, ``linear_drag``, ``quadratic_drag`` (B, 6, 6), positive; ``direction``
-    (B, k, 3); ``torque_arm`` (B, k) m of propeller torque per newton of thrust; ``k_pos``, ``k_neg`` (B, k) N s2; ``lag`` (B,) s;
+    ``inertia`` (B, 3, 3) about the origin; ``added_mass``, ``linear_drag``, ``quadratic_drag`` (B, 6, 6), positive; ``position`` m
+    and ``direction`` (B, k, 3); ``torque_arm`` (B, k) m of propeller torque per newton of thrust; ``k_pos``, ``k_neg`` (B, k) N s2; ``lag`` (B,) s;
     ``shift`` (B,) s and ``drift`` (B,) s/s by which thrusters are stamped early; ``wake`` (B, k) share of thrust lost in
     another thruster's jet; ``side`` (B,) side force per newton of thrust; payload: mass kg, place m, onset s since the run's start.
     """
@@ -39,6 +39,7 @@ class Lanes:
     weight: Array
     buoyancy: Array
     centre_of_buoyancy: Array
+    position: Array
     direction: Array
     torque_arm: Array
     k_pos: Array
@@ -92,6 +93,7 @@ def nominal(vehicle: Vehicle) -> Lanes:
         weight=each(vehicle.weight),
         buoyancy=each(vehicle.buoyancy),
         centre_of_buoyancy=each(body.centre_of_buoyancy),
+        position=each([t.position for t in vehicle.thruster]),
         direction=each(allocation(vehicle)[:3].T),
         torque_arm=each(np.zeros(len(vehicle.thruster))),
         k_pos=each([t.k_pos * SECONDS_PER_MINUTE**2 for t in vehicle.thruster]),

@@ -163,8 +163,7 @@ def pack(lowered: Lowered, spec: Spec, dt: float, substeps: int) -> Array:
     put(where.first["lag"], _lag(lanes.lag, dt / substeps))
     put(where.first["shift"], np.stack([lanes.shift / dt, lanes.drift / dt], axis=1))
     put(where.first["jet"], np.concatenate([lanes.wake, lanes.side[:, None]], axis=1))
-    position = np.array([t.position for t in lanes.vehicle.thruster])
-    moment = np.cross(position, lanes.direction) + lanes.torque_arm[..., None] * lanes.direction
+    moment = np.cross(lanes.position, lanes.direction) + lanes.torque_arm[..., None] * lanes.direction
     thruster = np.zeros((size, k, where.stride))
     thruster[..., 0], thruster[..., 1] = lanes.k_pos, lanes.k_neg
     thruster[..., 2:5], thruster[..., 5:8] = lanes.direction, moment

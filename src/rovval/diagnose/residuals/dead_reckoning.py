@@ -17,6 +17,7 @@ from rovval.core.frames import (
     wrap,
 )
 from rovval.diagnose.criteria import PARITY_MEASURED_SHARE, SMOOTHING
+from rovval.diagnose.windows.attitude import tumbling
 from rovval.diagnose.windows.windows import Windows
 
 ROW_EVERY = 10  # samples between the poses that are compared: 1 s apart, their errors are nearly independent
@@ -60,37 +61,39 @@ def heading_from_start(run: Run) -> bool:
     return any(finding.code == "heading_zero" for finding in run.findings)
 
 
-def pose_drift(nu: Array, eta: Array, dt: float, tumbling: bool, from_start: bool = False) -> Array:
+def pose_drift(nu: Array, eta: Array, run: Run, usable: Flags) -> Array:
     """Dead-reckoned less measured pose (m, rows, 6), m and rad, every `ROW_EVERY` samples of ``nu`` and ``eta`` (m, n, 6); the mean over the window taken
-    out. Trapezoidal rule; ``dt`` in seconds. Of a vehicle that is ``tumbling`` the attitude's three are turns in body axes, summed up. Of a heading that
-    counts ``from_start`` the zero is taken out too, as each window has it: a velocity log that is turned in its mount turns the way as much."""
+    out, and zero where a window is not ``usable`` (m,). Trapezoidal rule. Of a vehicle that tumbles the attitude's three are turns in body axes, summed up.
+    Of a heading that counts from the start the zero is taken out too: a velocity log that is turned in its mount turns all ways as much."""
+    dt, over = run.dt, tumbling(run)
     world = np.einsum("mnij,mnj->mni", rotation_from_euler(eta[..., 3:]), nu[..., :3])
-    turn = nu[..., 3:] if tumbling else euler_rates(eta[..., 3:], nu[..., 3:])
+    turn = nu[..., 3:] if over else euler_rates(eta[..., 3:], nu[..., 3:])
     rates = np.concatenate([world, turn], axis=-1)
     path = np.concatenate([np.zeros_like(rates[:, :1]), np.cumsum(0.5 * dt * (rates[:, 1:] + rates[:, :-1]), axis=1)], axis=1)
     moved = eta - eta[:, :1]
-    if tumbling:
+    if over:
         moved[:, 1:, 3:] = np.cumsum(attitude_difference(eta[:, 1:, 3:], eta[:, :-1, 3:]), axis=1)
     off = wrap_angles(path - moved)
     off[..., 3:] = np.unwrap(off[..., 3:], axis=1)
     rows = off[:, ::ROW_EVERY]
-    if from_start:
-        rows = np.concatenate([_turned_onto(path[:, ::ROW_EVERY, :2], moved[:, ::ROW_EVERY, :2]), rows[..., 2:]], axis=-1)
-    return np.asarray(rows - rows.mean(axis=1, keepdims=True))
+    if heading_from_start(run):
+        rows[..., :2] = _turned_onto(path[:, ::ROW_EVERY, :2], moved[:, ::ROW_EVERY, :2], usable)
+    return np.where(usable[:, None, None], rows - rows.mean(axis=1, keepdims=True), 0.0)
 
 
-def _turned_onto(path: Array, moved: Array) -> Array:
-    """Ways (m, rows, 2) in the horizontal plane, each turned to where it is nearest to the way ``moved``, less that: least squares (Kabsch 1976)."""
+def _turned_onto(path: Array, moved: Array, usable: Flags) -> Array:
+    """Ways (m, rows, 2) in the horizontal plane, all turned by the one angle that brings the ``usable`` ones nearest to the ways ``moved``, less these: least
+    squares (Kabsch 1976)."""
     way, to = (a[..., 0] + 1j * a[..., 1] for a in (path, moved))
     way, to = (a - a.mean(axis=1, keepdims=True) for a in (way, to))
-    off = way * np.exp(1j * np.angle(np.sum(way.conj() * to, axis=1, keepdims=True))) - to
+    off = way * np.exp(1j * np.angle(np.sum((way.conj() * to)[usable]))) - to
     return np.stack([off.real, off.imag], axis=-1)
 
 
-def smoothed(nu: Array, eta: Array, tumbling: bool) -> tuple[Array, Array]:
-    """Motion (m, n, 6) of windows under a smoothing filter (Savitzky and Golay 1964); of a vehicle that is ``tumbling`` the attitude as quaternions."""
+def smoothed(nu: Array, eta: Array, over: bool) -> tuple[Array, Array]:
+    """Motion (m, n, 6) of windows under a smoothing filter (Savitzky and Golay 1964); of one that goes ``over`` the attitude as quaternions."""
     smooth, still = (signal.savgol_filter(a, SMOOTHING, 2, axis=1) for a in (nu, eta))
-    if tumbling:
+    if over:
         q = signal.savgol_filter(smooth_quaternions(eta[..., 3:]), SMOOTHING, 2, axis=1)
         still[..., 3:] = euler_from_quaternion(q / np.linalg.norm(q, axis=-1, keepdims=True))
     return smooth, still

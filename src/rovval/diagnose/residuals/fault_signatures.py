@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.data import Array, Flags
-from rovval.diagnose.residuals.dead_reckoning import heading_from_start, pose_drift, without_margin, wrap_angles
-from rovval.diagnose.windows.attitude import tumbling
+from rovval.diagnose.residuals.dead_reckoning import pose_drift, without_margin, wrap_angles
 from rovval.diagnose.windows.windows import Windows
 from rovval.effects.log import Log
 from rovval.plant.sensors import observe
@@ -77,10 +76,7 @@ def fault_signatures(windows: Windows, nu: Array, eta: Array, usable: Flags) -> 
 
 def _drift_of(windows: Windows, nu: Array, eta: Array, usable: Flags) -> Array:
     """Drift (m, rows, 6) of dead reckoning, zero in windows that are not usable."""
-    run = windows.run
-    rows = pose_drift(without_margin(nu), without_margin(eta), run.dt, tumbling(run), heading_from_start(run))
-    rows[~usable] = 0.0
-    return rows
+    return pose_drift(without_margin(nu), without_margin(eta), windows.run, usable)
 
 
 def _of_positions(rows: Array) -> Array:

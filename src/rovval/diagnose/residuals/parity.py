@@ -19,7 +19,6 @@ from rovval.diagnose.criteria import DEAD_RECKONED_SHARE, OUTLIER_SIGMA, PARITY_
 from rovval.diagnose.residuals.dead_reckoning import (
     RELATIONS,
     fully_measured,
-    heading_from_start,
     measured_motion,
     pose_drift,
     smoothed,
@@ -149,16 +148,14 @@ class ParityResiduals:
 def parity_residuals(windows: Windows, columns: tuple[int, ...]) -> ParityResiduals:
     """Parity residuals of every window of a run, with the signature of each sensor parameter among the plant slots ``columns``."""
     nu, eta, checkable = measured_motion(windows)
-    run, over = windows.run, tumbling(windows.run)
-    nominal = pose_drift(without_margin(nu), without_margin(eta), run.dt, over, heading_from_start(run))
     usable = fully_measured(windows)
-    motion = fault_signatures(windows, *smoothed(nu, eta, over), usable)
+    nominal = pose_drift(without_margin(nu), without_margin(eta), windows.run, usable)
+    motion = fault_signatures(windows, *smoothed(nu, eta, tumbling(windows.run)), usable)
     signatures = np.zeros((*nominal.shape, len(columns)))
     for i, column in enumerate(columns):
         if load(windows.plant.slots[column].effect).place == "sensor":
             signatures[..., i] = motion.of(column)
     keep = [i for i, name in enumerate(RELATIONS) if checkable[i]]
-    nominal[~usable] = 0.0
     return _weighted(motion, nominal, signatures, columns, keep)
 
 

@@ -91,7 +91,7 @@ def _thrusters(run: Run, nu_r: Array, stage: Mapping[str, Array]) -> Array:
     cross = np.sqrt(np.maximum((flow**2).sum(axis=-1) - axial**2, 0.0))
     thrust = stage["T"] * _advance(run, stage["n"], axial)
     thrust = chain(run, "thrust", thrust, {**stage, "ua": axial, "cross": cross})
-    moment = np.cross(run.place, lanes.direction) + lanes.torque_arm[..., None] * lanes.direction
+    moment = np.cross(lanes.position, lanes.direction) + lanes.torque_arm[..., None] * lanes.direction
     columns = np.concatenate([lanes.direction, moment], axis=-1)
     side = lanes.side[:, None] * np.abs(stage["T"])
     return np.asarray(np.einsum("bk,bki->bi", thrust, columns) + side @ run.side)
