@@ -29,9 +29,9 @@ SAME = {  # families of the outside plant, and what the library calls the same b
 FOREIGN = {"stick_slip", "slosh"}  # effects that no library need hold
 
 
-def _questions(folder: str, logs: tuple[str, ...], nominal: str, right: tuple[str, ...]) -> tuple[Question, ...]:
+def _questions(folder: str, logs: tuple[str, ...], nominal: str, right: tuple[str, ...], kind: str = "bag") -> tuple[Question, ...]:
     """Each log by itself, and all of them jointly."""
-    paths, of = tuple(real(f"{folder}/{name}.bag") for name in logs), to_toml(vehicle.load(nominal))
+    paths, of = tuple(real(f"{folder}/{name}.{kind}") for name in logs), to_toml(vehicle.load(nominal))
     together = (Question("jointly", paths, of, right),) if len(paths) > 1 else ()
     return (*(Question("each", (path,), of, right) for path in paths), *together)
 
@@ -40,6 +40,11 @@ def ballast() -> tuple[Answer, ...]:
     """Bags of a BlueROV2: released without ballast, released with, and powered."""
     groups = (("ff_nb1",), WITH_BALLAST, POWERED)
     return ask(tuple(one for logs in groups for one in _questions("bluerov2_ballast", logs, "bluerov2_heavy", ("buoyancy_error",))))
+
+
+def height_of_thrusters() -> tuple[Answer, ...]:
+    """Tank runs of a BlueROV2 by its published file, which prints a height of thrusters that does not act."""
+    return ask(_questions("bluerov2_tank", ("run_a", "run_b", "run_c"), "bluerov2_heavy", ("thruster_place",), "csv"))
 
 
 def yaw_drag() -> tuple[Answer, ...]:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import pytest
-from published_logs import YAW, ballast, outside_plant, yaw_drag, yaw_drag_over_thrust
+from published_logs import YAW, ballast, height_of_thrusters, outside_plant, yaw_drag, yaw_drag_over_thrust
 from real_answers import Answer, confidence, named_first, overconfident, table
 
 pytestmark = pytest.mark.real
 BALLAST_N = -4.6  # beyond the file's, of `ff_nb1` by its publishers' own fit
 YAW_DRAG = 3.95  # N m s: least squares on one axis, with the thrust table held, 3.9 to 4.0 on each of the three logs
+HEIGHT_M = 0.085  # of the horizontal thrusters below the centre, printed (von Benzon 2022); about nothing acts
 MINUTES = 10.0  # of the outside plant's logs; the longer ones, a third, say nothing else and take as long as these together
 
 
@@ -41,6 +42,17 @@ def test_yaw_drag_over_thrust_is_that_of_least_squares(logs: tuple[str, ...]):
     found = yaw_drag_over_thrust(logs)
     print(f"{' '.join(logs)}: {found:.2f} N m s")
     assert found == pytest.approx(YAW_DRAG, rel=0.1)
+
+
+def test_height_of_thrusters_is_named_with_its_size_on_each_run():
+    """85 mm are printed and next to nothing acts: calibrations on two runs at a time say 85 mm less."""
+    answers = height_of_thrusters()
+    print("\n" + table(answers) + "\n\n" + confidence(answers))
+    for one in answers[:-1]:
+        assert one.mark == "right", one
+        cause = next(c for c in one.document["causes"] if c["effect"] == "thruster_place")
+        assert cause["kind"] == "file"
+        assert cause["parameters"]["down"]["value"] == pytest.approx(-HEIGHT_M, abs=0.02)
 
 
 def test_effects_of_an_outside_plant_are_named():

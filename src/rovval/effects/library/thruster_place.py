@@ -25,7 +25,7 @@ PLACED = Tolerance(_place, "places of thrusters to a share of the vehicle's size
 
 EFFECT = Effect(
     name="thruster_place",
-    title="Thrusters act at another place",
+    title="Place of thrusters differs",
     place="vehicle",
     equation="r_i <- r_i + (ahead, 0, down) in the moment r_i x T_i, down for horizontal thrusters only; the water flows past them as at the file's place.",
     symbols={
