@@ -103,7 +103,7 @@ def test_nothing_to_tune_writes_the_vehicle_as_it_was():
 
 @pytest.mark.parametrize(
     ("asked", "count"),
-    [("drag", 12), ("thrust", 7), ("allocation", 14), ("quadratic_drag[*]", 6), (LOSS, 1), ("thruster_degraded[H*]", 4)],
+    [("drag", 12), ("thrust", 7), ("allocation", 2 * 7 + 2), ("quadratic_drag[*]", 6), (LOSS, 1), ("thruster_degraded[H*]", 4)],
 )
 def test_names(asked, count):
     assert len(chosen(Plant(merlin()), [asked])) == count

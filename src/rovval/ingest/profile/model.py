@@ -140,7 +140,8 @@ class Profile(BaseModel):
     draft: bool = False
     """The guesses of `rovval profile propose` that nobody has reviewed yet: every run says so. Delete it once each line is confirmed."""
     relative_heading: bool = False
-    """The heading counts from the start while the position is in fixed axes; the constant between them is found from the log and reported."""
+    """The heading counts from the start while the position is in fixed axes; the constant between them is found from the log and reported.
+    A diagnosis does not take it for a measurement."""
     water: Literal["still"] | None = None
     """`still`: a tank or a basin, where nothing but the vehicle moves the water: a diagnosis of these logs asks for no current and no waves."""
     time: Clock
