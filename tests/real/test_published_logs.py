@@ -45,7 +45,7 @@ def test_yaw_drag_over_thrust_is_that_of_least_squares(logs: tuple[str, ...]):
 
 
 def test_height_of_thrusters_is_named_with_its_size_on_each_run():
-    """85 mm are printed and next to nothing acts: calibrations on two runs at a time say 85 mm less."""
+    """85 mm are printed and next to nothing acts: calibrations on two runs at a time say 85 to 91 mm less."""
     answers = height_of_thrusters()
     print("\n" + table(answers) + "\n\n" + confidence(answers))
     for one in answers[:-1]:

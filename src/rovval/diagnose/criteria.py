@@ -13,6 +13,7 @@ LEAST_NOISE = {  # m/s, rad/s, rad, m: standard deviation below which no sensor 
 }  # fmt: skip
 OUTLIER_SIGMA = 8.0  # standard deviations: a sample this far from the mean of its neighbours is an outlier of the sensor (chosen)
 QUANTISED_REPEATS = 5  # how often each value repeats itself on average in a channel of coarse steps (chosen)
+QUANTISED_MISFIT = 0.1  # of a step: by how much values may miss the grid of steps (chosen)
 SATURATED_SAMPLES = 8  # samples at the end of a range that are no coincidence (chosen)
 SATURATED_PROMINENCE = 5  # times as many as at any of the next three values (chosen)
 SATURATED_RISE = 3.0  # times the sensor's noise, or rounding, by which the end of a range is reached in one sample: a steady state is neared slowly (chosen)

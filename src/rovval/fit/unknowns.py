@@ -87,9 +87,9 @@ class Unknown:
 
 def unknowns(vehicle: Vehicle, channels: Sequence[str]) -> tuple[Unknown, ...]:
     """What a log with these measured ``channels`` can be asked about a vehicle."""
-    arm = max(float(np.linalg.norm(t.position)) for t in vehicle.thruster)
+    arm = vehicle.longest_arm
     found = [Unknown("thrust.gain", "factor", WIDE, "1", "thrust of all thrusters", KNOWN_FORCE)]
-    if 0 < sum(map(_vertical, vehicle.thruster)) < len(vehicle.thruster):
+    if 0 < sum(t.vertical for t in vehicle.thruster) < len(vehicle.thruster):
         found.append(Unknown("thrust.vertical", "factor", VERTICAL, "1", "thrust of the vertical thrusters beside the horizontal ones", GROUPS))
     found.append(Unknown("thrust.astern", "factor", ASTERN, "1", "thrust astern beside ahead", BOTH_WAYS))
     found += [
@@ -137,15 +137,11 @@ def applied(vehicle: Vehicle, asked: Sequence[Unknown], values: Array) -> Vehicl
 
 
 def _thruster(one: Thruster, at: Mapping[str, float]) -> Thruster:
-    gain = at.get("thrust.gain", 1.0) * at.get(f"thrust.single[{one.name}]", 1.0) * (at.get("thrust.vertical", 1.0) if _vertical(one) else 1.0)
+    gain = at.get("thrust.gain", 1.0) * at.get(f"thrust.single[{one.name}]", 1.0) * (at.get("thrust.vertical", 1.0) if one.vertical else 1.0)
     x, y, z = one.position
-    height = 0.0 if _vertical(one) else at.get("thrust.height", 0.0)
+    height = 0.0 if one.vertical else at.get("thrust.height", 0.0)
     astern = at.get("thrust.astern", 1.0)
     return one.model_copy(update={"k_pos": one.k_pos * gain, "k_neg": one.k_neg * gain * astern, "position": (x + at.get("thrust.ahead", 0.0), y, z + height)})
-
-
-def _vertical(one: Thruster) -> bool:
-    return abs(one.direction[2]) > 0.5 * float(np.linalg.norm(one.direction))
 
 
 def _body(vehicle: Vehicle, at: Mapping[str, float]) -> Body:

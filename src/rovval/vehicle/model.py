@@ -74,6 +74,11 @@ class Thruster(Strict):
     handedness: Literal[-1, 1] = 1
     rpm_max: Positive | None = None
 
+    @property
+    def vertical(self) -> bool:
+        """Whether it pushes up or down more than aside: within 60 degrees of the vertical axis."""
+        return abs(self.direction[2]) > 0.5 * float(np.linalg.norm(self.direction))
+
 
 class Mixer(Strict):
     """How a pilot's sticks become pulse widths: pwm = neutral + span * sum(factor * stick), clipped by the autopilot at +-span.
@@ -142,6 +147,11 @@ class Vehicle(Strict):
     def weight(self) -> float:
         """W = m g, N."""
         return self.body.mass * self.water.gravity
+
+    @property
+    def longest_arm(self) -> float:
+        """Distance of the furthest thruster from the origin, m."""
+        return max(float(np.linalg.norm(t.position)) for t in self.thruster)
 
     @property
     def buoyancy(self) -> float:

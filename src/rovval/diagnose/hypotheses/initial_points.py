@@ -140,7 +140,7 @@ def _with_levers(target: Target, placed: Mapping[int, float], next_id: int) -> l
     if not levers:
         return []
     free, p = tuple(s for s in target.slots if s not in levers and s not in placed), target.parameter(levers[0])
-    reach = LEVER_SHARE * max(float(np.linalg.norm(t.position)) for t in target.plant.vehicle.thruster)
+    reach = LEVER_SHARE * target.plant.vehicle.longest_arm
     ends = [((levers[0], float(np.clip(x, p.low, p.high))), *placed.items()) for x in (-reach, reach)]
     return [displaced(target.plant, f"{target.name}@lever{i}", target.slots, free, at, next_id + i * len(free)) for i, at in enumerate(ends)]
 

@@ -9,7 +9,7 @@ import numpy as np
 from rovval.alignment.noise import white_noise
 from rovval.core.data import Array, Flags, Run
 from rovval.core.frames import wrap
-from rovval.diagnose.criteria import LEAST_NOISE, OUTLIER_SIGMA, QUANTISED_REPEATS
+from rovval.diagnose.criteria import LEAST_NOISE, OUTLIER_SIGMA, QUANTISED_MISFIT, QUANTISED_REPEATS
 from rovval.diagnose.windows.attitude import ANGLES, tumbling, turned_through
 
 ROUNDING = 1e-6  # of the largest step between values: a smaller one is rounding of single precision
@@ -61,11 +61,12 @@ def _outliers(series: Array, name: str) -> Flags:
 
 
 def quantisation_step(values: Array) -> float:
-    """Step in which a channel is written: the smallest between values (n,) that repeat themselves often, of which three at least are needed. That of a channel
-    that only holds each value until the next ping is next to nothing. Rounding errs uniformly, with a variance of a twelfth of the square of the step
-    (Widrow 1956)."""
+    """Step in which a channel is written, from values (n,) that repeat themselves; 0 where these lie on no grid. Rounding to it errs uniformly, with
+    a variance of a twelfth of its square (Widrow 1956)."""
     held = values[1:][values[1:] == values[:-1]]
     steps = np.diff(np.unique(held))
     if len(steps) < 2 or (len(steps) + 1) * QUANTISED_REPEATS > len(held):
         return 0.0
-    return float(steps[steps > ROUNDING * steps.max()].min())
+    steps = steps[steps > ROUNDING * steps.max()]
+    multiples = steps / steps.min()
+    return float(steps.min()) if (np.abs(multiples - np.round(multiples)) < QUANTISED_MISFIT).all() else 0.0

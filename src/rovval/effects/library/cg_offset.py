@@ -23,7 +23,7 @@ def _height(vehicle: Vehicle) -> tuple[float, float]:
     """Metacentric height and the longest thruster arm, m."""
     body = vehicle.body
     height = abs(body.centre_of_gravity[2] - body.centre_of_buoyancy[2])
-    return height, max(float(np.linalg.norm(t.position)) for t in vehicle.thruster)
+    return height, vehicle.longest_arm
 
 
 def _level(parameter: Parameter, vehicle: Vehicle, target: str) -> float:
