@@ -73,7 +73,8 @@ SPRING_LEAST_STIFFNESS = 5.0  # N/m: half of what is typical of `tether_snag`; s
 
 # Evidence is twice the logarithm of a Bayes factor: 2 to 6 is positive, 6 to 10 strong, above 10 very strong (Kass and Raftery 1995).
 PRIOR_HEALTHY = 0.50  # prior mass of a vehicle that is as its file has it, within tolerance (chosen: one log in two has nothing to find),
-PRIOR_CAUSES = (0.30, 0.10, 0.03)  # of one, two and three causes of the library (chosen: each further one a third as likely),
+PRIOR_CAUSES = 0.43  # of causes of the library, one or several (chosen),
+FURTHER_CAUSE = 1.0 / 3.0  # each further one being as likely as that of what there is without it (chosen),
 PRIOR_FILE = 0.02  # of a file that is off in many numbers at once (chosen),
 PRIOR_SOMETHING_ELSE = 0.05  # and of something that the library does not hold (chosen)
 LIBRARY_ALIKE = 2.0 / 3.0  # share of what the library lacks that looks like something of it (opened and development sets of three plants: 11 of 16)
@@ -89,7 +90,6 @@ EVEN_ODDS = 0.5  # probability above which causes are named, or no gap is claime
 LEAST_EVIDENCE = 6.0  # evidence that is called strong (Kass and Raftery 1995): with more, an effect that is not named is told as the nearest
 VARIATIONS = (0.2, 0.8)  # of its size: how much a cause varies whose form is another, and what only comes near one (two plants: 0.1 to 0.3, mostly 0.3 to 2)
 GROUP_PROBABILITY = 0.90  # of a confusion group
-MOST_CAUSES = 3  # at once (chosen)
 MOST_FORCES = 4  # generic forces that stand for something else (chosen)
 GENERIC_SIZES = (0.01, 0.1, 1.0)  # prior sizes of a generic force that are tried, in the rms of the thrusters' own on that axis (chosen)
 

@@ -15,6 +15,7 @@ from rovval.core.data import Run
 from rovval.core.errors import BadInput
 from rovval.diagnose.decision.finding import Finding, began, may_begin, weighed_with
 from rovval.diagnose.decision.verdict import decide
+from rovval.diagnose.effort import MOST_BEGUN, MOST_CAUSES
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses, initialised
 from rovval.diagnose.hypotheses.observability import observable
@@ -74,14 +75,14 @@ def diagnose(
     return assemble(found, left_out, calibration_slop, seed, say)
 
 
-def analyse(windows: tuple[Windows, ...], without: Sequence[str], tolerance: float, say: Progress) -> Finding:
-    """One pass over the windows of the logs: pose the estimation problem, fit the healthy vehicle, search for causes, decide."""
+def analyse(windows: tuple[Windows, ...], without: Sequence[str], tolerance: float, say: Progress, most: int = MOST_CAUSES) -> Finding:
+    """One pass over the windows of the logs: pose the estimation problem, fit the healthy vehicle, search for ``most`` causes, decide."""
     library, untestable = hypotheses(windows, without)
     say(f"simulating every effect of the library on {sum(part.count for part in windows)} windows", 0.05)
     problem = pose(windows, columns_of(library), tolerance)
     library, unseen = observable(problem, library)
     healthy = healthy_fit(problem)
-    selection = search(problem, library, initialised(problem, library, healthy), healthy, say)
+    selection = search(problem, library, initialised(problem, library, healthy), healthy, say, most)
     say("asking how much any systematic cause could explain", 0.85)
     residuals = corrected_residuals(problem)
     faults = tuple(f for check, part in zip(problem.parity, problem.runs, strict=True) for f in sensor_faults(check, part, problem.origin))
@@ -93,7 +94,7 @@ def _analysed_from(time: float, windows: Windows, without: Sequence[str], tolera
     windows can be simulated: the log as a whole was."""
     events = [name for name in effects.names() if effects.load(name).begins]
     try:
-        return analyse((windows_from(windows, time),), [*without, *events], tolerance, _silent)
+        return analyse((windows_from(windows, time),), [*without, *events], tolerance, _silent, MOST_BEGUN)
     except BadInput:
         return None
 

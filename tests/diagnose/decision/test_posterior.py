@@ -76,10 +76,20 @@ def test_a_group_is_of_one_cause_beside_the_others():
     assert found.of("inflow_loss") > SURE > found.of("thrust_lag")
 
 
+def test_a_further_cause_is_named_where_it_or_its_like_is_more_likely_at_work_than_not():
+    """Of a real vehicle whose thruster was dead numbers of the file stood beside it, each at 0.2."""
+    one, sure, alike = (frozenset(names) for names in (("inflow_loss",), ("inflow_loss", "thrust_lag"), ("inflow_loss", "time_offset")))
+    found = Probabilities({frozenset(): 0.1, sure: 0.21, alike: 0.19, one: 0.3}, {}, {}, 0.0, 0.2, 0.0, 0.0)
+    assert found.best == sure  # either of the two, at 0.4 of 0.7
+    doubtful = frozenset({"inflow_loss", "dvl_scale", "waves"})
+    found = Probabilities({frozenset(): 0.1, one: 0.25, frozenset({"cross_drag", "thrust_lag"}): 0.15, doubtful: 0.3}, {}, {}, 0.0, 0.2, 0.0, 0.0)
+    assert found.best == one
+
+
 def test_what_no_cause_explains_may_be_of_the_library_all_the_same():
     """Something else and causes that were not found are as their priors, whatever the evidence, and are surest by what they have of these."""
     some, much = (belief({("inflow_loss",): 10.0}, forces=forces) for forces in (30.0, 3000.0))
-    missed = NOT_FOUND * sum(PRIOR_CAUSES)
+    missed = NOT_FOUND * PRIOR_CAUSES
     for found in (some, much):
         assert found.not_found / found.something_else == pytest.approx(missed / PRIOR_SOMETHING_ELSE)
         assert found.something_else > found.not_found > 0.2

@@ -11,6 +11,7 @@ from diagnose_case import posed
 from rovval.diagnose.criteria import (
     CAUSES_LEAVE,
     FORM_ALIKE,
+    FURTHER_CAUSE,
     HEALTHY_GAP,
     LIBRARY_ALIKE,
     PRIOR_CAUSES,
@@ -34,14 +35,13 @@ AB = frozenset("ab")
 
 
 def test_where_nothing_is_known_priors_alone_judge():
-    odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / sum(PRIOR_CAUSES)
+    odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / PRIOR_CAUSES
     assert none_of_the_library(AB, None) == pytest.approx(odds / (1.0 + odds))
-    alike = FORM_ALIKE * PRIOR_CAUSES[0]
-    assert form_error("b", AB, None) == pytest.approx(alike / (PRIOR_CAUSES[1] + alike))
+    assert form_error("b", AB, None) == pytest.approx(FORM_ALIKE / (FURTHER_CAUSE + FORM_ALIKE))
 
 
 def test_a_force_that_shows_beside_causes_speaks_against_them_by_how_often_it_does():
-    odds = SHOWS_BESIDE[1] / SHOWS_BESIDE[0] * LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / sum(PRIOR_CAUSES)
+    odds = SHOWS_BESIDE[1] / SHOWS_BESIDE[0] * LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / PRIOR_CAUSES
     assert none_of_the_library(AB, None, beside=True) == pytest.approx(odds / (1.0 + odds))
     shown, alone = (none_of_the_library(AB, left(a_b=0.3), beside) for beside in (True, False))
     assert shown / (1.0 - shown) == pytest.approx(SHOWS_BESIDE[1] / SHOWS_BESIDE[0] * alone / (1.0 - alone))
@@ -50,11 +50,11 @@ def test_a_force_that_shows_beside_causes_speaks_against_them_by_how_often_it_do
 def test_both_distributions_are_distributions():
     """Odds over a grid of shares, times the density where causes are right, integrate to the prior odds: the uniform density is one."""
     share = (np.arange(2000) + 0.5) / 2000.0
-    odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / sum(PRIOR_CAUSES)
+    odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / PRIOR_CAUSES
     p = np.array([none_of_the_library(AB, left(a=s)) for s in share])
     assert np.mean(odds * (1.0 - p) / p) == pytest.approx(1.0, abs=1e-3)
     q = np.array([form_error("b", AB, left(a=1.0, a_b=s)) for s in share])
-    assert np.mean(q / (1.0 - q)) == pytest.approx(FORM_ALIKE * PRIOR_CAUSES[0] / PRIOR_CAUSES[1], abs=1e-3)
+    assert np.mean(q / (1.0 - q)) == pytest.approx(FORM_ALIKE / FURTHER_CAUSE, abs=1e-3)
 
 
 @pytest.mark.parametrize("expected", [1e-6, 0.2, 1.0, 10.0])
@@ -66,7 +66,7 @@ def test_what_a_healthy_vehicle_shows_is_integrated_over(expected: float, share:
     healthy = healthy[healthy < 1.0]
     causes, others = rng.beta(1.0, 1.0 / CAUSES_LEAVE - 1.0, healthy.size), rng.uniform(size=healthy.size)
     near = [np.mean(np.abs(healthy + (1.0 - healthy) * part - share) < 0.01) for part in (causes, others)]
-    odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / sum(PRIOR_CAUSES) * near[1] / near[0] if near[0] else np.inf
+    odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / PRIOR_CAUSES * near[1] / near[0] if near[0] else np.inf
     assert none_of_the_library(AB, left(expected, a_b=share)) == pytest.approx(1.0 / (1.0 + 1.0 / odds), rel=0.05, abs=1e-3)
 
 

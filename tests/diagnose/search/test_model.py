@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations
-from math import exp
+from math import exp, factorial
 
 import pytest
 
-from rovval.diagnose.criteria import PRIOR_CAUSES, PRIOR_HEALTHY
+from rovval.diagnose.criteria import FURTHER_CAUSE, PRIOR_CAUSES, PRIOR_FILE, PRIOR_HEALTHY, PRIOR_SOMETHING_ELSE
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.search.model import Model, ModelPrior
 
@@ -23,7 +23,7 @@ def library(names: Sequence[str]) -> list[Hypothesis]:
 def test_the_mass_of_one_cause_is_the_same_however_many_could_be_it(names: tuple[str, ...]):
     """Initial points of one hypothesis are not several."""
     prior = ModelPrior.of(library(names))
-    assert sum(exp(prior.log_mass([Hypothesis(name, name, (), (), ())])) for name in names) == pytest.approx(PRIOR_CAUSES[0])
+    assert sum(exp(prior.log_mass([Hypothesis(name, name, (), (), ())])) for name in names) == pytest.approx(PRIOR_CAUSES * (1.0 - FURTHER_CAUSE))
     assert exp(prior.log_mass([])) == pytest.approx(PRIOR_HEALTHY)
 
 
@@ -36,7 +36,16 @@ def test_an_effect_has_its_share_however_many_thrusters_it_may_be_of():
 def test_sets_of_two_do_not_hold_more_than_is_theirs():
     prior = ModelPrior.of(library(NAMES))
     pairs = [exp(prior.log_mass([Hypothesis(n, n, (), (), ()) for n in pair])) for pair in combinations(NAMES, 2)]
-    assert 0.5 * PRIOR_CAUSES[1] < sum(pairs) <= PRIOR_CAUSES[1]
+    of_two = PRIOR_CAUSES * (1.0 - FURTHER_CAUSE) * FURTHER_CAUSE
+    assert 0.5 * of_two < sum(pairs) <= of_two
+
+
+def test_all_that_may_be_is_certain():
+    """One cause or as many as one likes: a library of one effect, each further cause of which is another."""
+    one = Hypothesis("waves", "waves", (), (), ())
+    of_any = sum(exp(ModelPrior(1, {"waves": 1}).log_mass([one] * k)) / factorial(k) for k in range(1, 50))
+    assert of_any == pytest.approx(PRIOR_CAUSES)
+    assert pytest.approx(1.0) == PRIOR_HEALTHY + PRIOR_CAUSES + PRIOR_FILE + PRIOR_SOMETHING_ELSE
 
 
 def test_evidence_and_prior_are_on_one_scale():

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rovval.diagnose.criteria import FILE_WIDTH, MOST_CAUSES
-from rovval.diagnose.effort import SETS_WEIGHED
+from rovval.diagnose.criteria import FILE_WIDTH
+from rovval.diagnose.effort import MOST_CAUSES, SETS_WEIGHED
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import map_fit, map_refit
 from rovval.diagnose.problem.problem import Problem

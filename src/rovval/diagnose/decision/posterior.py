@@ -13,7 +13,8 @@ varies is that cause in another form, or something else that comes near it (`con
 well they fit: each is only nearly right in its form (`BETWEEN_CAUSES`).
 
 The set that is named has as many causes as is most probable, and of such sets it is the one that the true one is expected to share the most causes with
-(centroid estimator: Carvalho and Lawrence 2008). The most probable single set may hold a cause that most of the others do without.
+(centroid estimator: Carvalho and Lawrence 2008). The most probable single set may hold a cause that most of the others do without. A further cause is named
+where it, or one that the log does not tell from it, is more likely at work than not, causes being at work.
 """
 
 from __future__ import annotations
@@ -92,13 +93,20 @@ class Probabilities:
     @property
     def best(self) -> Names:
         """The set of causes that is named where causes are believed: as many as is most probable, and those of which the true set, if it has as many, is
-        expected to hold the most, of the sets that are not negligible beside the most probable one (`NEGLIGIBLE`); empty where there is none."""
+        expected to hold the most, of the sets that are not negligible beside the most probable one (`NEGLIGIBLE`), without those that are less likely at
+        work than not where causes are, whichever of its group it is; empty where there is none."""
         whole = self._whole()
         count = max((len(names) for names in whole), key=lambda n: sum(p for names, p in whole.items() if len(names) == n), default=0)
         alike = {names: p for names, p in whole.items() if len(names) == count}
         likely = [names for names in self.ranked if alike.get(names, 0.0) >= NEGLIGIBLE * max(alike.values())]
         shared = {names: sum(len(names & other) * p for other, p in alike.items()) for names in likely}
-        return max(likely, key=lambda names: shared[names], default=frozenset())
+        named = max(likely, key=lambda names: shared[names], default=frozenset[str]())
+        while len(named) > 1:
+            least = min(sorted(named), key=lambda name: self._at_work(name, named))
+            if self._at_work(least, named) > EVEN_ODDS * self.causes:
+                break
+            named -= {least}
+        return named
 
     @property
     def ranked(self) -> list[Names]:
@@ -117,7 +125,15 @@ class Probabilities:
     def group(self, name: str) -> tuple[tuple[str, float], ...]:
         """The confusion group of a cause of the set that is named: the fewest names that hold `GROUP_PROBABILITY` of the probability of sets that
         differ from that one in this cause only, itself first."""
-        rest, whole = self.best - {name}, self._whole()
+        return self._group(name, self.best)
+
+    def _at_work(self, name: str, named: Names) -> float:
+        """Probability that a cause of a set, or one of its group there, is at work."""
+        group = {name, *(other for other, _ in self._group(name, named))}
+        return sum(p for names, p in self._whole().items() if names & group)
+
+    def _group(self, name: str, named: Names) -> tuple[tuple[str, float], ...]:
+        rest, whole = named - {name}, self._whole()
         weight = {other: p for names, p in whole.items() if rest < names and len(names - rest) == 1 for other in names - rest}
         total, kept, held = sum(weight.values()), list[tuple[str, float]](), 0.0
         for other in sorted(weight, key=lambda one: (one != name, -weight[one])):
@@ -176,7 +192,7 @@ def probabilities(
     _coarsen(share)
     inconstant = sum(p for (kind, _), p in share.items() if kind.startswith(VARYING))
     unexplained = share["else", frozenset()] + inconstant + sum(believed.values()) - sum(share.values())
-    missed = NOT_FOUND * sum(PRIOR_CAUSES) / (NOT_FOUND * sum(PRIOR_CAUSES) + PRIOR_SOMETHING_ELSE)
+    missed = NOT_FOUND * PRIOR_CAUSES / (NOT_FOUND * PRIOR_CAUSES + PRIOR_SOMETHING_ELSE)
     return Probabilities(
         sets={names: p for (kind, names), p in share.items() if kind == "sets"},
         beside={names: p for (kind, names), p in share.items() if kind == "beside"},
@@ -218,7 +234,7 @@ def _leave_what_varies(believed: dict[tuple[str, Names], float], names: Names, v
 def _move_form_errors(share: dict[tuple[str, Names], float], best: Mapping[Names, Model], left: Left | None) -> None:
     """Move that part of the mass of each set of two causes or more, of whatever kind, to the set without the cause that adds least, which says that this cause
     is the form error of the others."""
-    for size in range(len(PRIOR_CAUSES), 1, -1):
+    for size in range(_most(share), 1, -1):
         for names in dict.fromkeys(names for kind, names in share if kind in CAUSES and len(names) == size):
             least = _least(names, best, left)
             part = form_error(least, names, left)
@@ -229,11 +245,11 @@ def _move_form_errors(share: dict[tuple[str, Names], float], best: Mapping[Names
 
 
 def _coarsen(share: dict[tuple[str, Names], float]) -> None:
-    """Divide the mass of all sets of one, two and three causes, whatever is beside them, among these sets by a power of what each has.
+    """Divide the mass of all sets of as many causes, whatever is beside them, among these sets by a power of what each has.
 
     How well two causes of a kind fit differs by the form of their equations as much as by which of them is at work, and none of these forms is exact: the
     likelihoods with which they are compared with each other are coarser than those of a vehicle with and without them."""
-    for size in range(1, len(PRIOR_CAUSES) + 1):
+    for size in range(1, _most(share) + 1):
         keys = [(kind, names) for kind, names in share if kind in CAUSES and len(names) == size]
         whole = dict[Names, float]()
         for kind, names in keys:
@@ -242,6 +258,11 @@ def _coarsen(share: dict[tuple[str, Names], float]) -> None:
         for key in keys:
             if whole[key[1]] > 0.0:
                 share[key] *= divided[key[1]] / whole[key[1]]
+
+
+def _most(share: Mapping[tuple[str, Names], float]) -> int:
+    """Causes of the largest set."""
+    return max(len(names) for _, names in share)
 
 
 def _coarser(mass: Mapping[Key, float]) -> dict[Key, float]:

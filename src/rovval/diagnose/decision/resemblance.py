@@ -33,6 +33,7 @@ from rovval.diagnose.criteria import (
     CAUSES_LEAVE,
     FORM_ALIKE,
     FORM_LEAVES,
+    FURTHER_CAUSE,
     HEALTHY_GAP,
     LIBRARY_ALIKE,
     PRIOR_CAUSES,
@@ -119,7 +120,7 @@ class _Gap:
 def none_of_the_library(names: Names, left: Left | None, beside: bool = False) -> float:
     """Probability that what looks like the causes ``names`` is none of the library; by the priors alone where nothing is known of what they leave. That
     generic forces show ``beside`` them is evidence (`SHOWS_BESIDE`); that none do says little of a small gap, and is not counted."""
-    odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / sum(PRIOR_CAUSES)
+    odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / PRIOR_CAUSES
     odds *= SHOWS_BESIDE[1] / SHOWS_BESIDE[0] if beside else 1.0
     if left is None:
         return odds / (odds + 1.0)
@@ -130,7 +131,7 @@ def none_of_the_library(names: Names, left: Left | None, beside: bool = False) -
 
 def form_error(name: str, names: Names, left: Left | None) -> float:
     """Probability that the cause ``name`` of ``names`` is the form error of the others; by the priors alone where nothing is known of what they leave."""
-    odds = FORM_ALIKE * PRIOR_CAUSES[len(names) - 2] / PRIOR_CAUSES[len(names) - 1]
+    odds = FORM_ALIKE / FURTHER_CAUSE
     if left is None:
         return odds / (odds + 1.0)
     beyond = float(np.min(left.beyond(name, names)))

@@ -12,8 +12,7 @@ from math import log
 
 import numpy as np
 
-from rovval.diagnose.criteria import MOST_CAUSES
-from rovval.diagnose.effort import NEGLIGIBLE, SETS_WEIGHED
+from rovval.diagnose.effort import MOST_CAUSES, NEGLIGIBLE, SETS_WEIGHED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import refit_healthy
@@ -60,7 +59,8 @@ class Selection:
 
 
 def search(
-    problem: Problem, library: list[Hypothesis], initialised: list[Hypothesis], healthy: Posterior, progress: Callable[[str, float], None]
+    problem: Problem, library: list[Hypothesis], initialised: list[Hypothesis], healthy: Posterior, progress: Callable[[str, float], None],
+    most: int = MOST_CAUSES,
 ) -> Selection:
     """The models that may explain the logs.
 
@@ -70,12 +70,13 @@ def search(
         initialised: the same with the initial points that the log suggests.
         healthy: fit of coefficients within tolerance, without causes.
         progress: called with what is being done and the share of the work that is done (0 to 1).
+        most: causes at once that are sought.
     """
     prior = ModelPrior.of(library)
     best = front = Model((), None, laplace_evidence(problem, healthy), prior.log_mass(()))
     models, tried, onset = [best], list[list[Candidate]](), None
-    for number in range(MOST_CAUSES):
-        progress(f"adding each of {len(initialised)} hypotheses to {number} causes", 0.3 + 0.12 * number)
+    for number in range(most):
+        progress(f"adding each of {len(initialised)} hypotheses to {number} causes", 0.7 - 0.4 * 0.7**number)
         found, suspected = _extended(problem, prior, initialised, front, healthy, best.log_posterior + log(NEGLIGIBLE))
         onset = suspected if front.fit is None else onset
         if not found:

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import factorial, log
 
-from rovval.diagnose.criteria import PRIOR_CAUSES, PRIOR_HEALTHY
+from rovval.diagnose.criteria import FURTHER_CAUSE, PRIOR_CAUSES, PRIOR_HEALTHY
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 from rovval.diagnose.problem.problem import Problem
@@ -97,4 +97,5 @@ class ModelPrior:
         if not causes:
             return log(PRIOR_HEALTHY)
         each = sum(log(self.effects) + log(self.targets[h.effect.name]) for h in causes)
-        return log(PRIOR_CAUSES[len(causes) - 1]) + log(factorial(len(causes))) - each
+        of_as_many = log(PRIOR_CAUSES * (1.0 - FURTHER_CAUSE)) + (len(causes) - 1) * log(FURTHER_CAUSE)
+        return of_as_many + log(factorial(len(causes))) - each
