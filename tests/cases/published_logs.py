@@ -25,8 +25,9 @@ SAME = {  # families of the outside plant, and what the library calls the same b
     "added_mass": ("added_mass[surge]", "added_mass[sway]", "added_mass[heave]"),
     "rpm_scale": ("rpm_scale", "voltage_sag"),
     "tether_drag": ("tether_drag", "tether_tension"),
+    "stick_slip": ("dragged_load",),  # dry friction of the whole vehicle
+    "slosh": ("shifting_ballast",),
 }
-FOREIGN = {"stick_slip", "slosh"}  # effects that no library need hold
 
 
 def _questions(folder: str, logs: tuple[str, ...], nominal: str, right: tuple[str, ...], kind: str = "bag") -> tuple[Question, ...]:
@@ -73,8 +74,7 @@ def _right(effects: list[Mapping[str, Any]]) -> tuple[str, ...]:
     """Names of the library for what was put in."""
     found = list[str]()
     for one in effects:
-        if one["family"] not in FOREIGN:
-            found += SAME.get(one["family"], (f"{one['family']}[{one['params']['unit']}]" if "unit" in one["params"] else one["family"],))
+        found += SAME.get(one["family"], (f"{one['family']}[{one['params']['unit']}]" if "unit" in one["params"] else one["family"],))
     return tuple(found)
 
 

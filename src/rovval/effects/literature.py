@@ -10,12 +10,15 @@ REFERENCES = MappingProxyType(
         "ABS 2013": "American Bureau of Shipping (2013). Guide for Dynamic Positioning Systems.",
         "Alessandri 1999": "Alessandri, A., Caccia, M. and Veruggio, G. (1999). Fault detection of actuator faults in unmanned underwater vehicles. "
         "Control Engineering Practice 7(3).",
+        "Armstrong-Helouvry 1994": "Armstrong-Helouvry, B., Dupont, P. and Canudas de Wit, C. (1994). A survey of models, analysis tools and compensation "
+        "methods for the control of machines with friction. Automatica 30(7).",
         "Bachmayer 2000": "Bachmayer, R., Whitcomb, L. L. and Grosenbaugh, M. A. (2000). An accurate four-quadrant nonlinear dynamical model for marine "
         "thrusters: theory and experimental validation. IEEE Journal of Oceanic Engineering 25(1).",
         "Bessa 2006": "Bessa, W. M., Dutra, M. S. and Kreuzer, E. (2006). Thruster dynamics compensation for the positioning of underwater robotic vehicles "
         "through a fuzzy sliding mode based approach. ABCM Symposium Series in Mechatronics 2.",
         "Bhattacharyya 2016": "Bhattacharyya, S., Reyes, A. J. and Asada, H. H. (2016). Dynamical modeling of a micro AUV in hydrodynamic ground effect. "
         "OCEANS 2016 MTS/IEEE Monterey. doi:10.1109/OCEANS.2016.7761326.",
+        "Biran 2003": "Biran, A. (2003). Ship Hydrostatics and Stability. Butterworth-Heinemann.",
         "Blue Robotics T200": "Blue Robotics. T200 thruster: technical details and performance tables.",
         "Caccia 2000": "Caccia, M., Indiveri, G. and Veruggio, G. (2000). Modeling and identification of open-frame variable configuration unmanned underwater "
         "vehicles. IEEE Journal of Oceanic Engineering 25(2).",
@@ -54,6 +57,8 @@ REFERENCES = MappingProxyType(
         "Klein and Morelli 2006": "Klein, V. and Morelli, E. A. (2006). Aircraft System Identification: Theory and Practice. AIAA.",
         "Knapp and Carter 1976": "Knapp, C. H. and Carter, G. C. (1976). The generalized correlation method for estimation of time delay. IEEE Transactions on "
         "Acoustics, Speech, and Signal Processing 24(4).",
+        "Kozlowska 2020": "Kozlowska, A. M., Dalheim, O. O., Savio, L. and Steen, S. (2020). Time domain modeling of propeller forces due to ventilation in "
+        "static and dynamic conditions. Journal of Marine Science and Engineering 8(1), 31.",
         "Lehn 1980": "Lehn, E. (1980). Thruster Interaction Effects. Norwegian Ship Research Institute (NSFI), report R-102.80.",
         "Longuet-Higgins 1984": "Longuet-Higgins, M. S. (1984). Statistical properties of wave groups in a random sea state. Philosophical Transactions of the "
         "Royal Society A 312.",

@@ -53,6 +53,9 @@ ALIASES = [
     (planted("sticky_thruster", "HFP"), cause("thruster_sticking[HFS]"), False),
     (planted("water_leak", None), cause("buoyancy_drift"), True),
     (planted("manipulator", None), cause("moving_tool"), True),
+    (planted("dry_friction", None), cause("dragged_load"), True),
+    ({"name": "sliding_battery", "place": "foreign", "target": None}, cause("shifting_ballast"), True),  # of the second plant
+    ({"name": "ventilation", "place": "foreign", "target": None}, cause("ventilation"), True),
 ]
 
 

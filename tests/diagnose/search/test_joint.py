@@ -24,7 +24,7 @@ def test_a_second_cause_does_not_lead_the_first_away():
 
 def test_two_causes_that_offset_each_other_are_both_found():
     """Weaker thrust and less drag: the speed is as before, only the way there differs."""
-    document = diagnose([own(("rpm_scale:scale=-0.25", "quadratic_drag[surge]:scale=-0.7", "linear_drag[surge]:scale=-0.7"), 5, 240.0)], merlin()).document()
+    document = diagnose([own(("rpm_scale:scale=-0.25", "quadratic_drag[surge]:scale=-0.7", "linear_drag[surge]:scale=-0.7"), 5, 300.0)], merlin()).document()
     named = {c["effect"] for c in document["causes"]}
     assert {"rpm_scale"} <= named and named & {"quadratic_drag[surge]", "linear_drag[surge]"}, document["sentence"]
 

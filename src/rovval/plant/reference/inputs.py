@@ -83,7 +83,7 @@ def _lagged(tau: Array, memory: Array, a: Array, now: Array, slope: Array, elaps
 def _thrust_at_rest(run: Run, n: Array, names: Mapping[str, Array]) -> Array:
     lanes = run.lanes
     thrust = np.where(n > 0, lanes.k_pos, lanes.k_neg) * n * np.abs(n)
-    thrust = chain(run, "static", thrust, names)
+    thrust = chain(run, "static", thrust, {**names, "n": n})
     for (j, i), (ahead, astern) in zip(run.jets.pairs, run.jets.weights, strict=True):
         jet = np.where(n[:, j] > 0, ahead, astern) * np.minimum(np.abs(n[:, j]), np.abs(n[:, i]))
         gain = np.where(n[:, i] > 0, lanes.k_pos[:, i], lanes.k_neg[:, i])
