@@ -120,3 +120,17 @@ def test_causes_are_judged_where_they_act():
     assert share < 0.2 < 0.6 < found.shares[names].min()
     assert 0.0 < expected < 0.3
     assert found.where_they_act(frozenset({"waves"}))[0] == 1.0  # was not fitted
+
+
+def test_of_what_causes_open_all_is_left_however_little_there_was():
+    """Thrust is lost; half of that loss, and a strong pull upwards that is not there, is nothing that leaves the gap in surge 30 times over."""
+    problem, _ = posed(("inflow_loss:loss=0.3",))
+    index, slots = problem.plant.index, tuple(i for i, s in enumerate(problem.plant.slots) if s.hypothesis in ("inflow_loss", "buoyancy_error"))
+    begin = problem.origin.copy()
+    begin[index["inflow_loss.loss"]], begin[index["buoyancy_error.force"]] = 0.29, 200.0
+    fit = fit_hypothesis(problem, begin, slots)
+    lifted = replace(fit, parts={part: size + (1e5 if part == "heave" else 0.0) for part, size in fit.parts.items()})
+    names = frozenset({"inflow_loss", "buoyancy_error"})
+    causes = tuple(Hypothesis(name, name, slots, (), ()) for name in sorted(names))
+    right, opened = (gap_left(problem, [Model(causes, one, one.evidence, 0.0)]).acting[names][0] for one in (fit, lifted))
+    assert right < 0.3 < opened <= 1.0

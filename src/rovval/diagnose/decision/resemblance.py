@@ -14,7 +14,8 @@ Beside what only looks like a cause generic forces often show that go with the m
 (`SHOWS_BESIDE`).
 
 Shares are of the errors above the noise of the sensors. Whether causes are of the library is judged where they act: by what they leave of the gap on each
-axis, and of the parity residuals, which faults of sensors close, the mean of these weighted with how much of each they close or open. A real vehicle is off
+axis, and of the parity residuals, which faults of sensors close, the mean of these weighted with how much of each they close or open; of what they open all
+is left, however little there was. A real vehicle is off
 on several axes for several reasons, and a cause that closes the gap in yaw is no worse for what is left in pitch. A set is judged with the best of its parts.
 """
 
@@ -107,13 +108,14 @@ class _Gap:
 
     def left_where_it_acts(self, errors: Mapping[str, float]) -> tuple[float, float]:
         """The share that is left of each part of the gap, and that a healthy vehicle is expected to show of it, both weighted with the change of that part; all
-        of it where no part becomes smaller."""
+        of it where no part becomes smaller. Of a part that becomes larger all is left."""
         left = {part: size - self.noise[part] for part, size in errors.items() if self.errors[part] > 0.0}
         change = {part: abs(self.errors[part] - size) for part, size in left.items()}
         if all(size >= self.errors[part] for part, size in left.items()):
             return 1.0, TINY
-        share = sum(size * max(left[part] / self.errors[part], NOTHING_LEFT) for part, size in change.items())
-        healthy = sum(size * self.healthy[part] / self.errors[part] for part, size in change.items())
+        whole = {part: max(self.errors[part], size) for part, size in left.items()}
+        share = sum(size * max(left[part] / whole[part], NOTHING_LEFT) for part, size in change.items())
+        healthy = sum(size * self.healthy[part] / whole[part] for part, size in change.items())
         return share / sum(change.values()), max(healthy / sum(change.values()), TINY)
 
 
