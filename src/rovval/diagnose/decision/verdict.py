@@ -40,7 +40,8 @@ class Decision:
     Attributes:
         verdict: ``no_gap``, ``explained``, ``partly_explained`` or ``unknown``.
         probabilities: of all models.
-        causes: those of the set that is named (`Probabilities.best`), the surest first; empty for ``no_gap`` and ``unknown``.
+        causes: those of the set that is named (`Probabilities.best`) without those without which it is as probable, the surest first; empty for ``no_gap`` and
+            ``unknown``.
         fit: their joint fit; None without causes.
         groups: of each cause the names that this log does not tell from it (itself first) with their probabilities.
         probability: that each cause is at work.
@@ -89,7 +90,7 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
         varies |= {m.names: variation(there, fit.posterior, m.causes) for m, there, fit in at_work}
         more = {names: forces.sparse()[0] for names, forces in beside.items()}
         belief = probabilities(met, file, evidence, more, varies, evidence_of_something_else(unexplained_gap), gap_left(problem, met))
-        best = _fitted(problem, selection, met, belief.best)
+        best, without = _needed(problem, selection, met, _fitted(problem, selection, met, belief.best))
         if best.fit is None or best.names in beside:
             break
         met, weigh = [best, *(m for m in met if m.names != best.names)], [best]
@@ -99,7 +100,7 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
     found = Decision("no_gap", belief, (), None, {}, {}, {}, over, instead_of_any, 0.0, departure, known, varies, unexplained_gap, None)
     contradicted = any(h.effect.place != "sensor" for h in best.causes) and _contradicted(problem, residuals)
     if best.fit and belief.likelier_than_not == "causes" and not contradicted:
-        return _named(problem, selection, found, best, best.fit, beside[best.names], varies[best.names])
+        return _named(problem, found, best, best.fit, without, beside[best.names], varies[best.names])
     found = replace(found, indications=indications(selection.steps[0] if selection.steps else (), known, faults))
     if belief.likelier_than_not == "healthy":
         return found
@@ -136,8 +137,30 @@ def _fitted(problem: Problem, selection: Selection, met: Sequence[Model], names:
     return refitted(problem, Model(causes, fit.without_sensitivities(), fit.evidence, selection.prior.log_mass(causes)))
 
 
+def _needed(problem: Problem, selection: Selection, met: Sequence[Model], best: Model) -> tuple[Model, dict[str, Model]]:
+    """A model without causes without which it is as probable, since others of it stand in for them; and the models without each of those that are left."""
+    known = best_of_each_set(met)
+    while True:
+        without = {h.name: _without(problem, selection, best, h, known) for h in best.causes}
+        if len(without) < 2 or max(m.log_posterior for m in without.values()) < best.log_posterior:
+            return best, without
+        idle = max(without, key=lambda name: without[name].log_posterior)
+        best = _fitted(problem, selection, [best, *met], best.names - {idle})
+
+
+def _without(problem: Problem, selection: Selection, best: Model, cause: Hypothesis, known: dict[Names, Model]) -> Model:
+    """A model without one of its causes: as ``known``, where it was fitted, else the others from where they are in the model, kept there; the healthy vehicle
+    for causes that begin together in mid-log."""
+    rest = best.names - {cause.name}
+    if rest not in known and best.fit and best.part is None:
+        others = tuple(h for h in best.causes if h is not cause)
+        fit = joint_fit(problem, best.fit, others).without_sensitivities()
+        known[rest] = Model(others, fit, fit.evidence, selection.prior.log_mass(others))
+    return known.get(rest, known[frozenset()])
+
+
 def _named(
-    problem: Problem, selection: Selection, found: Decision, best: Model, fit: HypothesisFit, beside: GenericForces, varying: Variation
+    problem: Problem, found: Decision, best: Model, fit: HypothesisFit, without: Mapping[str, Model], beside: GenericForces, varying: Variation
 ) -> Decision:
     """The causes of the best set are named; they explain a part where generic forces ``beside`` them, or sizes ``varying`` along the log, are likelier than
     not, or where they leave more of the gap than noise and tolerances make."""
@@ -156,7 +179,7 @@ def _named(
         fit=fit,
         groups={h.name: belief.group(h.name) for h in best.causes},
         probability=probability,
-        added={h.name: best.evidence - _evidence_without(selection, best.names - {h.name}) for h in best.causes},
+        added={name: best.evidence - m.evidence for name, m in without.items()},
         generic_beside=max(evidence, 0.0),
         departure=fit.posterior.largest_departure(),
         open_gap=left,
@@ -169,8 +192,3 @@ def _contradicted(problem: Problem, residuals: list[Array]) -> bool:
     """Whether the log contradicts itself on the axis of the largest gap: a fault of a sensor that the library lacks, whatever explains the gap."""
     weight = weighted_errors(problem, residuals)
     return bool(inconsistencies(problem, dict([max(weight.items(), key=lambda item: item[1])])))
-
-
-def _evidence_without(selection: Selection, rest: Names) -> float:
-    """Evidence of a set of causes; of the healthy vehicle where it was not fitted."""
-    return max((m.evidence for m in selection.models if m.names == rest), default=selection.models[0].evidence)
