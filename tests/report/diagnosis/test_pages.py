@@ -83,7 +83,7 @@ def test_several_causes_an_onset_and_holes_in_a_trace() -> None:
     d["traces"][0]["measured"][5] = None
     page, text, plain = formats(diagnosis(run="dive-1, dive-2", causes=[*d["causes"], fault], traces=d["traces"]))
     assert "dive-1, dive-2" in page and "thruster_fault_onset[HFP] from 412 s on" in plain and "begins at 412 s" in text
-    assert "Two effects explain part of the gap: Axial inflow loss and Thruster fails during the log." in plain
+    assert "Two effects explain part of the gap: Axial inflow loss and Thruster fails during the log (HFP)." in plain
     assert "The error falls to 58 % [53, 65]" in plain and "by itself, the error falls to 95 % [89, 97]" in plain
 
 

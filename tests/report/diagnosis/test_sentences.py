@@ -14,7 +14,7 @@ from rovval.diagnose.result.diagnosis import Diagnosis
 from rovval.report.diagnosis import html
 from rovval.report.diagnosis.json import document
 from rovval.report.diagnosis.sentences.first_screen import first_screen
-from rovval.report.diagnosis.sentences.plain import falls, regime, titled
+from rovval.report.diagnosis.sentences.plain import falls, of_what, regime, titled
 from rovval.report.diagnosis.sentences.sentence import answer, sentence, verdict
 
 SURE = {"healthy": 0.02, "causes": 0.03, "miscalibrated_file": 0.05, "something_else": 0.9}
@@ -91,6 +91,7 @@ def test_an_error_is_told_as_rms() -> None:
 
 
 def test_an_effect_is_told_by_its_title_with_the_name_that_commands_take() -> None:
+    assert of_what("linear_drag[yaw]") == "Linear drag differs (yaw)" and of_what("inflow_loss") == "Axial inflow loss"
     assert titled("linear_drag[yaw]") == "Linear drag differs (linear_drag[yaw])" and titled("of_another_library") == "of_another_library"
     for text in formats(diagnosis()):
         assert "Axial inflow loss" in text and "inflow_loss" in text

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from rovval.diagnose.result.diagnosis import Cause, Diagnosis
 from rovval.report.common.numbers import listed, per_cent, probability, quantity
 from rovval.report.diagnosis.sentences import no_cause
-from rovval.report.diagnosis.sentences.plain import falls, falls_to, regime, title
+from rovval.report.diagnosis.sentences.plain import falls, falls_to, of_what, regime
 from rovval.report.diagnosis.sentences.words import alone, group, moved, parameter, unmoved
 
 MOST_VALUES = 2  # parameters of a cause that fit the first screen
@@ -35,7 +35,7 @@ def what(d: Diagnosis) -> str:
         return no_cause.nothing(d)
     if not d.causes:
         return no_cause.unknown(d)
-    names = listed(title(c.effect) for c in d.causes)
+    names = listed(of_what(c.effect) for c in d.causes)
     some = COUNTED.get(len(d.causes), f"{len(d.causes)} effects")
     verb = "explain" if len(d.causes) > 1 else "explains"
     if d.verdict == "explained":

@@ -32,6 +32,12 @@ def title(name: str) -> str:
     return effects.load(effect).title if effect in effects.names() else name
 
 
+def of_what(name: str) -> str:
+    """Linear drag differs (yaw): its title, and which axis or thruster it is of."""
+    target = name.partition("[")[2].rstrip("]")
+    return f"{title(name)} ({target})" if target else title(name)
+
+
 def titled(name: str) -> str:
     """Linear drag differs (linear_drag[yaw])."""
     said = title(name)
