@@ -187,3 +187,15 @@ def test_current_and_tether_are_arrows_on_the_vehicle(tmp_path: Path) -> None:
     np.testing.assert_allclose(drawn / drawn[0, 0], np.tile([1.0, 0.0, 0.0], (300, 1)), atol=1e-6)
     _, plain, notes, _ = read(compare(run, make_sim(run)), tmp_path / "plain.rrd")
     assert not any("current" in e or "force/" in e for e in plain) and "Arrow" not in notes
+
+
+def test_where_a_pose_is_missing_the_vehicle_is_a_speck_that_the_viewer_can_draw(tmp_path: Path) -> None:
+    """A scale of nothing is no transform to the viewer, which warned of one at every step."""
+    from rerun.chunk import RrdReader
+
+    run = make_run(300, holes={"x": slice(100, 150)})
+    recording.write(compare(run, make_sim(run)), tmp_path / "run.rrd", MERLIN)
+    batches = [chunk.to_record_batch() for chunk in RrdReader(str(tmp_path / "run.rrd")).stream() if chunk.entity_path == "/world/measured"]
+    scale = np.concatenate([np.array(b.column("Transform3D:scale").flatten().to_pylist()) for b in batches if "Transform3D:scale" in b.schema.names])
+    assert scale.shape == (300, 3) and np.all(scale > 0.0)
+    assert np.all(scale[100:150] < 0.01) and np.all(scale[:100] == 1.0)

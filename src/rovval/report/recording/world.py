@@ -27,6 +27,7 @@ COLOURS = {  # the page's in the dark
 }
 ARROW_RADIUS = 0.02  # of a vehicle's length: the shaft of an arrow of current or force
 ARROW_SHARE = 1.2  # the strongest thrust is drawn this many vehicle lengths long
+SPECK = 1e-3  # of its size: the vehicle where its pose is missing; of no size at all it is no transform to the viewer, which warns at every step
 
 
 def is_placed(c: Comparison) -> bool:
@@ -104,7 +105,7 @@ def _strips(points: Array, stretch: Any) -> list[Array]:
 def _body(
     stream: Any, clock: list[Any], path: str, eta: Array, vehicle: Vehicle, colour: tuple[int, int, int], solid: bool
 ) -> None:
-    """The vehicle's box along a pose; it shrinks to nothing where the pose is missing."""
+    """The vehicle's box along a pose; it shrinks to a speck where the pose is missing."""
     import rerun as rr
 
     fill = rr.components.FillMode.TransparentFillMajorWireframe if solid else rr.components.FillMode.MajorWireframe
@@ -117,7 +118,7 @@ def _body(
     columns = rr.Transform3D.columns(
         translation=known[:, :3],
         quaternion=w_first[:, [1, 2, 3, 0]],
-        scale=np.repeat(there.astype(float)[:, None], 3, axis=1),
+        scale=np.repeat(np.where(there, 1.0, SPECK)[:, None], 3, axis=1),
     )
     stream.send_columns(path, clock, columns)
 
