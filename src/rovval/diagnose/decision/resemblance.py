@@ -14,8 +14,8 @@ Beside what only looks like a cause generic forces often show that go with the m
 (`SHOWS_BESIDE`).
 
 Shares are of the errors above the noise of the sensors. Whether causes are of the library is judged where they act: by what they leave of the gap on each
-axis, and of the parity residuals, which faults of sensors close, the mean of these weighted with how much of each they close or open; of what they open all
-is left, however little there was. A real vehicle is off
+axis, and of the parity residuals, which faults of sensors close, the mean of these weighted with how much of each they close or open; what they open speaks as
+much against them as what they close speaks for them, however little there was of it. A real vehicle is off
 on several axes for several reasons, and a cause that closes the gap in yaw is no worse for what is left in pitch. A set is judged with the best of its parts.
 """
 
@@ -108,13 +108,14 @@ class _Gap:
 
     def left_where_it_acts(self, errors: Mapping[str, float]) -> tuple[float, float]:
         """The share that is left of each part of the gap, and that a healthy vehicle is expected to show of it, both weighted with the change of that part; all
-        of it where no part becomes smaller. Of a part that becomes larger all is left."""
+        of it where no part becomes smaller. A part that becomes larger counts as one that becomes smaller by as much, above 1 instead of below."""
         left = {part: size - self.noise[part] for part, size in errors.items() if self.errors[part] > 0.0}
         change = {part: abs(self.errors[part] - size) for part, size in left.items()}
         if all(size >= self.errors[part] for part, size in left.items()):
             return 1.0, TINY
         whole = {part: max(self.errors[part], size) for part, size in left.items()}
-        share = sum(size * max(left[part] / whole[part], NOTHING_LEFT) for part, size in change.items())
+        part_left = {part: size / whole[part] if size <= self.errors[part] else 2.0 - self.errors[part] / whole[part] for part, size in left.items()}
+        share = sum(size * max(part_left[part], NOTHING_LEFT) for part, size in change.items())
         healthy = sum(size * self.healthy[part] / whole[part] for part, size in change.items())
         return share / sum(change.values()), max(healthy / sum(change.values()), TINY)
 
