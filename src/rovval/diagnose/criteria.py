@@ -74,7 +74,7 @@ SPRING_LEAST_STIFFNESS = 5.0  # N/m: half of what is typical of `tether_snag`; s
 # Evidence is twice the logarithm of a Bayes factor: 2 to 6 is positive, 6 to 10 strong, above 10 very strong (Kass and Raftery 1995).
 PRIOR_HEALTHY = 0.50  # prior mass of a vehicle that is as its file has it, within tolerance (chosen: one log in two has nothing to find),
 PRIOR_CAUSES = 0.43  # of causes of the library, one or several (chosen),
-FURTHER_CAUSE = 1.0 / 3.0  # each further one being as likely as that of what there is without it (chosen),
+FURTHER_CAUSE = 1.0 / 3.0  # each further one has this share of the mass that there is without it (chosen),
 PRIOR_FILE = 0.02  # of a file that is off in many numbers at once (chosen),
 PRIOR_SOMETHING_ELSE = 0.05  # and of something that the library does not hold (chosen)
 LIBRARY_ALIKE = 2.0 / 3.0  # share of what the library lacks that looks like something of it (opened and development sets of three plants: 11 of 16)

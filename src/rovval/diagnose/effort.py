@@ -43,7 +43,7 @@ SPRING_EVIDENT_SHARE = 0.2  # of the gap, from which a spring is fitted in any c
 
 NEGLIGIBLE = 0.01  # probability of a model beside the best one, below which it is not sought after (chosen)
 SETS_WEIGHED = 3  # sets of causes, the most probable, beside which something else or further numbers of the file are weighed (chosen)
-MOST_CAUSES = 8  # at once that are sought; a search ends before, where one more explains nothing more (chosen: a real vehicle's file was off in six),
+MOST_CAUSES = 8  # at once that are sought; a search ends before, where one more explains nothing more (chosen: a real vehicle's file was off in five),
 MOST_BEGUN = 3  # and that are sought to begin at one time in mid-log (chosen)
 MOST_CANDIDATES = 10  # hypotheses that are re-simulated in a step (chosen)
 SCREENED_EVIDENCE = 0.15  # share of the best linearised evidence: with less, a hypothesis is not re-simulated (chosen),

@@ -22,7 +22,7 @@ from rovval.diagnose.search.model import Names
 
 
 def file_evidence(problem: Problem, selection: Selection) -> dict[Names, float]:
-    """Twice the log Bayes factor, over the file as it is, of one that is off (`FILE_WIDTH`) in more numbers than there may be causes, those of the causes
+    """Twice the log Bayes factor, over the file as it is, of one that is off (`FILE_WIDTH`) in more numbers than causes are sought, those of the causes
     beside it counted, or in a few that no effect which competes is about: beside no cause, and beside each of the most probable sets of causes."""
     plant = problem.plant
     compete = {s for name, _ in selection.ranking for s in plant.hypotheses[name]}

@@ -102,8 +102,9 @@ class Probabilities:
         shared = {names: sum(len(names & other) * p for other, p in alike.items()) for names in likely}
         named = max(likely, key=lambda names: shared[names], default=frozenset[str]())
         while len(named) > 1:
-            least = min(sorted(named), key=lambda name: self._at_work(name, named))
-            if self._at_work(least, named) > EVEN_ODDS * self.causes:
+            likely_at_work = {name: self._at_work(name, named) for name in sorted(named)}
+            least = min(likely_at_work, key=lambda name: likely_at_work[name])
+            if likely_at_work[least] > EVEN_ODDS * self.causes:
                 break
             named -= {least}
         return named

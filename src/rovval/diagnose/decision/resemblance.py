@@ -114,8 +114,7 @@ class _Gap:
         if all(size >= self.errors[part] for part, size in left.items()):
             return 1.0, TINY
         whole = {part: max(self.errors[part], size) for part, size in left.items()}
-        part_left = {part: size / whole[part] if size <= self.errors[part] else 2.0 - self.errors[part] / whole[part] for part, size in left.items()}
-        share = sum(size * max(part_left[part], NOTHING_LEFT) for part, size in change.items())
+        share = sum(size * max(1.0 - (self.errors[part] - left[part]) / whole[part], NOTHING_LEFT) for part, size in change.items())
         healthy = sum(size * self.healthy[part] / whole[part] for part, size in change.items())
         return share / sum(change.values()), max(healthy / sum(change.values()), TINY)
 
