@@ -18,7 +18,7 @@ EFFECT = Effect(
     symbols={"T_i": "thrust of thruster i, along its axis; N"},
     parameters=(
         Parameter(
-            "scale", "1", -0.9, 1.0, 0.0, 0.15, "a BlueROV2's vertical thrusters blow at its frame: 0.59 to 0.74 of the others by calibrations on two tank runs at a time",
+            "scale", "1", -0.9, 1.0, 0.0, 0.15, "a BlueROV2's vertical thrusters blow at its frame: 0.59 to 0.74 of the others by calibrations on tank runs",
             vanishes_at="low", compared_with="thruster_degraded",
         ),
     ),
