@@ -14,10 +14,11 @@ from rovval.core.errors import BadInput
 from rovval.fit.calibration import Calibration, calibrate
 from rovval.fit.record import record
 from rovval.fit.unknowns import applied, unknowns
+from rovval.plant import Plant, parse_settings
 from rovval.report.fit import html, text
-from rovval.simulation import simulate
+from rovval.simulation import carried_effects, simulate
 from rovval.simulation.fitted_commands import beyond_fitted, fitted
-from rovval.vehicle import parse
+from rovval.vehicle import load, parse
 from rovval.vehicle.model import Vehicle
 from rovval.vehicle.write import to_toml
 
@@ -48,6 +49,26 @@ def test_what_the_file_has_wrong_comes_back():
     assert found["thrust.height"].value == pytest.approx(0.1, abs=0.03)
     assert found["thrust.ahead"].value == pytest.approx(0.08, abs=0.02)
     assert found["trim.buoyancy"].value == pytest.approx(30.0, abs=5.0)
+
+
+@pytest.mark.parametrize("factor", [-9.0, 0.0, 3.0, 9.0, 60.0])
+@pytest.mark.parametrize("drag", [-3.0, 0.0, 2.0])
+def test_a_tether_drags_no_more_than_the_library_holds_wherever_the_search_goes(factor: float, drag: float):
+    """Of a light vehicle a search went where the library has no tether any more, and `rovval fit` ended with that refusal."""
+    chosen = [one for one in unknowns(load("bluerov2_heavy"), CHANNELS) if one.key in ("tether.drag", "quadratic_drag[surge]")]
+    found = applied(load("bluerov2_heavy"), chosen, np.array([drag, factor]))
+    plant = Plant(found)
+    beta = parse_settings(plant, carried_effects(found))
+    assert 0.0 < beta[plant.index["tether_drag.coefficient"]] <= plant.slots[plant.index["tether_drag.coefficient"]].parameter.high
+
+
+def test_a_tether_that_the_file_carries_is_where_the_factor_is_counted_from():
+    carried = load("bluerov2_heavy").model_copy(update={"effects": {"tether_drag": {"coefficient": 40.0}}})
+    [one] = [one for one in unknowns(carried, CHANNELS) if one.key == "tether.drag"]
+    drag = [applied(carried, (one,), np.array([x])).effects["tether_drag"]["coefficient"] for x in (0.0, np.log(2.0), 60.0)]
+    assert drag[0] == pytest.approx(40.0, rel=1e-12)
+    assert 70.0 < drag[1] < 80.0  # twice of it, less what the bound takes
+    assert drag[2] == pytest.approx(next(s for s in Plant(carried).slots if s.key == "tether_drag.coefficient").parameter.high)
 
 
 def test_the_calibrated_vehicle_predicts_a_dive_that_it_has_not_seen():

@@ -15,7 +15,7 @@ import numpy as np
 
 from rovval.core.channels import AXES, VELOCITIES
 from rovval.core.data import Array, Run
-from rovval.core.errors import BadInput, SimulationStopped
+from rovval.core.errors import BadInput, SimulationStopped, UsageProblem
 from rovval.core.version import __version__
 from rovval.diagnose.windows.noise import clean_channels
 from rovval.fit.estimate import Estimate, Problem, maximum
@@ -194,7 +194,10 @@ def _problem(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unkno
 
     def residuals(values: Array) -> Sequence[Array]:
         plant = Plant(applied(vehicle, chosen, values), model, steps)
-        beta = parse_settings(plant, carried_effects(plant.vehicle))
+        try:
+            beta = parse_settings(plant, carried_effects(plant.vehicle))
+        except UsageProblem:  # lag, sensor or tether beyond the bounds of its effect: no vehicle
+            return [np.full(one.ok.shape, np.nan) for one in records]
         return [residual(one, plant, beta) for one in records]
 
     mean = np.array([-vehicle.calibration.get(one.key, 0.0) for one in chosen])

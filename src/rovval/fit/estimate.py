@@ -27,8 +27,8 @@ Residuals = Callable[[Array], Sequence[Array]]
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """``residuals`` of values (k,): one array (..., channels) a run, NaN where the simulation stopped; ``ok`` of the same shapes; ``dt`` s a sample;
-    ``floor`` (channels,) noise of the sensors; ``mean`` and ``sd`` (k,) of the prior."""
+    """``residuals`` of values (k,): one array (..., channels) a run, NaN where the simulation stopped or the values are none that a vehicle may have;
+    ``ok`` of the same shapes; ``dt`` s a sample; ``floor`` (channels,) noise of the sensors; ``mean`` and ``sd`` (k,) of the prior."""
 
     residuals: Residuals
     ok: Sequence[Flags]
@@ -143,10 +143,18 @@ def _misfit(problem: Problem, residuals: Sequence[Array], scale: Array) -> float
     return total * min(problem.dt / INDEPENDENT_S, 1.0)
 
 
+def _beside(problem: Problem, values: Array, j: int) -> tuple[Sequence[Array], float]:
+    """Residuals a fine step of the ``j``-th value away, and the step: ahead, or back where the simulation stops ahead."""
+    for step in (FINE * problem.sd[j], -FINE * problem.sd[j]):
+        found = problem.residuals(values + step * np.eye(len(values))[j])
+        if _finite(found):
+            break
+    return found, float(step)
+
+
 def _normal_equations(problem: Problem, values: Array, residuals: Sequence[Array], scale: Array) -> tuple[Array, Array]:
     """Curvature (k, k) and slope (k,) of the cost, sensitivities by forward differences."""
-    step = FINE * problem.sd
-    beside = [problem.residuals(values + step[j] * np.eye(len(values))[j]) for j in range(len(values))]
+    beside, step = zip(*(_beside(problem, values, j) for j in range(len(values))), strict=True)
     share = min(problem.dt / INDEPENDENT_S, 1.0)
     curvature, slope = np.diag(1.0 / problem.sd**2), (values - problem.mean) / problem.sd**2
     for i, (r, ok) in enumerate(zip(residuals, problem.ok, strict=True)):

@@ -16,6 +16,7 @@ import numpy as np
 
 from rovval.core.channels import AXES
 from rovval.core.data import Array
+from rovval.plant.slots import slots
 from rovval.vehicle.model import Body, Thruster, Vehicle, as_matrix, inertia
 
 Diagonal = tuple[float, ...]
@@ -130,7 +131,7 @@ def applied(vehicle: Vehicle, asked: Sequence[Unknown], values: Array) -> Vehicl
     moved = {one.key: vehicle.calibration.get(one.key, 0.0) + float(value) for one, value in zip(asked, values, strict=True)}
     return vehicle.model_copy(
         update={
-            "body": _body(vehicle, at), "thruster": thruster, "pulse_table": table, "effects": _effects(vehicle, at),
+            "body": (body := _body(vehicle, at)), "thruster": thruster, "pulse_table": table, "effects": _effects(vehicle, body, at),
             "calibration": {**vehicle.calibration, **moved},
         }
     )  # fmt: skip
@@ -173,17 +174,26 @@ def _scaled(was: tuple[float, ...] | tuple[tuple[float, ...], ...], diagonal: Ar
     return tuple(tuple(float(x) for x in row) for row in whole)
 
 
-def _effects(vehicle: Vehicle, at: Mapping[str, float]) -> dict[str, dict[str, float]]:
-    """The [effects] of the calibrated file: lag, sensors and tether. What the file carries of them is where their unknowns are counted from."""
+def _effects(vehicle: Vehicle, body: Body, at: Mapping[str, float]) -> dict[str, dict[str, float]]:
+    """The [effects] of the calibrated file, which has the ``body``: lag, sensors and tether. What the file carries of them is where their unknowns are
+    counted from."""
     found = {name: dict(values) for name, values in vehicle.effects.items()}
     if "thrust.lag" in at:
         found["thrust_lag"] = found.get("thrust_lag", {})
         found["thrust_lag"]["tau"] = (found["thrust_lag"].get("tau") or LAG_S) * at["thrust.lag"]
     if "tether.drag" in at:
-        drag = float(np.diag(as_matrix(vehicle.body.quadratic_drag))[0])
-        found["tether_drag"] = found.get("tether_drag", {})
-        found["tether_drag"]["coefficient"] = (found["tether_drag"].get("coefficient") or SPLIT * drag) * at["tether.drag"]
+        carried = found.get("tether_drag", {})
+        first = carried.get("coefficient") or SPLIT * float(np.diag(as_matrix(vehicle.body.quadratic_drag))[0])
+        most, after = _most_tether_drag(vehicle), _most_tether_drag(vehicle.model_copy(update={"body": body}))
+        drag = at["tether.drag"] * first
+        found["tether_drag"] = {**carried, "coefficient": after * drag / (most - first + drag)}
     for key, (effect, parameter) in SENSORS.items():
         if key in at:
             found[effect] = {**found.get(effect, {}), parameter: found.get(effect, {}).get(parameter, 0.0) + at[key]}
     return found
+
+
+def _most_tether_drag(vehicle: Vehicle) -> float:
+    """The most drag (N s2/m2) that the library holds for a tether of such a vehicle: the factor of a tether's drag is one of its odds against it, which are in
+    proportion to the drag while that is small, and never come to it."""
+    return next(s.parameter.high for s in slots(vehicle, "fossen") if s.key == "tether_drag.coefficient")

@@ -1,0 +1,38 @@
+"""`maximum` where some values are none that a vehicle may have: it ends before them, with sensitivities taken on the near side."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rovval.fit.estimate import Problem, maximum
+
+MEASURED, FLOOR = np.array([2.0, 1.5]), np.array([0.1])
+OK = [np.ones((200, 1), dtype=bool)]
+
+
+def problem(wall: float) -> Problem:
+    """Two numbers, each the mean of a hundred samples; the first may not be above ``wall``."""
+
+    def residuals(values: np.ndarray) -> list[np.ndarray]:
+        error = np.repeat(values - MEASURED, 100)[:, None] + 0.1 * np.random.default_rng(0).standard_normal((200, 1))
+        return [error if values[0] <= wall else np.full((200, 1), np.nan)]
+
+    return Problem(residuals, OK, 1.0, FLOOR, np.zeros(2), np.full(2, 10.0))
+
+
+def test_values_that_no_vehicle_may_have_end_the_search_before_them():
+    free, walled = (maximum(problem(wall), [np.zeros(2)]) for wall in (np.inf, 1.0))
+    assert free.values == pytest.approx(MEASURED, abs=0.05)
+    assert 0.8 < walled.values[0] <= 1.0
+
+
+def test_a_search_that_begins_at_the_wall_takes_its_sensitivities_from_the_near_side():
+    walled = maximum(problem(0.0), [np.zeros(2)])
+    assert walled.values[0] <= 0.0
+    assert np.isfinite(walled.covariance).all()
+
+
+def test_a_search_that_can_begin_nowhere_says_so():
+    with pytest.raises(ValueError, match="every starting point"):
+        maximum(problem(-1.0), [np.zeros(2)])
