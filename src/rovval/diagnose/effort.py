@@ -4,6 +4,10 @@ More of each costs time and may find a better fit; less may miss one. What decid
 judgement of the authors without a published source; "opened sets" are development logs with a known answer (`rovval blind`).
 """
 
+# -- windows --------------------------------------------------------------------------------------------------------------------------
+
+STIFFER = 2.0  # the decay of a motion that a hypothesis may make of the file's, and is still integrated stably: twice its drag, or half its mass (chosen)
+
 # -- problem and inference: prior, noise model, disturbance, cross-validation, MAP fit, intervals -----------------------------------
 
 NOISE_MODEL_ROUNDS = 5  # of disturbance, form error and fit in turn: sizes then change by a few per cent

@@ -13,8 +13,8 @@ STABLE = 2.0  # step times decay rate: the classic Runge-Kutta scheme is stable 
 MOST = 8  # steps a sample: a vehicle that needs more has a drag or a mass that no vehicle has; it is left to the sanity limits
 
 
-def steps_a_sample(vehicle: Vehicle, thrust: Array, dt: float) -> int:
-    """Runge-Kutta steps for each ``dt`` (s) for which the fastest decay of a motion is integrated stably.
+def steps_a_sample(vehicle: Vehicle, thrust: Array, dt: float, stiffer: float = 1.0) -> int:
+    """Runge-Kutta steps for each ``dt`` (s) for which the fastest decay of a motion is integrated stably, and one that is ``stiffer`` by this factor.
 
     That is the decay about the steady motion which the largest recorded wrench of ``thrust`` (n, k) N would keep up on an axis: with drag
     d1 v + d2 v^2 = F it is (d1 + 2 d2 v) / m, m with added mass. A light vehicle that rolls fast is stiff: BlueROV2 at 6 rad/s decays in 0.03 s.
@@ -26,4 +26,4 @@ def steps_a_sample(vehicle: Vehicle, thrust: Array, dt: float) -> int:
     with np.errstate(divide="ignore", invalid="ignore"):
         speed = np.where(quadratic > 0, (np.sqrt(linear**2 + 4 * quadratic * force) - linear) / (2 * quadratic), force / linear)
     decay = (linear + 2 * quadratic * np.nan_to_num(speed, nan=0.0, posinf=0.0)) / mass
-    return min(max(1, ceil(float(decay.max()) * dt / STABLE)), MOST)
+    return min(max(1, ceil(stiffer * float(decay.max()) * dt / STABLE)), MOST)
