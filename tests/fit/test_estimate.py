@@ -11,14 +11,14 @@ MEASURED, FLOOR = np.array([2.0, 1.5]), np.array([0.1])
 OK = [np.ones((200, 1), dtype=bool)]
 
 
-def problem(wall: float) -> Problem:
-    """Two numbers, each the mean of a hundred samples; the first may not be above ``wall``."""
+def problem(wall: float, high: float = np.inf) -> Problem:
+    """Two numbers, each the mean of a hundred samples; the simulation stops where the first is above ``wall``, and its bound is ``high``."""
 
     def residuals(values: np.ndarray) -> list[np.ndarray]:
         error = np.repeat(values - MEASURED, 100)[:, None] + 0.1 * np.random.default_rng(0).standard_normal((200, 1))
         return [error if values[0] <= wall else np.full((200, 1), np.nan)]
 
-    return Problem(residuals, OK, 1.0, FLOOR, np.zeros(2), np.full(2, 10.0))
+    return Problem(residuals, OK, 1.0, FLOOR, np.zeros(2), np.full(2, 10.0), np.full(2, -np.inf), np.array([high, np.inf]))
 
 
 def test_values_that_no_vehicle_may_have_end_the_search_before_them():
@@ -31,6 +31,12 @@ def test_a_search_that_begins_at_the_wall_takes_its_sensitivities_from_the_near_
     walled = maximum(problem(0.0), [np.zeros(2)])
     assert walled.values[0] <= 0.0
     assert np.isfinite(walled.covariance).all()
+
+
+def test_a_value_rests_on_its_bound_and_the_others_go_on():
+    found = maximum(problem(np.inf, high=1.0), [np.zeros(2)])
+    assert found.values[0] == 1.0
+    assert found.values[1] == pytest.approx(MEASURED[1], abs=0.05)
 
 
 def test_a_search_that_can_begin_nowhere_says_so():

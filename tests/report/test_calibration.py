@@ -17,6 +17,7 @@ from rovval.fit.unknowns import unknowns
 from rovval.report import write_fit
 from rovval.report.calibration import answer, foremost, heat_map, html, rest, whisker
 from rovval.report.drawings.drawing import Box, Dot, Text
+from rovval.report.fit import text
 from rovval.report.notebook import page_of
 from rovval.simulation.fitted_commands import Excess, largest
 
@@ -133,3 +134,11 @@ def test_the_page_and_its_document_are_written_together_and_a_notebook_shows_the
     assert files["fit.html"].read_text() == page_of(FitResult("", document)).html
     assert len(document["matrix"]) == len(document["unknowns"])
     assert document["unknowns"]["thrust.gain"]["prior"] == pytest.approx(log(3.0))
+
+
+def test_a_prediction_that_left_sane_limits_has_no_number():
+    found = replace(made(), options={"cross_drag": (float("inf"), 2.0)})
+    document = json.loads(json.dumps(found.document(), allow_nan=False))
+    assert document["options"] == [{"name": "cross_drag", "gain": [None, 2.0], "accepted": False}]
+    for page in (html(document), text(document)):
+        assert "one left sane limits, +2.0" in unescape(page)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from math import exp, log
+from math import exp, isfinite, log
 from typing import Any
 
 import numpy as np
@@ -17,13 +17,15 @@ from rovval.core.channels import AXES, VELOCITIES
 from rovval.core.data import Array, Run
 from rovval.core.errors import BadInput, SimulationStopped, UsageProblem
 from rovval.core.version import __version__
+from rovval.diagnose.effort import PROGRESSIVE_S
 from rovval.diagnose.windows.noise import clean_channels
-from rovval.fit.estimate import Estimate, Problem, maximum
-from rovval.fit.record import Record, record, residual
-from rovval.fit.unknowns import Unknown, applied, unknowns
+from rovval.fit.estimate import Estimate, Problem, held_out_change, maximum
+from rovval.fit.record import Record, begun, record, residual
+from rovval.fit.unknowns import Unknown, applied, bounds, unknowns
 from rovval.plant import Plant, parse_settings
 from rovval.simulation import carried_effects, simulate
 from rovval.simulation.fitted_commands import Excess, excesses, fitted, largest
+from rovval.simulation.fitted_errors import errors_left
 from rovval.simulation.step import steps_a_sample
 from rovval.vehicle.model import Vehicle
 
@@ -102,7 +104,10 @@ class Calibration:
                 {"run": e.run, "axis": e.axis, "unit": e.unit, "given": e.given, "calibrated": e.calibrated, "left_out": e.left_out, "n": e.rows}
                 for e in self.errors
             ],
-            "options": [{"name": name, "gain": list(by_run), "accepted": name in self.accepted} for name, by_run in self.options.items()],
+            "options": [
+                {"name": name, "gain": [gain if isfinite(gain) else None for gain in by_run], "accepted": name in self.accepted}
+                for name, by_run in self.options.items()
+            ],
             "commands": dict(fitted(self.vehicle)),
             "extrapolated": [
                 {"run": run, "thruster": e.thruster, "way": e.way, "rpm": e.worst, "others": e.limit, "rows": e.count, "n": e.rows}
@@ -129,21 +134,27 @@ def calibrate(runs: Sequence[Run], vehicle: Vehicle, *, model: str = "fossen", w
     asked = unknowns(vehicle, _channels(records))
     chosen = tuple(one for one in asked if not one.optional)
     say(f"calibrating {len(chosen)} unknowns on {sum(len(one.start) for one in records)} windows", 0.05)
-    estimate = _estimate(records, vehicle, chosen, model, _starts(vehicle, chosen))
-    gains = dict[str, tuple[float, ...]]()
+    estimate = _estimate(records, vehicle, chosen, model, (_beginning(records, vehicle, chosen, model),))
+    gains, others = dict[str, tuple[float, ...]](), tuple[Estimate, ...]()
     if len(records) > 1:
-        predicted = _prediction(records, vehicle, chosen, model, estimate.values)
+        others = _from_the_others(records, vehicle, chosen, model, estimate.values)
+        predicted = _prediction(records, vehicle, chosen, model, others)
         for name, more in _options(asked).items():
             say(f"asking whether {name} predicts runs left out better", 0.4)
             wider = tuple(one for one in asked if one in chosen or one in more)
             start = _widened(estimate, chosen, wider)
-            better = _prediction(records, vehicle, wider, model, start)
+            gains[name] = tuple(float(gain) for gain in _promised(records, vehicle, chosen, wider, model, start))
+            if min(gains[name]) <= 0:
+                continue  # not even in the tangent, where a prediction costs nothing
+            found = _from_the_others(records, vehicle, wider, model, start)
+            better = _prediction(records, vehicle, wider, model, found)
             gains[name] = tuple(float(gain) for gain in better - predicted)
             if min(gains[name]) > 0:
-                estimate, chosen, predicted = _estimate(records, vehicle, wider, model, (start,)), wider, better
+                estimate, chosen, predicted, others = _estimate(records, vehicle, wider, model, (start,)), wider, better, found
     say("simulating the logs with the calibrated vehicle", 0.8)
-    calibrated = _remembering(applied(vehicle, chosen, estimate.values), records)
-    errors = _errors(records, vehicle, calibrated, chosen, model, estimate.values)
+    left = errors_left(_problem(records, vehicle, chosen, model).residuals(estimate.values), [one.ok for one in records])
+    calibrated = _remembering(applied(vehicle, chosen, estimate.values), records, left)
+    errors = _errors(records, vehicle, calibrated, chosen, model, others)
     accepted = tuple(name for name, by_run in gains.items() if min(by_run) > 0)
     rows = tuple(_row(vehicle, one, estimate, i) for i, one in enumerate(chosen))
     matrix = tuple(tuple(float(value) for value in row) for row in estimate.correlation)
@@ -169,9 +180,10 @@ def _channels(records: Sequence[Record]) -> tuple[str, ...]:
     return tuple(c for c in (*VELOCITIES, "phi", "theta", "z") if any(one.run.measured(c) for one in records))
 
 
-def _remembering(vehicle: Vehicle, records: Sequence[Record]) -> Vehicle:
-    """The vehicle with the largest command of each thruster in its logs beside what the calibration moved: beyond them nothing was fitted."""
-    return vehicle.model_copy(update={"calibration": {**vehicle.calibration, **largest([_speed(one) for one in records], vehicle)}})
+def _remembering(vehicle: Vehicle, records: Sequence[Record], left: Mapping[str, float]) -> Vehicle:
+    """The vehicle with what a reader of its file must know beside what the calibration moved: the largest command of each thruster in its logs, beyond which
+    nothing was fitted, and the errors ``left``, by which a healthy vehicle is known."""
+    return vehicle.model_copy(update={"calibration": {**vehicle.calibration, **largest([_speed(one) for one in records], vehicle), **left}})
 
 
 def _extrapolated(records: Sequence[Record], vehicle: Vehicle) -> tuple[tuple[str, Excess], ...]:
@@ -201,7 +213,8 @@ def _problem(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unkno
         return [residual(one, plant, beta) for one in records]
 
     mean = np.array([-vehicle.calibration.get(one.key, 0.0) for one in chosen])
-    return Problem(residuals, [one.ok for one in records], records[0].run.dt, _floor(records), mean, np.array([one.sd for one in chosen]))
+    sd, (low, high) = np.array([one.sd for one in chosen]), bounds(vehicle, chosen)
+    return Problem(residuals, [one.ok for one in records], records[0].run.dt, _floor(records), mean, sd, low, high)
 
 
 def _floor(records: Sequence[Record]) -> Array:
@@ -224,11 +237,18 @@ def _estimate(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unkn
         ) from error
 
 
-def _starts(vehicle: Vehicle, chosen: Sequence[Unknown]) -> tuple[Array, ...]:
-    """The file as it is, and with half and twice the thrust and drag: of forces only their ratio to the mass shows well, so that a search may
-    end at a thrust that is far off."""
+def _beginning(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unknown], model: str) -> Array:
+    """Where the search begins (k,): the best fit of the first `PROGRESSIVE_S` of each window, one after the other.
+
+    The first of them is fitted from the file as it is, and with half and twice the thrust and drag: of forces only their ratio to the mass shows well, so that
+    a search may end at a thrust that is far off. Over a whole window a vehicle that rolls or pitches freely loses the phase of its motion, and a fit from far
+    away ends in the nearest of many local minima; over short windows the loss has few.
+    """
     scaled = np.array([float(one.key == "thrust.gain" or "_drag[" in one.key) for one in chosen])
-    return np.zeros(len(chosen)), -log(2.0) * scaled, log(2.0) * scaled
+    starts: tuple[Array, ...] = (np.zeros(len(chosen)), -log(2.0) * scaled, log(2.0) * scaled)
+    for seconds in PROGRESSIVE_S:
+        starts = (_estimate([begun(one, seconds) for one in records], vehicle, chosen, model, starts).values,)
+    return starts[0]
 
 
 def _options(asked: Sequence[Unknown]) -> dict[str, tuple[Unknown, ...]]:
@@ -251,27 +271,34 @@ def _without(records: Sequence[Record], left: int) -> tuple[Record, ...]:
     return tuple(one for i, one in enumerate(records) if i != left)
 
 
-def _prediction(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unknown], model: str, start: Array) -> Array:
-    """Twice the log likelihood of every run (m,) under a calibration without it, at that calibration's scales, up to a constant."""
-    found = []
-    for i, one in enumerate(records):
-        estimate = _estimate(_without(records, i), vehicle, chosen, model, (start,))
-        found.append(2.0 * _problem((one,), vehicle, chosen, model).log_likelihood(estimate.values, estimate.scale))
-    return np.array(found)
+def _promised(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unknown], wider: Sequence[Unknown], model: str, start: Array) -> Array:
+    """What `_prediction` of every run (m,) gains with the ``wider`` unknowns, in the model linearised at ``start`` (k,)."""
+    problem, before = _problem(records, vehicle, wider, model), np.array([one in chosen for one in wider])
+    return held_out_change(problem, start, np.ones(len(wider), dtype=bool)) - held_out_change(problem, start, before)
+
+
+def _from_the_others(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unknown], model: str, start: Array) -> tuple[Estimate, ...]:
+    """The calibration of all runs but one, for each."""
+    return tuple(_estimate(_without(records, i), vehicle, chosen, model, (start,)) for i in range(len(records)))
+
+
+def _prediction(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unknown], model: str, others: Sequence[Estimate]) -> Array:
+    """Twice the log likelihood of every run (m,) under the calibration of the ``others``, at its scales, up to a constant."""
+    apart = zip(records, others, strict=True)
+    return np.array([2.0 * _problem((one,), vehicle, chosen, model).log_likelihood(e.values, e.scale) for one, e in apart])
 
 
 def _errors(
-    records: Sequence[Record], vehicle: Vehicle, calibrated: Vehicle, chosen: Sequence[Unknown], model: str, start: Array
+    records: Sequence[Record], vehicle: Vehicle, calibrated: Vehicle, chosen: Sequence[Unknown], model: str, others: Sequence[Estimate]
 ) -> tuple[AxisError, ...]:
-    """Mean absolute errors of free runs.
+    """Mean absolute errors of free runs; ``others`` are the calibrations without each, none of a single run.
 
     Raises:
         SimulationStopped: the calibrated vehicle leaves sane limits on a run on which the vehicle as given does not.
     """
     found = list[AxisError]()
     for i, one in enumerate(records):
-        others = _without(records, i)
-        apart = applied(vehicle, chosen, _estimate(others, vehicle, chosen, model, (start,)).values) if others else None
+        apart = applied(vehicle, chosen, others[i].values) if others else None
         given, after = (simulate(one.run, v, model) for v in (vehicle, calibrated))
         if after.stops and not given.stops:
             raise SimulationStopped(

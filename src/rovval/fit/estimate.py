@@ -1,4 +1,5 @@
-"""Maximum a posteriori over the unknowns: robust, each channel over its own scale, by damped Gauss-Newton from several starting points.
+"""Maximum a posteriori over the unknowns: robust, each channel over its own scale, by damped and projected Gauss-Newton steps
+from several starting points (Bertsekas 1982, of the projection).
 
 Residuals of each channel are Student-t about 0 with a scale of their own that is estimated along with the unknowns (Lange, Little and
 Taylor 1989): an axis that the model fits badly counts for little, one that it fits well for much, an outlier hardly at all. Residuals are
@@ -28,7 +29,8 @@ Residuals = Callable[[Array], Sequence[Array]]
 @dataclass(frozen=True, slots=True)
 class Problem:
     """``residuals`` of values (k,): one array (..., channels) a run, NaN where the simulation stopped or the values are none that a vehicle may have;
-    ``ok`` of the same shapes; ``dt`` s a sample; ``floor`` (channels,) noise of the sensors; ``mean`` and ``sd`` (k,) of the prior."""
+    ``ok`` of the same shapes; ``dt`` s a sample; ``floor`` (channels,) noise of the sensors; ``mean`` and ``sd`` (k,) of the prior; ``low`` and ``high``
+    (k,) bounds of the values."""
 
     residuals: Residuals
     ok: Sequence[Flags]
@@ -36,6 +38,8 @@ class Problem:
     floor: Array
     mean: Array
     sd: Array
+    low: Array
+    high: Array
 
     def log_likelihood(self, values: Array, scale: Array) -> float:
         """Log likelihood at ``values`` (k,) and a ``scale`` (channels,), up to a constant; minus infinity where the simulation stops."""
@@ -97,9 +101,11 @@ def _descend(problem: Problem, values: Array, residuals: Sequence[Array], fixed:
         scale = _scale(problem, residuals) if fixed is None else fixed
         curvature, slope = _normal_equations(problem, values, residuals, scale)
         cost = _cost(problem, values, residuals, scale)
+        free = ~((values <= problem.low) & (slope > 0.0) | (values >= problem.high) & (slope < 0.0))  # what would leave its bounds rests there
         for _ in range(TRIES):
-            step = np.linalg.solve(curvature + damping * np.diag(np.diag(curvature)), -slope)
-            ahead = values + np.clip(step, -LARGEST * problem.sd, LARGEST * problem.sd)
+            step, damped = np.zeros(len(values)), curvature + damping * np.diag(np.diag(curvature))
+            step[free] = np.linalg.solve(damped[np.ix_(free, free)], -slope[free])
+            ahead = np.clip(values + np.clip(step, -LARGEST * problem.sd, LARGEST * problem.sd), problem.low, problem.high)
             there = problem.residuals(ahead)
             if _finite(there) and (new := _cost(problem, ahead, there, scale)) < cost:
                 break
@@ -144,23 +150,43 @@ def _misfit(problem: Problem, residuals: Sequence[Array], scale: Array) -> float
 
 
 def _beside(problem: Problem, values: Array, j: int) -> tuple[Sequence[Array], float]:
-    """Residuals a fine step of the ``j``-th value away, and the step: ahead, or back where the simulation stops ahead."""
-    for step in (FINE * problem.sd[j], -FINE * problem.sd[j]):
+    """Residuals a fine step of the ``j``-th value away, and the step: ahead, or back from a bound or where the simulation stops ahead."""
+    ahead = FINE * problem.sd[j]
+    for step in (ahead, -ahead) if values[j] + ahead <= problem.high[j] else (-ahead,):
         found = problem.residuals(values + step * np.eye(len(values))[j])
         if _finite(found):
             break
     return found, float(step)
 
 
+def held_out_change(problem: Problem, values: Array, free: Flags) -> Array:
+    """Change of twice the log likelihood of every run (m,) from ``values`` (k,) to where the others alone would have them, ``free`` (k,) ones moving, in the
+    model linearised at ``values``: what a prediction of the run would gain or lose."""
+    residuals = problem.residuals(values)
+    curvature, slope = _by_run(problem, values, residuals, _scale(problem, residuals))
+    found, prior = np.zeros(len(curvature)), (values - problem.mean) / problem.sd**2
+    for i in range(len(curvature)):
+        H, down = curvature.sum(axis=0) - curvature[i] + np.diag(1.0 / problem.sd**2), slope.sum(axis=0) - slope[i] + prior
+        step = np.zeros(len(values))
+        step[free] = np.linalg.solve(H[np.ix_(free, free)], -down[free])
+        step = np.clip(values + step, problem.low, problem.high) - values
+        found[i] = -2.0 * float(slope[i] @ step) - float(step @ curvature[i] @ step)
+    return found
+
+
 def _normal_equations(problem: Problem, values: Array, residuals: Sequence[Array], scale: Array) -> tuple[Array, Array]:
     """Curvature (k, k) and slope (k,) of the cost, sensitivities by forward differences."""
+    curvature, slope = _by_run(problem, values, residuals, scale)
+    return curvature.sum(axis=0) + np.diag(1.0 / problem.sd**2), slope.sum(axis=0) + (values - problem.mean) / problem.sd**2
+
+
+def _by_run(problem: Problem, values: Array, residuals: Sequence[Array], scale: Array) -> tuple[Array, Array]:
+    """The likelihood's part of both, of each run: (m, k, k) and (m, k)."""
     beside, step = zip(*(_beside(problem, values, j) for j in range(len(values))), strict=True)
-    share = min(problem.dt / INDEPENDENT_S, 1.0)
-    curvature, slope = np.diag(1.0 / problem.sd**2), (values - problem.mean) / problem.sd**2
+    share, found = min(problem.dt / INDEPENDENT_S, 1.0), []
     for i, (r, ok) in enumerate(zip(residuals, problem.ok, strict=True)):
         J = np.stack([(np.nan_to_num(one[i]) - r) / step[j] for j, one in enumerate(beside)], axis=-1)
         weight = share * (FREEDOM + 1) / (FREEDOM + (r / scale) ** 2) / scale**2 * ok
         flat, w = J.reshape(-1, J.shape[-1]), weight.reshape(-1)
-        curvature = curvature + flat.T @ (w[:, None] * flat)
-        slope = slope + flat.T @ (w * r.reshape(-1))
-    return curvature, slope
+        found.append((flat.T @ (w[:, None] * flat), flat.T @ (w * r.reshape(-1))))
+    return np.stack([A for A, _ in found]), np.stack([b for _, b in found])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,6 +63,12 @@ def record(run: Run, vehicle: Vehicle, window_s: float) -> Record:
     measured, ok = seen[at_samples], good[at_samples]
     ok[:, 0] = False  # where the window begins, measured and simulated are the same
     return Record(run, actuation, first, steps, nu0, eta0, measured, ok)
+
+
+def begun(one: Record, seconds: float) -> Record:
+    """The record with nothing but the first ``seconds`` of each window."""
+    steps = min(round(seconds / one.run.dt), one.steps)
+    return replace(one, steps=steps, measured=one.measured[:, : steps + 1], ok=one.ok[:, : steps + 1])
 
 
 def vertical(roll_pitch: Array) -> Array:

@@ -7,13 +7,15 @@ asked for, each thruster by itself.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from math import exp, log
 from typing import Literal
 
 import numpy as np
 
+from rovval import effects
 from rovval.core.channels import AXES
 from rovval.core.data import Array
 from rovval.plant.slots import slots
@@ -65,12 +67,18 @@ SETTLES = {  # by the axis of the centre of buoyancy
 TURNED = {"roll": ("sway", "heave"), "pitch": ("surge", "heave"), "yaw": ("surge", "sway")}  # axes that a turn of the sensor's frame mixes
 SWUNG = {"x": ("pitch", "yaw"), "y": ("roll", "yaw"), "z": ("roll", "pitch")}  # turns that move a sensor which is off along this axis
 
+EFFECTS_WIDE = 2.0  # typical sizes of an effect that may be in every vehicle and in no file: its prior's standard deviation (chosen)
+OPTIONS = {  # what it is called, and the effects whose parameters it sets free, with what a log must hold to show them
+    "thrust.flow": (("inflow_loss", "crossflow_loss"), "the same command at rest, ahead, astern and drifting sideways"),
+    "cross_drag": (("cross_drag",), "turns on the spot and straight drifts in sway and heave, each without the other"),
+    "propeller_torque": (("propeller_torque",), "each thruster alone, roll, pitch and yaw left free"),
+}
+
 SENSORS = {  # unknown: effect and parameter that say it in a vehicle's file
     **{f"attitude.{c}": ("attitude_bias", c) for c in ("phi", "theta")},
     **{f"velocity.{c}": ("dvl_misalignment", c) for c in ("roll", "pitch", "yaw")},
     **{f"velocity.lever.{c}": ("dvl_lever_arm", c) for c in "xyz"},
 }
-
 
 @dataclass(frozen=True, slots=True)
 class Unknown:
@@ -117,7 +125,36 @@ def unknowns(vehicle: Vehicle, channels: Sequence[str]) -> tuple[Unknown, ...]:
         found += [Unknown(f"velocity.{c}", "offset", TILT, "rad", f"{c} of the velocity sensor's frame", STRAIGHT.format(*of)) for c, of in TURNED.items()]
         found += [Unknown(f"velocity.lever.{c}", "offset", LEVER, "m", f"place of the velocity sensor, {c}", SPOT.format(*of)) for c, of in SWUNG.items()]
     found.append(Unknown("tether.drag", "factor", WIDE, "1", "quadratic drag of the tether where it is made fast", TETHER))
-    return tuple(found)
+    return (*found, *_of_effects())
+
+
+def _of_effects() -> Iterator[Unknown]:
+    """What the library has as an effect, every vehicle to some degree, and no file: `OPTIONS`."""
+    for option, (names, manoeuvre) in OPTIONS.items():
+        for name in names:
+            effect = effects.load(name)
+            for p in effect.parameters:
+                meaning = f"{effect.title.lower()}, {p.name}"
+                yield Unknown(f"{option}[{name}.{p.name}]", "offset", EFFECTS_WIDE * p.typical, p.unit, meaning, manoeuvre, True)
+
+
+@cache
+def said_by() -> Mapping[str, tuple[str, str]]:
+    """Effect and parameter that say an unknown of the sensors or of `OPTIONS` in a vehicle's file, by its key."""
+    options = ((option, name, p.name) for option, (names, _) in OPTIONS.items() for name in names for p in effects.load(name).parameters)
+    return {**SENSORS, **{f"{option}[{name}.{parameter}]": (name, parameter) for option, name, parameter in options}}
+
+
+def bounds(vehicle: Vehicle, asked: Sequence[Unknown]) -> tuple[Array, Array]:
+    """Least and largest values (k,) of the unknowns ``asked``: those of sensors and effects that the library holds; infinite where it holds any."""
+    of, said = {s.key: s.parameter for s in slots(vehicle, "fossen")}, said_by()
+    low, high = np.full(len(asked), -np.inf), np.full(len(asked), np.inf)
+    for i, one in enumerate(asked):
+        if one.key in said:
+            name, parameter = said[one.key]
+            carried, p = vehicle.effects.get(name, {}).get(parameter, 0.0), of[f"{name}.{parameter}"]
+            low[i], high[i] = (p.null if p.vanishes_at == "high" else p.low) - carried, p.high - carried  # a loss is no gain
+    return low, high
 
 
 def applied(vehicle: Vehicle, asked: Sequence[Unknown], values: Array) -> Vehicle:
@@ -187,7 +224,7 @@ def _effects(vehicle: Vehicle, body: Body, at: Mapping[str, float]) -> dict[str,
         most, after = _most_tether_drag(vehicle), _most_tether_drag(vehicle.model_copy(update={"body": body}))
         drag = at["tether.drag"] * first
         found["tether_drag"] = {**carried, "coefficient": after * drag / (most - first + drag)}
-    for key, (effect, parameter) in SENSORS.items():
+    for key, (effect, parameter) in said_by().items():
         if key in at:
             found[effect] = {**found.get(effect, {}), parameter: found.get(effect, {}).get(parameter, 0.0) + at[key]}
     return found

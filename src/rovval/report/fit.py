@@ -52,7 +52,7 @@ def calibration(document: Mapping[str, Any]) -> str:
     lines += ["", *_errors(document["free_run"])]
     for option in document["options"]:
         verdict = "predicts every run left out better and is in the vehicle" if option["accepted"] else "does not predict every run left out better and is not"
-        gain = ", ".join(f"{one:+.1f}" for one in option["gain"])
+        gain = ", ".join("one left sane limits" if one is None else f"{one:+.1f}" for one in option["gain"])
         lines.append(f"{option['name']}: {verdict} (twice the log likelihood of each: {gain}).")
     if not document["converged"]:
         lines.append("The search had not settled when it ended: give longer logs, or a vehicle's file that is nearer.")
