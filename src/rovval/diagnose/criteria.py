@@ -81,6 +81,7 @@ LIBRARY_ALIKE = 2.0 / 3.0  # share of what the library lacks that looks like som
 NOT_FOUND = 0.07  # share of logs of the library's effects that no set of causes that is fitted explains (374 opened logs of two plants: 27)
 SHOWS_BESIDE = (0.08, 0.5)  # share of logs with generic forces beside causes that are right, and that only look it (three plants: 6 of 87, 26 of 52)
 HEALTHY_GAP = 0.20  # mean gap above noise of healthy vehicles over what tolerances could make (36 healthy logs of two plants: 0.22, 0.07 to 0.78)
+CALIBRATED_SPREAD = 0.4  # of the log of the gap on an axis over what the calibration left: logs of one vehicle differ by as much (MuJoCo, tank runs)
 CAUSES_LEAVE = 0.15  # mean share that right causes leave where they act on held-out windows (58 effects of two plants: 0.04 to 0.12; real runs: more),
 FORM_LEAVES = 0.90  # and of what the others leave, that their form error leaves where it is taken for one more cause (opened sets and real runs: 0.90 of 57)
 BETWEEN_CAUSES = 0.2  # power of the posterior odds of sets of as many causes (105 logs of two plants: log loss 0.64 at 0.15, 0.65 here, 0.72 at 1)

@@ -17,6 +17,7 @@ from rovval.core.channels import AXES, VELOCITIES
 from rovval.core.data import Array, Run
 from rovval.core.errors import BadInput, SimulationStopped, UsageProblem
 from rovval.core.version import __version__
+from rovval.diagnose.criteria import HELD_OUT_RUNS
 from rovval.diagnose.effort import PROGRESSIVE_S
 from rovval.diagnose.windows.noise import clean_channels
 from rovval.fit.estimate import Estimate, Problem, held_out_change, maximum
@@ -139,7 +140,7 @@ def calibrate(runs: Sequence[Run], vehicle: Vehicle, *, model: str = "fossen", w
     if len(records) > 1:
         others = _from_the_others(records, vehicle, chosen, model, estimate.values)
         predicted = _prediction(records, vehicle, chosen, model, others)
-        for name, more in _options(asked).items():
+        for name, more in _options(asked).items() if len(records) >= HELD_OUT_RUNS else ():  # of two, one alone would judge
             say(f"asking whether {name} predicts runs left out better", 0.4)
             wider = tuple(one for one in asked if one in chosen or one in more)
             start = _widened(estimate, chosen, wider)

@@ -1,4 +1,4 @@
-"""The open gap: what no model of a log explains, beside what the noise of its sensors and a vehicle within its tolerances make.
+"""The open gap: what no model of a log explains, beside what noise, a vehicle within its tolerances, and its calibration leave.
 
 Forces that nobody logged are a nuisance of every model, as large as the log shows them (`problem.disturbance`), so that the likelihood alone never calls
 them too large. How large they are has a prior: small about a vehicle of which the equations are right, of any size where something else is at work. It says
@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from math import log
 
 from rovval.diagnose.criteria import OPEN_GAP_ELSE, OPEN_GAP_RIGHT
-from rovval.diagnose.inference.gap import floor_losses, share_left, tolerated_gap
+from rovval.diagnose.inference.gap import calibrated_by_part, floor_losses, share_left, tolerated_gap
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem
@@ -33,7 +33,7 @@ def left_open(problem: Problem, causes: HypothesisFit) -> float:
 
 def _beyond_noise(problem: Problem, loss: float) -> float:
     noise = float(floor_losses(problem)[0])
-    return max(0.0, (loss - noise) / (noise + tolerated_gap(problem)))
+    return max(0.0, (loss - noise) / (noise + tolerated_gap(problem) + sum(calibrated_by_part(problem).values())))
 
 
 def evidence_of_something_else(gap: float) -> float:

@@ -9,7 +9,8 @@ No log tells two explanations apart that predict the same; they share its probab
 held out (`resemblance`). So something else has a part of the mass of every set of causes, and no cause is ever certain; a larger part where a force that goes
 with the motion shows beside them. What causes that wander by nature leave is their own: how they are in some windows does not tell how they go on in others.
 And the set without the cause that adds least has another part, since that cause may be what the equations of the others are off by. A cause of which the size
-varies is that cause in another form, or something else that comes near it (`constancy`). Which of several sets of as many causes it is, is less sure than how
+varies is that cause in another form, or something else that comes near it (`constancy`). Of a calibrated vehicle either may be what the calibration left
+(`as_calibrated`). Which of several sets of as many causes it is, is less sure than how
 well they fit: each is only nearly right in its form (`BETWEEN_CAUSES`).
 
 The set that is named has as many causes as is most probable, and of such sets it is the one that the true one is expected to share the most causes with
@@ -36,14 +37,16 @@ from rovval.diagnose.criteria import (
     PRIOR_HEALTHY,
     PRIOR_SOMETHING_ELSE,
 )
+from rovval.diagnose.decision.as_calibrated import odds_over_causes, odds_over_something_else
 from rovval.diagnose.decision.constancy import Variation
-from rovval.diagnose.decision.resemblance import Left, form_error, none_of_the_library
+from rovval.diagnose.decision.resemblance import Left, form_error, looks_only_alike
 from rovval.diagnose.effort import NEGLIGIBLE
 from rovval.diagnose.search.model import Model, Names, best_of_each_set
 
 Key = TypeVar("Key")
 CAUSES = ("sets", "beside", "filed")  # kinds of models with causes: these alone, with something else, and with a file that is off in further numbers
 VARYING = "varying "  # what only comes near to one cause of a set, its name behind it
+HEALTHY: tuple[str, Names] = ("sets", frozenset())
 FORM = "form"  # and those in another form, which are told as causes with something else beside them
 
 
@@ -183,10 +186,18 @@ def probabilities(
         _leave_what_varies(believed, names, more)
     share, causes = dict(believed), {h.name: h for m in models for h in m.causes}
     for kind, names in believed:
+        grown = left.grown_where_they_act(names) if left else None
         if names and kind in (*CAUSES, FORM):
             wanders = all(causes[name].effect.wanders for name in names)
             shows = beside.get(names, -inf) > -inf and not wanders
-            share[kind, names] *= 1.0 - none_of_the_library(names, None if wanders else left, shows)
+            none, as_it_was = looks_only_alike(names, None if wanders else left, shows, odds_over_causes(grown))
+            share[kind, names] -= (none + as_it_was) * believed[kind, names]
+            share[HEALTHY] += as_it_was * believed[kind, names]
+        elif kind == "else" or kind.startswith(VARYING):
+            sizes = (left.grown_by_axis if kind == "else" else () if grown is None else (grown,)) if left else ()
+            as_it_was = (odds := odds_over_something_else(sizes)) / (1.0 + odds)
+            share[kind, names] -= as_it_was * believed[kind, names]
+            share[HEALTHY] += as_it_was * believed[kind, names]
     for names in varying:
         share["beside", names] = share.get(("beside", names), 0.0) + share.pop((FORM, names))
     _move_form_errors(share, best, left)

@@ -8,7 +8,8 @@ of its own closes any part of it: here the share that is left is beta distribute
 
 A healthy vehicle has a gap, too: coefficients and sensors are off within their tolerances. No cause closes that part, and what is left of it says nothing of
 whether the library lacks something. How large it is in a log is unknown; it is exponential about the share of what tolerances could make that healthy
-vehicles show (`HEALTHY_GAP`), and integrated over. So a weak effect is not taken for something else because it leaves what many a healthy vehicle shows.
+vehicles show (`HEALTHY_GAP`), and what a calibrated vehicle left of its own logs, and integrated over. So a weak effect is not taken for something else
+because it leaves what many a healthy vehicle shows.
 
 Beside what only looks like a cause generic forces often show that go with the motion: the rest of what it really is. Beside causes they hardly ever do
 (`SHOWS_BESIDE`).
@@ -22,7 +23,7 @@ on several axes for several reasons, and a cause that closes the gap in yaw is n
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from math import log1p
 
@@ -41,7 +42,7 @@ from rovval.diagnose.criteria import (
     PRIOR_SOMETHING_ELSE,
     SHOWS_BESIDE,
 )
-from rovval.diagnose.inference.gap import TINY, errors_by_part, noise_by_part, tolerated_by_part
+from rovval.diagnose.inference.gap import TINY, calibrated_by_part, errors_by_part, noise_by_part, tolerated_by_part
 from rovval.diagnose.inference.shrinkage import explainable_left
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.search.model import Model, Names
@@ -59,10 +60,14 @@ class Left:
         shares: of each set the shares (2,) that it leaves of the dynamics alone and with the parity residuals; of several fits of a set, the least. Above 1
             where it adds to the gap.
         acting: of each set the share that it leaves where it acts, 1 where it closes nothing; and the share that a healthy vehicle is expected to show there.
+        grown: of each set how many times the gap where it acts is what the calibration left there; empty without calibration.
+        grown_by_axis: the same of each axis, whatever acts there.
     """
 
     shares: Mapping[Names, Array]
     acting: Mapping[Names, tuple[float, float]]
+    grown: Mapping[Names, float] = field(default_factory=dict)
+    grown_by_axis: tuple[float, ...] = ()
 
     def least(self, which: Callable[[Names], bool]) -> Array:
         """The least (2,) that is left by the sets ``which``; all of the gap where there is none."""
@@ -71,8 +76,16 @@ class Left:
 
     def where_they_act(self, names: Names) -> tuple[float, float]:
         """What causes leave where they act (`acting`), with the best of their parts; all where none was fitted."""
-        parts = [part for part in self.shares if part <= names]
-        return self.acting[min(parts, key=lambda part: float(self.shares[part].min()))] if parts else (1.0, TINY)
+        best = self._best_part(names)
+        return self.acting[best] if best else (1.0, TINY)
+
+    def grown_where_they_act(self, names: Names) -> float | None:
+        """How many times the gap is what the calibration left (`grown`) where the best of the parts acts; None where that is not known."""
+        return self.grown.get(self._best_part(names))
+
+    def _best_part(self, names: Names) -> Names:
+        """The part of ``names`` that leaves least; none where none was fitted."""
+        return min((part for part in self.shares if part <= names), key=lambda part: float(self.shares[part].min()), default=frozenset())
 
     def beyond(self, name: str, names: Names) -> Array:
         """Shares (2,) that the cause ``name`` of ``names`` leaves of what the others leave; above 1 where it adds to it."""
@@ -84,27 +97,39 @@ def gap_left(problem: Problem, models: Iterable[Model]) -> Left:
     fits = [(m.names, m.fit) for m in models if m.fit]
     losses = [np.array([fit.dynamics_loss.sum(), fit.loss.sum()]) for _, fit in fits]
     shares, acting, gap = dict[Names, Array](), dict[Names, tuple[float, float]](), _Gap.of(problem)
+    grown, axes = dict[Names, float](), tuple((gap.errors[part] / size) for part, size in gap.calibrated.items() if size > 0.0)
     for (names, fit), share in zip(fits, explainable_left(problem, losses), strict=True):
         if names not in shares or share.min() < shares[names].min():
             acting[names] = gap.left_where_it_acts(fit.parts)
+            if gap.calibrated:
+                grown[names] = gap.grown(fit.parts)
         shares[names] = np.minimum(np.maximum(share, NOTHING_LEFT), shares.get(names, np.inf))
-    return Left(shares, acting)
+    return Left(shares, acting, grown, axes)
 
 
 @dataclass(frozen=True, slots=True)
 class _Gap:
     """The gap of each axis and of each parity relation: ``errors`` of the vehicle as its file has it above ``noise``, and what a ``healthy`` one is expected to
-    show of them."""
+    show of them; ``calibrated`` what the calibration left of them, empty without one."""
 
     errors: Mapping[str, float]
     noise: Mapping[str, float]
     healthy: Mapping[str, float]
+    calibrated: Mapping[str, float]
 
     @classmethod
     def of(cls, problem: Problem) -> _Gap:
         nominal, noise = errors_by_part(problem, corrected_residuals(problem), problem.origin), noise_by_part(problem)
-        expected = {part: HEALTHY_GAP * size for part, size in tolerated_by_part(problem).items()}
-        return cls({part: size - noise[part] for part, size in nominal.items()}, noise, expected)
+        calibrated = calibrated_by_part(problem)
+        expected = {part: HEALTHY_GAP * size + calibrated.get(part, 0.0) for part, size in tolerated_by_part(problem).items()}
+        known = calibrated if any(calibrated.values()) else {}
+        return cls({part: size - noise[part] for part, size in nominal.items()}, noise, expected, known)
+
+    def grown(self, errors: Mapping[str, float]) -> float:
+        """How many times the gap is what the calibration left, the parts weighted with how much each changes with the ``errors`` of causes."""
+        change = {part: abs(self.errors[part] - (size - self.noise[part])) for part, size in errors.items()}
+        now, then = (sum(change[part] * size.get(part, 0.0) for part in change) for size in (self.errors, self.calibrated))
+        return now / max(then, TINY * now) if now > 0.0 else 1.0
 
     def left_where_it_acts(self, errors: Mapping[str, float]) -> tuple[float, float]:
         """The share that is left of each part of the gap, and that a healthy vehicle is expected to show of it, both weighted with the change of that part; all
@@ -122,13 +147,19 @@ class _Gap:
 def none_of_the_library(names: Names, left: Left | None, beside: bool = False) -> float:
     """Probability that what looks like the causes ``names`` is none of the library; by the priors alone where nothing is known of what they leave. That
     generic forces show ``beside`` them is evidence (`SHOWS_BESIDE`); that none do says little of a small gap, and is not counted."""
-    odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / PRIOR_CAUSES
-    odds *= SHOWS_BESIDE[1] / SHOWS_BESIDE[0] if beside else 1.0
-    if left is None:
-        return odds / (odds + 1.0)
-    freedom = 1.0 / CAUSES_LEAVE - 1.0  # Beta(1, b), of mean 1 / (1 + b)
-    right, alike = _densities(*left.where_they_act(names), lambda share: freedom * (1.0 - share) ** (freedom - 1.0))
-    return odds * alike / (odds * alike + right)
+    return looks_only_alike(names, left, beside)[0]
+
+
+def looks_only_alike(names: Names, left: Left | None, beside: bool = False, as_calibrated: float = 0.0) -> tuple[float, float]:
+    """The same, and the probability that what looks like causes was left by the calibration of the vehicle, by the odds ``as_calibrated`` of it over causes: it
+    closes any part of the gap, too."""
+    none = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / PRIOR_CAUSES * (SHOWS_BESIDE[1] / SHOWS_BESIDE[0] if beside else 1.0)
+    right, alike = 1.0, 1.0
+    if left is not None:
+        freedom = 1.0 / CAUSES_LEAVE - 1.0  # Beta(1, b), of mean 1 / (1 + b)
+        right, alike = _densities(*left.where_they_act(names), lambda share: freedom * (1.0 - share) ** (freedom - 1.0))
+    total = right + (none + as_calibrated) * alike
+    return none * alike / total, as_calibrated * alike / total
 
 
 def form_error(name: str, names: Names, left: Left | None) -> float:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from rovval.core.data import Array
 from rovval.diagnose.criteria import OUT_OF_TOLERANCE
-from rovval.diagnose.inference.gap import floor_losses, share_left, weighted_errors
+from rovval.diagnose.inference.gap import calibrated_by_part, floor_losses, share_left, weighted_errors
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.search.discrepancy import GenericForces
@@ -22,11 +22,13 @@ class Accounted:
         noise: what the noise of the sensors alone makes.
         tolerance: what coefficients and sensors within their tolerance take away, fitted without any cause.
         departure: largest standardised departure of these coefficients from the file, in standard deviations of their priors.
+        calibrated: squared gap that the calibration left of its own logs, as a share of this one; 0 without a calibration.
     """
 
     noise: float
     tolerance: float
     departure: float
+    calibrated: float = 0.0
 
     @property
     def share(self) -> float:
@@ -61,7 +63,8 @@ class Unexplained:
 def accounted(problem: Problem, healthy: Posterior) -> Accounted:
     """What of the gap needs no cause; ``healthy`` is the vehicle with its coefficients fitted within their tolerances."""
     noise = min(float(floor_losses(problem)[0]) / float(problem.gap.dynamics.c.sum()), 1.0)
-    return Accounted(noise, 1.0 - share_left(problem, healthy), healthy.largest_departure())
+    left = sum(calibrated_by_part(problem).values()) / float(problem.gap.dynamics.c.sum())
+    return Accounted(noise, 1.0 - share_left(problem, healthy), healthy.largest_departure(), left)
 
 
 def unexplained(

@@ -11,6 +11,7 @@ from rovval.core.data import Array, Flags
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.windows.windows import axis_channels
+from rovval.simulation.fitted_errors import fitted_errors
 
 ANGULAR = ("roll", "pitch", "yaw")
 PARITY = "parity"  # of a relation of the pose, its name behind it
@@ -131,6 +132,19 @@ def tolerated_by_part(problem: Problem) -> dict[str, float]:
     share = tolerated_gap(problem) / max(float(explainable_gap(problem)[0]), TINY)
     axes = {axis: share * (value - noise[axis]) for axis, value in nominal.items()}
     return axes | _of_parity([check.tolerated(problem.tolerance.sd, problem.design_effect) for check in problem.parity])
+
+
+def calibrated_by_part(problem: Problem) -> dict[str, float]:
+    """What of them the calibrated vehicle left of the logs that it was calibrated on (`simulation.fitted_errors`): none where its file does not say, and
+    none of parity relations, which know no vehicle."""
+    left, found = fitted_errors(problem.plant.vehicle), dict[str, float]()
+    for windows in problem.runs:
+        rms = np.array([left.get(channel, 0.0) for channel in windows.channels])
+        beyond = np.maximum(rms**2 - windows.noise**2, 0.0)
+        error = windows.ok.sum(axis=(0, 1)) * beyond / problem.gap.variance.mean(axis=0)  # it grows along a window as the metric's variance does
+        for axis, value in zip(windows.axes, error, strict=True):
+            found[axis] = found.get(axis, 0.0) + float(value)
+    return found
 
 
 def _of_parity(runs: Sequence[Mapping[str, float]]) -> dict[str, float]:

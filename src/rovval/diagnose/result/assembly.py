@@ -170,6 +170,7 @@ def _detection(decision: Decision) -> Detection:
         generic_beside=decision.generic_beside,
         largest_departure=decision.departure,
         open_gap=decision.open_gap,
+        calibration_left=decision.accounted.calibrated,
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 
@@ -15,17 +15,17 @@ from rovval.diagnose.inference.heterogeneity import ByRun, by_run
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, confidence_interval, fit_quickly, standard_errors
 from rovval.diagnose.inference.shrinkage import shrinkage
 from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.result.diagnosis import Cause, Parameter, RunValue, Shrinkage
 
 
 def causes(problem: Problem, decision: Decision, before: list[Array], since: float | None, seed: int) -> tuple[Cause, ...]:
-    """Every cause of the most probable model, in the order of what each by itself closes.
+    """Every cause of the most probable model, the surest first: what one of several closes by itself is no measure of it, where the others hide it.
 
     ``before`` are the nominal simulator's residuals; ``since`` (s) is when the part of the log begins that was searched, None for all of it.
     """
     each = by_run(problem, decision.fit) if decision.fit else {}
-    found = [_cause(problem, decision, h, each, before, since, seed) for h in decision.causes]
-    return tuple(sorted(found, key=lambda cause: -cause.shrinkage.total))
+    return tuple(_cause(problem, decision, h, each, before, since, seed) for h in decision.causes)
 
 
 def members(decision: Decision, h: Hypothesis) -> tuple[str, ...]:
@@ -56,7 +56,7 @@ def _cause(
 ) -> Cause:
     assert decision.fit is not None
     joint = decision.fit
-    single = joint if len(decision.causes) == 1 else fit_quickly(problem, alone(problem, joint, h), h.slots, joint.posterior.whitened)
+    single = joint if len(decision.causes) == 1 else _by_itself(problem, joint, h)
     return Cause(
         effect=h.name,
         kind="file" if h.effect.in_file else "effect",
@@ -68,6 +68,11 @@ def _cause(
         evidence=decision.added[h.name],
         shrinkage=Shrinkage(**asdict(shrinkage(problem, single, before, seed))),
     )
+
+
+def _by_itself(problem: Problem, joint: HypothesisFit, h: Hypothesis) -> HypothesisFit:
+    """The cause fitted by itself, all else as the file has it: tolerances would take up what the other causes did, and are not there when it is scored."""
+    return fit_quickly(replace(problem, tolerance=Prior({})), alone(problem, joint, h), h.slots, joint.posterior.whitened)
 
 
 def _parameters(problem: Problem, fitted: HypothesisFit, h: Hypothesis, each: Mapping[int, ByRun]) -> dict[str, Parameter]:

@@ -184,6 +184,11 @@ class Detection(Record):
         description="squared gap that causes, or where none are named any model, leave beyond noise, over what noise and tolerances are expected to make",
     )
 
+    calibration_left: float = Field(
+        default=0.0,
+        description="squared gap that the calibration of the vehicle left of its own logs, over that of this one; 0 without `rovval fit`",
+    )
+
     @computed_field(description="older key of tolerance_share")  # type: ignore[prop-decorator]
     @property
     def slop(self) -> float:

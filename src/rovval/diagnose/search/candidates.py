@@ -70,6 +70,10 @@ def candidates(
         if h.name not in fits or quick.evidence > fits[h.name][1].evidence:
             fits[h.name] = h, quick
 
+    def astray(h: Hypothesis) -> bool:
+        """Whether the fit is worse than without the hypothesis, which it has as a special case."""
+        return fits[h.name][1].posterior.predicted_cost() > base.predicted_cost()
+
     def refit(h: Hypothesis) -> None:
         slots = tuple(dict.fromkeys((*chosen, *h.slots)))
         start = start_of(problem, data, h, steps(h), base.beta, slots)
@@ -79,8 +83,10 @@ def candidates(
             start = progressive_start(problem, alone(h, slots), slots)
         for begin in (start, *_departed(problem, base, h, start)):
             fit_from(h, begin, slots)
-        if chosen and fits[h.name][1].posterior.predicted_cost() > base.predicted_cost():  # worse than without it: led astray
-            fit_from(h, alone(h, slots), slots)
+        if astray(h):
+            fit_from(h, begin := alone(h, slots), slots)
+            if astray(h):
+                fit_from(h, progressive_start(problem, begin, slots), slots)
 
     tries = Counter[str]()
     for h in ordered:

@@ -90,7 +90,9 @@ def next_step(d: Diagnosis) -> str:
 
 def known(d: Diagnosis) -> str:
     """What a gap may be without any cause."""
-    return f"{NOISE} and a calibration tolerance of {per_cent(d.calibration_slop)}" if d.calibration_slop else NOISE
+    tolerance = [f"a calibration tolerance of {per_cent(d.calibration_slop)}"] if d.calibration_slop else []
+    left = ["what the calibration left of its own logs"] if d.detection and d.detection.calibration_left else []
+    return listed([NOISE, *tolerance, *left])
 
 
 def _acting(d: Diagnosis) -> str:

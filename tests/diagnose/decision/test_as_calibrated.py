@@ -1,0 +1,104 @@
+"""A vehicle as it was calibrated: what the calibration left of its own logs is no cause, and a gap that has grown since then is one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from diagnose_case import merlin, posed
+from scipy import integrate
+
+from rovval.diagnose.criteria import PRIOR_CAUSES, PRIOR_HEALTHY
+from rovval.diagnose.decision.as_calibrated import odds_over_causes, odds_over_something_else
+from rovval.diagnose.decision.open_gap import open_gap
+from rovval.diagnose.decision.posterior import probabilities
+from rovval.diagnose.decision.resemblance import Left, gap_left
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis
+from rovval.diagnose.inference.gap import calibrated_by_part, errors_by_part, noise_by_part
+from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
+from rovval.diagnose.inference.map_fit import healthy_fit
+from rovval.diagnose.problem.problem import Problem, corrected_residuals
+from rovval.diagnose.search.model import Model, ModelPrior
+from rovval.plant import Plant
+from rovval.simulation.fitted_errors import errors_left, fitted_errors
+
+LOSS = frozenset({"inflow_loss"})
+
+
+def remembering(problem: Problem, error: dict[str, float]) -> Problem:
+    """The problem of a vehicle whose file has the ``error`` of its calibration by channel."""
+    vehicle = merlin().model_copy(update={"calibration": {f"error.{channel}": x for channel, x in error.items()}})
+    return replace(problem, runs=tuple(replace(windows, plant=Plant(vehicle, "fossen")) for windows in problem.runs))
+
+
+def test_without_a_calibration_nothing_is_as_it_was():
+    assert odds_over_causes(None) == odds_over_something_else(()) == 0.0
+    problem, _ = posed(("inflow_loss:loss=0.3",))
+    assert not any(calibrated_by_part(problem).values()) and gap_left(problem, []).grown == {}
+
+
+def test_the_odds_are_a_ratio_of_two_distributions():
+    """Over sizes from what there was on, both densities integrate to what lies there: half of a log-normal, all of a log-logistic."""
+    prior = PRIOR_HEALTHY / PRIOR_CAUSES
+    found, _ = integrate.quad(lambda size: odds_over_causes(size) / prior / size**2, 1.0, 60.0)
+    assert found == pytest.approx(0.5, abs=1e-6)
+
+
+def test_a_gap_as_large_as_it_was_is_the_vehicle_and_a_larger_one_is_not():
+    odds = [odds_over_causes(grown) for grown in (0.3, 1.0, 1.5, 3.0, 10.0)]
+    assert odds[0] == odds[1] > 1.0 > odds[3] > odds[4] and odds[1] > odds[2] > odds[3] and odds[3] < 0.2 and odds[4] < 1e-4
+    assert odds_over_something_else((1.0,)) > 5.0 * odds[1]  # of which there was less beforehand
+
+
+def test_something_else_is_at_work_on_one_axis_though_the_others_are_as_they_were():
+    still, one, more = (odds_over_something_else((1.0, 1.0, size, 1.0)) for size in (1.0, 3.0, 8.0))
+    assert still > one > 1.0 > 0.1 > more
+
+
+@pytest.mark.parametrize("grown", [1.0, 6.0])
+def test_causes_of_a_vehicle_as_it_was_calibrated_are_not_believed(grown: float):
+    prior = ModelPrior.of([Hypothesis(n, n, (), (), ()) for n in ("inflow_loss", "dvl_scale")])
+    causes = (Hypothesis("inflow_loss", "inflow_loss", (), (), ()),)
+    models = [Model((), None, 0.0, prior.log_mass(())), Model(causes, None, 80.0, prior.log_mass(causes))]
+    left = Left({LOSS: np.full(2, 0.5)}, {LOSS: (0.5, 1e-6)}, {LOSS: grown}, (grown,))
+    found = probabilities(models, {}, 60.0, {}, {}, left=left)
+    assert found.healthy + found.causes + found.unexplained == pytest.approx(1.0)
+    assert (found.likelier_than_not == "healthy") == (grown < 2.0)
+    assert found.causes < 0.3 if grown < 2.0 else found.causes > 0.6
+
+
+def test_what_a_calibration_left_is_in_the_metric_of_the_gap():
+    """A vehicle that left just the errors of this log has a gap that is once what it was, wherever a cause acts; one that left half of them, four times."""
+    problem, _ = posed(("inflow_loss:loss=0.3",))
+    nominal, noise = errors_by_part(problem, corrected_residuals(problem), problem.origin), noise_by_part(problem)
+    [windows] = problem.runs
+    [residual] = corrected_residuals(problem)
+    error = {c: float(np.sqrt(np.mean(residual[..., i][windows.ok[..., i]] ** 2))) for i, c in enumerate(windows.channels)}
+    whole = calibrated_by_part(remembering(problem, error))
+    for axis in ("surge", "sway", "heave"):
+        assert whole[axis] == pytest.approx(nominal[axis] - noise[axis], rel=0.5)
+    slots = tuple(i for i, s in enumerate(problem.plant.slots) if s.hypothesis == "inflow_loss")
+    fit = fit_hypothesis(problem, problem.origin, slots)
+    models = [Model((Hypothesis("inflow_loss", "inflow_loss", slots, (), ()),), fit, fit.evidence, 0.0)]
+    once, twice = (remembering(problem, {c: x / by for c, x in error.items()}) for by in (1.0, 2.0))
+    grown, more = (gap_left(one, models).grown_where_they_act(LOSS) or 0.0 for one in (once, twice))
+    assert grown == pytest.approx(1.0, rel=0.35) and more > 3.0 * grown
+
+
+def test_what_a_calibration_left_is_no_open_gap():
+    problem, _ = posed(("inflow_loss:loss=0.3",))
+    healthy = healthy_fit(problem)
+    assert open_gap(remembering(problem, {"u": 0.1, "r": 0.05}), [healthy]) < 0.7 * open_gap(problem, [healthy])
+
+
+def test_errors_are_kept_by_channel_and_read_again():
+    residuals = [np.zeros((2, 3, 10)), np.zeros((1, 3, 10))]
+    residuals[0][..., 0], residuals[1][..., 0], residuals[0][..., 7] = 0.1, 0.3, 0.2
+    ok = [np.ones((2, 3, 10), dtype=bool), np.ones((1, 3, 10), dtype=bool)]
+    ok[1][..., 7] = False
+    found = fitted_errors(merlin().model_copy(update={"calibration": errors_left(residuals, ok) | {"thrust.gain": 0.1}}))
+    assert found["u"] == pytest.approx(np.sqrt((2 * 0.1**2 + 0.3**2) / 3), rel=1e-3) and found["phi"] == pytest.approx(0.2)
+    assert found["w"] == 0.0 and "thrust.gain" not in found
+
+
