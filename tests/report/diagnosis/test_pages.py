@@ -155,3 +155,11 @@ def test_bars_of_errors_that_grew_differ_by_how_much() -> None:
     table = page.partition("its square less by")[2]
     widths = [table.partition(f">{axis}</th>")[2].partition("width:")[2].partition("%")[0] for axis in shares]
     assert widths == ["50.0", "50.0", "83.3"] and page.count('class="track wide worse"') >= 2
+
+
+def test_what_a_calibration_left_stands_beside_the_gap_and_only_where_there_was_one() -> None:
+    given = make_diagnosis()["gap"]
+    axes = {axis: row | ({"calibrated_rms": 0.0123} if axis == "surge" else {}) for axis, row in given["axes"].items()}
+    for known, plain in zip(formats(diagnosis(gap=given | {"axes": axes})), formats(diagnosis()), strict=True):
+        assert "0.0123 m/s" in known and "alibration" in known
+        assert "0.0123 m/s" not in plain

@@ -29,6 +29,7 @@ class GapOnAxis:
         iae: integral of the absolute error over time, in ``unit`` times seconds.
         floor_rms: white noise of the sensor, in ``unit``.
         share: of the weighted squared error of all axes.
+        calibrated_rms: error that the vehicle's calibration left of its own logs, in ``unit``; None without one.
     """
 
     unit: str
@@ -37,6 +38,7 @@ class GapOnAxis:
     iae: float
     floor_rms: float
     share: float
+    calibrated_rms: float | None
 
 
 def squared_errors(problem: Problem, residuals: Sequence[Array]) -> dict[str, Array]:
@@ -66,6 +68,7 @@ def gap_by_axis(problem: Problem, residuals: Sequence[Array]) -> dict[str, GapOn
             iae=float(np.abs(error).sum() * problem.runs[0].run.dt),
             floor_rms=floor,
             share=weight[axis] / total,
+            calibrated_rms=fitted_errors(problem.plant.vehicle).get(name),
         )
     return rows
 

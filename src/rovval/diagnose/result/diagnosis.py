@@ -49,6 +49,9 @@ class AxisGap(Record):
     iae: float = Field(description="integral over time of the absolute error, in unit times seconds")
     floor_rms: float = Field(description="noise of the sensor, rms in unit: no simulator comes nearer")
     share: float = Field(description="share of the whole squared gap, axes weighted by their residual covariance")
+    calibrated_rms: float | None = Field(
+        default=None, description="root mean square error that the vehicle's calibration left of its own logs, in unit; null without `rovval fit`"
+    )
 
 
 class GapSlice(Record):

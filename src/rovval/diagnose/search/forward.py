@@ -86,7 +86,7 @@ def search(
         models += added
         front = max(added, key=lambda m: m.log_posterior)
         best = max(best, front, key=lambda m: m.log_posterior)
-        if front.log_posterior < best.log_posterior + log(NEGLIGIBLE):
+        if front.log_posterior < best.log_posterior + log(NEGLIGIBLE) or len(front.causes) > len(best.causes) + 1:
             break
     progress("weighing the causes beside each other", 0.7)
     healthy, models, best = _reconsidered(problem, prior, healthy, models, best, tried)

@@ -51,11 +51,12 @@ def text(d: Diagnosis) -> str:
 
 
 def _axes(d: Diagnosis) -> str:
-    rows = []
+    rows, known = [], any(row.calibrated_rms is not None for row in d.gap.axes.values())
     for axis, row in d.gap.axes.items():
-        values = [quantity(row.rms, row.unit), quantity(row.floor_rms, row.unit), quantity(row.iae, integral_unit(row.unit))]
+        left = [MISSING if row.calibrated_rms is None else quantity(row.calibrated_rms, row.unit)] if known else []
+        values = [quantity(row.rms, row.unit), *left, quantity(row.floor_rms, row.unit), quantity(row.iae, integral_unit(row.unit))]
         rows.append([axis, *values, per_cent(row.share)])
-    return grid(["axis", "rms", "sensor noise", "IAE", "share"], rows) if rows else ""
+    return grid(["axis", "rms", *(["calibration"] if known else []), "sensor noise", "IAE", "share"], rows) if rows else ""
 
 
 def _cause(cause: Cause, gap: Mapping[str, AxisGap]) -> list[str]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from textwrap import wrap
 
 from rovval.diagnose.result.diagnosis import Candidate, Cause, Diagnosis
-from rovval.report.common.numbers import estimate, interval, number, per_cent, probability, quantity
+from rovval.report.common.numbers import MISSING, estimate, interval, number, per_cent, probability, quantity
 from rovval.report.diagnosis import tables
 from rovval.report.diagnosis.sentences import recalibration, words
 from rovval.report.diagnosis.sentences.first_screen import FirstScreen, first_screen
@@ -61,8 +61,11 @@ def _lines(text: str, first: str = "", rest: str = "") -> list[str]:
 
 
 def _axes(d: Diagnosis) -> list[str]:
-    rows = [("axis", "rms", "sensor noise", "share")]
-    rows += [(axis, quantity(row.rms, row.unit), quantity(row.floor_rms, row.unit), per_cent(row.share)) for axis, row in d.gap.axes.items()]
+    known = any(row.calibrated_rms is not None for row in d.gap.axes.values())
+    rows = [("axis", "rms", *(("calibration",) if known else ()), "sensor noise", "share")]
+    for axis, row in d.gap.axes.items():
+        left = (MISSING if row.calibrated_rms is None else quantity(row.calibrated_rms, row.unit),) if known else ()
+        rows.append((axis, quantity(row.rms, row.unit), *left, quantity(row.floor_rms, row.unit), per_cent(row.share)))
     return ["  ".join((r[0].ljust(6), *(c.rjust(13) for c in r[1:]))) for r in rows] if len(rows) > 1 else []
 
 
