@@ -153,7 +153,7 @@ def calibrate(runs: Sequence[Run], vehicle: Vehicle, *, model: str = "fossen", w
             if min(gains[name]) > 0:
                 estimate, chosen, predicted, others = _estimate(records, vehicle, wider, model, (start,)), wider, better, found
     say("simulating the logs with the calibrated vehicle", 0.8)
-    left = errors_left(_problem(records, vehicle, chosen, model).residuals(estimate.values), [one.ok for one in records])
+    left = _left(records, vehicle, chosen, model, others or (estimate,) * len(records))
     calibrated = _remembering(applied(vehicle, chosen, estimate.values), records, left)
     errors = _errors(records, vehicle, calibrated, chosen, model, others)
     accepted = tuple(name for name, by_run in gains.items() if min(by_run) > 0)
@@ -193,6 +193,12 @@ def _extrapolated(records: Sequence[Record], vehicle: Vehicle) -> tuple[tuple[st
         return ()
     limits = [largest([_speed(one) for one in _without(records, i)], vehicle) for i in range(len(records))]
     return tuple((one.run.id, e) for one, limit in zip(records, limits, strict=True) for e in excesses(_speed(one), limit, vehicle))
+
+
+def _left(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unknown], model: str, by: Sequence[Estimate]) -> dict[str, float]:
+    """Errors by channel that the calibrations ``by`` leave of one run each, in windows: on a log that it has not seen a vehicle shows those of a prediction."""
+    each = [_problem((one,), vehicle, chosen, model).residuals(e.values)[0] for one, e in zip(records, by, strict=True)]
+    return errors_left(each, [one.ok & np.isfinite(r) for one, r in zip(records, each, strict=True)])
 
 
 def _speed(one: Record) -> Array:

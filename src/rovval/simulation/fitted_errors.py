@@ -1,4 +1,5 @@
-"""How far the simulator of a calibrated vehicle was from the logs that it was calibrated on: what a healthy vehicle of these equations shows.
+"""How far the simulator of a calibrated vehicle was from the logs that it was calibrated on, each predicted by the others where there are several: what a
+healthy vehicle of these equations shows.
 
 The numbers stand in the vehicle file's table `[calibration]`, one a channel: root mean squares in restarted windows, in the channel's SI unit. Equations are
 only nearly right, and no number of the file mends what is left.
