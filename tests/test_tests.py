@@ -11,7 +11,7 @@ import pytest
 
 HERE = Path(__file__).parent
 PACKAGE = HERE.parent / "src" / "rovval"
-NO_ROOM = {"cases", "docs", "faults", "real", "benchmarks"}  # helpers, the README, kills and full disks, published logs of real vehicles, timings
+NO_ROOM = {"cases", "docs", "faults", "real", "other_simulators", "benchmarks"}  # helpers, the README, kills and full disks, logs by others, timings
 FILES = sorted(HERE.rglob("*.py"))
 THEIR_OWN = {"_get_module_for_linking", "_exit", "_repr_html_"}  # numba's, the operating system's and IPython's only name for it
 

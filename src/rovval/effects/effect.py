@@ -139,6 +139,7 @@ class Effect:
     - ``continues``: the effect that imitates it as far as that goes, and which it exceeds (a dead thruster is one that is half reversed).
     - ``includes``: the effect that it is where its own size is nothing; parameters of the same name are the same. That one is searched for from there, too.
     - ``family``: the name by which `rovval fit` tunes it along with others of its kind.
+    - ``option``: by what name `rovval fit` asks for it in addition, alone or with others: every vehicle has it to some degree, and no file.
     - ``in_file``: whether it is a number of the vehicle's file that is off, rather than something that no file holds.
     - ``absent_in``: platforms whose equations lack what it scales: there is nothing to take away.
     - ``stage``: where on the way from the true motion into the log a sensor's effect acts.
@@ -172,6 +173,7 @@ class Effect:
     includes: str = ""
     family: Family = ""
     absent_in: tuple[str, ...] = ()
+    option: str = ""
     in_file: bool = False
     stage: Stage = ""
 

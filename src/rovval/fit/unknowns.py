@@ -68,11 +68,6 @@ TURNED = {"roll": ("sway", "heave"), "pitch": ("surge", "heave"), "yaw": ("surge
 SWUNG = {"x": ("pitch", "yaw"), "y": ("roll", "yaw"), "z": ("roll", "pitch")}  # turns that move a sensor which is off along this axis
 
 EFFECTS_WIDE = 2.0  # typical sizes of an effect that may be in every vehicle and in no file: its prior's standard deviation (chosen)
-OPTIONS = {  # what it is called, and the effects whose parameters it sets free, with what a log must hold to show them
-    "thrust.flow": (("inflow_loss", "crossflow_loss"), "the same command at rest, ahead, astern and drifting sideways"),
-    "cross_drag": (("cross_drag",), "turns on the spot and straight drifts in sway and heave, each without the other"),
-    "propeller_torque": (("propeller_torque",), "each thruster alone, roll, pitch and yaw left free"),
-}
 
 SENSORS = {  # unknown: effect and parameter that say it in a vehicle's file
     **{f"attitude.{c}": ("attitude_bias", c) for c in ("phi", "theta")},
@@ -129,24 +124,27 @@ def unknowns(vehicle: Vehicle, channels: Sequence[str]) -> tuple[Unknown, ...]:
 
 
 def _of_effects() -> Iterator[Unknown]:
-    """What the library has as an effect, every vehicle to some degree, and no file: `OPTIONS`."""
-    for option, (names, manoeuvre) in OPTIONS.items():
-        for name in names:
-            effect = effects.load(name)
-            for p in effect.parameters:
-                meaning = f"{effect.title.lower()}, {p.name}"
-                yield Unknown(f"{option}[{name}.{p.name}]", "offset", EFFECTS_WIDE * p.typical, p.unit, meaning, manoeuvre, True)
+    """What the library has as an effect, every vehicle to some degree, and no file (`effects.Effect.option`)."""
+    for name in effects.names():
+        effect = effects.load(name)
+        for p in effect.parameters if effect.option else ():
+            meaning = f"{effect.title.lower()}, {p.name}"
+            yield Unknown(f"{effect.option}[{name}.{p.name}]", "offset", EFFECTS_WIDE * p.typical, p.unit, meaning, effect.separates, True)
 
 
 @cache
 def said_by() -> Mapping[str, tuple[str, str]]:
-    """Effect and parameter that say an unknown of the sensors or of `OPTIONS` in a vehicle's file, by its key."""
-    options = ((option, name, p.name) for option, (names, _) in OPTIONS.items() for name in names for p in effects.load(name).parameters)
-    return {**SENSORS, **{f"{option}[{name}.{parameter}]": (name, parameter) for option, name, parameter in options}}
+    """Effect and parameter that say an unknown of the sensors, or of an option of the library's effects, in a vehicle's file, by its key."""
+    found = dict(SENSORS)
+    for name in effects.names():
+        effect = effects.load(name)
+        if effect.option:
+            found |= {f"{effect.option}[{name}.{p.name}]": (name, p.name) for p in effect.parameters}
+    return found
 
 
 def bounds(vehicle: Vehicle, asked: Sequence[Unknown]) -> tuple[Array, Array]:
-    """Least and largest values (k,) of the unknowns ``asked``: those of sensors and effects that the library holds; infinite where it holds any."""
+    """Least and largest values (k,) of the unknowns ``asked``: those that the library holds; infinite where it has none."""
     of, said = {s.key: s.parameter for s in slots(vehicle, "fossen")}, said_by()
     low, high = np.full(len(asked), -np.inf), np.full(len(asked), np.inf)
     for i, one in enumerate(asked):
@@ -233,4 +231,4 @@ def _effects(vehicle: Vehicle, body: Body, at: Mapping[str, float]) -> dict[str,
 def _most_tether_drag(vehicle: Vehicle) -> float:
     """The most drag (N s2/m2) that the library holds for a tether of such a vehicle: the factor of a tether's drag is one of its odds against it, which are in
     proportion to the drag while that is small, and never come to it."""
-    return next(s.parameter.high for s in slots(vehicle, "fossen") if s.key == "tether_drag.coefficient")
+    return next(s.parameter.high for s in slots(vehicle, "fossen") if (s.effect, s.parameter.name) == ("tether_drag", "coefficient"))

@@ -41,7 +41,7 @@ class Decision:
         verdict: ``no_gap``, ``explained``, ``partly_explained`` or ``unknown``.
         probabilities: of all models.
         causes: those of the set that is named (`Probabilities.best`) without those without which it is as probable, the surest first; empty for ``no_gap`` and
-            ``unknown``.
+            ``unknown``, of as sure ones the one of most evidence.
         fit: their joint fit; None without causes.
         groups: of each cause the names that this log does not tell from it (itself first) with their probabilities.
         probability: that each cause is at work.
@@ -167,6 +167,7 @@ def _named(
     belief, evidence, left = found.probabilities, beside.sparse()[0], left_open(problem, fit)
     problem, fit = _where_at_work(problem, best, fit)
     probability = {h.name: belief.of(h.name) for h in best.causes}
+    added = {name: best.evidence - m.evidence for name, m in without.items()}
     rest = None
     if something_beside(evidence, varying):
         rest = unexplained(problem, beside, fit.posterior, goes_with=varying.goes_with)
@@ -175,11 +176,11 @@ def _named(
     return replace(
         found,
         verdict="partly_explained" if rest else "explained",
-        causes=tuple(sorted(best.causes, key=lambda h: -probability[h.name])),
+        causes=tuple(sorted(best.causes, key=lambda h: (-round(probability[h.name], 2), -added[h.name]))),
         fit=fit,
         groups={h.name: belief.group(h.name) for h in best.causes},
         probability=probability,
-        added={name: best.evidence - m.evidence for name, m in without.items()},
+        added=added,
         generic_beside=max(evidence, 0.0),
         departure=fit.posterior.largest_departure(),
         open_gap=left,

@@ -34,6 +34,7 @@ EFFECT = Effect(
     signature="a force on an axis that was not driven, growing with the square of the one that was",
     confused_with=("cg_offset", "dvl_misalignment", "thruster_misaligned", "dvl_lever_arm"),
     separates="sway and yaw together, with both signs of each",
+    option="cross_drag",
     literature=(
         "Fossen 2021, section 6.5: cross-flow drag, Y_|r|r and N_|v|v",
         "Martin and Whitcomb 2014: coupled six-degree-of-freedom models identified for an underwater vehicle",

@@ -29,6 +29,7 @@ EFFECT = Effect(
     signature="weak thrust while moving sideways",
     confused_with=("inflow_loss", "cross_drag", "quadratic_drag"),
     separates="surge steps with and without sway speed",
+    option="thrust.flow",
     literature=(
         "Kim and Chung 2006: thrust by speed and angle of the flow, linear at low speed",
         "Saunders and Nahon 2002: tunnel thrusters under way",

@@ -33,6 +33,7 @@ EFFECT = Effect(
     signature="grows with thruster speed times vehicle speed: feels like drag while thrusting, and is gone when coasting",
     confused_with=("quadratic_drag", "linear_drag", "rpm_scale", "tether_drag"),
     separates="the same speed at different thrust: accelerating, steady, coasting",
+    option="thrust.flow",
     literature=(
         "Fossen 2021, section 9.6: bilinear thruster model",
         "Healey 1995: thrust and the velocity of advance",

@@ -29,6 +29,7 @@ EFFECT = Effect(
     signature="roll, pitch or yaw that grows with thrust where handedness does not cancel",
     confused_with=("cg_offset", "thruster_misaligned"),
     separates="drive one thruster: torque is about its own axis",
+    option="propeller_torque",
     literature=("Fossen 2021, section 9.4: thrust and torque coefficients", "Carlton 2018, chapter 6: propeller characteristics"),
     separable=True,
 )
