@@ -20,13 +20,13 @@ from rovval.core.version import __version__
 from rovval.diagnose.criteria import HELD_OUT_RUNS
 from rovval.diagnose.effort import PROGRESSIVE_S
 from rovval.diagnose.windows.noise import clean_channels
-from rovval.fit.estimate import Estimate, Problem, held_out_change, maximum
-from rovval.fit.record import Record, begun, record, residual
+from rovval.fit.estimate import Estimate, Problem, held_out_gain, maximum
+from rovval.fit.record import Record, begun, record, residual, rms
 from rovval.fit.unknowns import Unknown, applied, bounds, unknowns
 from rovval.plant import Plant, parse_settings
 from rovval.simulation import carried_effects, simulate
 from rovval.simulation.fitted_commands import Excess, excesses, fitted, largest
-from rovval.simulation.fitted_errors import errors_left
+from rovval.simulation.fitted_errors import kept
 from rovval.simulation.step import steps_a_sample
 from rovval.vehicle.model import Vehicle
 
@@ -140,7 +140,7 @@ def calibrate(runs: Sequence[Run], vehicle: Vehicle, *, model: str = "fossen", w
     if len(records) > 1:
         others = _from_the_others(records, vehicle, chosen, model, estimate.values)
         predicted = _prediction(records, vehicle, chosen, model, others)
-        for name, more in _options(asked).items() if len(records) >= HELD_OUT_RUNS else ():  # of two, one alone would judge
+        for name, more in (_options(asked) if len(records) >= HELD_OUT_RUNS else {}).items():  # of two, one alone would judge
             say(f"asking whether {name} predicts runs left out better", 0.4)
             wider = tuple(one for one in asked if one in chosen or one in more)
             start = _widened(estimate, chosen, wider)
@@ -198,7 +198,7 @@ def _extrapolated(records: Sequence[Record], vehicle: Vehicle) -> tuple[tuple[st
 def _left(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unknown], model: str, by: Sequence[Estimate]) -> dict[str, float]:
     """Errors by channel that the calibrations ``by`` leave of one run each, in windows: on a log that it has not seen a vehicle shows those of a prediction."""
     each = [_problem((one,), vehicle, chosen, model).residuals(e.values)[0] for one, e in zip(records, by, strict=True)]
-    return errors_left(each, [one.ok & np.isfinite(r) for one, r in zip(records, each, strict=True)])
+    return kept(rms(each, [one.ok & np.isfinite(r) for one, r in zip(records, each, strict=True)]))
 
 
 def _speed(one: Record) -> Array:
@@ -280,8 +280,7 @@ def _without(records: Sequence[Record], left: int) -> tuple[Record, ...]:
 
 def _promised(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unknown], wider: Sequence[Unknown], model: str, start: Array) -> Array:
     """What `_prediction` of every run (m,) gains with the ``wider`` unknowns, in the model linearised at ``start`` (k,)."""
-    problem, before = _problem(records, vehicle, wider, model), np.array([one in chosen for one in wider])
-    return held_out_change(problem, start, np.ones(len(wider), dtype=bool)) - held_out_change(problem, start, before)
+    return held_out_gain(_problem(records, vehicle, wider, model), start, np.array([one in chosen for one in wider]))
 
 
 def _from_the_others(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unknown], model: str, start: Array) -> tuple[Estimate, ...]:

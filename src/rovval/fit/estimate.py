@@ -159,19 +159,22 @@ def _beside(problem: Problem, values: Array, j: int) -> tuple[Sequence[Array], f
     return found, float(step)
 
 
-def held_out_change(problem: Problem, values: Array, free: Flags) -> Array:
-    """Change of twice the log likelihood of every run (m,) from ``values`` (k,) to where the others alone would have them, ``free`` (k,) ones moving, in the
-    model linearised at ``values``: what a prediction of the run would gain or lose."""
+def held_out_gain(problem: Problem, values: Array, before: Flags) -> Array:
+    """What the prediction of every run (m,) by the others gains, in twice its log likelihood, with all of ``values`` (k,) free over those ``before`` (k,)
+    alone, in the model linearised there."""
     residuals = problem.residuals(values)
     curvature, slope = _by_run(problem, values, residuals, _scale(problem, residuals))
-    found, prior = np.zeros(len(curvature)), (values - problem.mean) / problem.sd**2
-    for i in range(len(curvature)):
+    prior = (values - problem.mean) / problem.sd**2
+
+    def change(i: int, free: Flags) -> float:
+        """Of twice the log likelihood of a run, from ``values`` to where the others would have them."""
         H, down = curvature.sum(axis=0) - curvature[i] + np.diag(1.0 / problem.sd**2), slope.sum(axis=0) - slope[i] + prior
         step = np.zeros(len(values))
         step[free] = np.linalg.solve(H[np.ix_(free, free)], -down[free])
         step = np.clip(values + step, problem.low, problem.high) - values
-        found[i] = -2.0 * float(slope[i] @ step) - float(step @ curvature[i] @ step)
-    return found
+        return -2.0 * float(slope[i] @ step) - float(step @ curvature[i] @ step)
+
+    return np.array([change(i, np.ones_like(before)) - change(i, before) for i in range(len(slope))])
 
 
 def _normal_equations(problem: Problem, values: Array, residuals: Sequence[Array], scale: Array) -> tuple[Array, Array]:

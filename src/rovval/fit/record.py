@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,6 +17,7 @@ from rovval.simulation.actuation import Actuation, recorded_actuation, start_sta
 from rovval.vehicle.model import Vehicle
 
 CHANNELS = (*VELOCITIES, "down x", "down y", "down z", "z")  # the body components of the vertical stand for roll and pitch: no angle wraps in them
+LEVEL = {"down x": "theta", "down y": "phi"}  # angles of which these components are as much off, of a vehicle that is nearly level
 FEWEST = 2  # windows of a run: with one nothing is restarted
 
 
@@ -85,3 +87,13 @@ def residual(one: Record, plant: Plant, beta: Array) -> Array:
     stopped = (motion.stopped[:, None] >= 0) & (np.arange(one.steps + 1) >= motion.stopped[:, None])
     error = np.where(one.ok, simulated - one.measured, 0.0)
     return np.where(stopped[..., None] & one.ok, np.nan, error)
+
+
+def rms(residuals: Sequence[Array], ok: Sequence[Flags]) -> dict[str, float]:
+    """Root mean square by channel of the ``residuals`` (m, n, 10) of several runs, where ``ok``."""
+    found = dict[str, float]()
+    for i, name in enumerate(CHANNELS):
+        error = np.concatenate([r[..., i][good[..., i]] for r, good in zip(residuals, ok, strict=True)])
+        if len(error) and name != "down z":  # of a level vehicle it says nothing of roll and pitch
+            found[LEVEL.get(name, name)] = float(np.sqrt(np.mean(error**2)))
+    return found

@@ -18,7 +18,8 @@ import numpy as np
 from rovval import effects
 from rovval.core.channels import AXES
 from rovval.core.data import Array
-from rovval.plant.slots import slots
+from rovval.effects import Effect, Parameter
+from rovval.plant.slots import grown, sizes, slots
 from rovval.vehicle.model import Body, Thruster, Vehicle, as_matrix, inertia
 
 Diagonal = tuple[float, ...]
@@ -75,6 +76,7 @@ SENSORS = {  # unknown: effect and parameter that say it in a vehicle's file
     **{f"velocity.lever.{c}": ("dvl_lever_arm", c) for c in "xyz"},
 }
 
+
 @dataclass(frozen=True, slots=True)
 class Unknown:
     """``key`` says what and where; ``sd`` of its normal prior about 0, of the logarithm for a ``factor``, in ``unit`` for an ``offset``. ``manoeuvre``
@@ -120,27 +122,24 @@ def unknowns(vehicle: Vehicle, channels: Sequence[str]) -> tuple[Unknown, ...]:
         found += [Unknown(f"velocity.{c}", "offset", TILT, "rad", f"{c} of the velocity sensor's frame", STRAIGHT.format(*of)) for c, of in TURNED.items()]
         found += [Unknown(f"velocity.lever.{c}", "offset", LEVER, "m", f"place of the velocity sensor, {c}", SPOT.format(*of)) for c, of in SWUNG.items()]
     found.append(Unknown("tether.drag", "factor", WIDE, "1", "quadratic drag of the tether where it is made fast", TETHER))
-    return (*found, *_of_effects())
+    for key, effect, p in _options():
+        meaning = f"{effect.title.lower()}, {p.name}"
+        found.append(Unknown(key, "offset", EFFECTS_WIDE * p.typical, p.unit, meaning, effect.separates, True))
+    return tuple(found)
 
 
-def _of_effects() -> Iterator[Unknown]:
-    """What the library has as an effect, every vehicle to some degree, and no file (`effects.Effect.option`)."""
+def _options() -> Iterator[tuple[str, Effect, Parameter]]:
+    """Keys, effects and parameters of what the library has as an effect, every vehicle to some degree, and no file (`effects.Effect.option`)."""
     for name in effects.names():
         effect = effects.load(name)
-        for p in effect.parameters if effect.option else ():
-            meaning = f"{effect.title.lower()}, {p.name}"
-            yield Unknown(f"{effect.option}[{name}.{p.name}]", "offset", EFFECTS_WIDE * p.typical, p.unit, meaning, effect.separates, True)
+        if effect.option:
+            yield from ((f"{effect.option}[{name}.{p.name}]", effect, p) for p in effect.parameters)
 
 
 @cache
 def said_by() -> Mapping[str, tuple[str, str]]:
     """Effect and parameter that say an unknown of the sensors, or of an option of the library's effects, in a vehicle's file, by its key."""
-    found = dict(SENSORS)
-    for name in effects.names():
-        effect = effects.load(name)
-        if effect.option:
-            found |= {f"{effect.option}[{name}.{p.name}]": (name, p.name) for p in effect.parameters}
-    return found
+    return {**SENSORS, **{key: (effect.name, p.name) for key, effect, p in _options()}}
 
 
 def bounds(vehicle: Vehicle, asked: Sequence[Unknown]) -> tuple[Array, Array]:
@@ -159,14 +158,14 @@ def applied(vehicle: Vehicle, asked: Sequence[Unknown], values: Array) -> Vehicl
     """The vehicle with ``values`` (k,) of the unknowns ``asked``: logarithms of factors, offsets as they are. Zeros leave it as it is, but for
     drag and added mass that the file has not, which are there with a first guess."""
     at = {one.key: exp(value) if one.kind == "factor" else float(value) for one, value in zip(asked, values, strict=True)}
-    thruster = tuple(_thruster(t, at) for t in vehicle.thruster)
+    thruster, body = tuple(_thruster(t, at) for t in vehicle.thruster), _body(vehicle, at)
     table = vehicle.pulse_table
     if table is not None and not table.k_pos:  # the table is of the thruster as the file has it: a gain is beside it
         table = table.model_copy(update={"k_pos": tuple(t.k_pos for t in vehicle.thruster), "k_neg": tuple(t.k_neg for t in vehicle.thruster)})
     moved = {one.key: vehicle.calibration.get(one.key, 0.0) + float(value) for one, value in zip(asked, values, strict=True)}
     return vehicle.model_copy(
         update={
-            "body": (body := _body(vehicle, at)), "thruster": thruster, "pulse_table": table, "effects": _effects(vehicle, body, at),
+            "body": body, "thruster": thruster, "pulse_table": table, "effects": _effects(vehicle, body, at),
             "calibration": {**vehicle.calibration, **moved},
         }
     )  # fmt: skip
@@ -231,4 +230,5 @@ def _effects(vehicle: Vehicle, body: Body, at: Mapping[str, float]) -> dict[str,
 def _most_tether_drag(vehicle: Vehicle) -> float:
     """The most drag (N s2/m2) that the library holds for a tether of such a vehicle: the factor of a tether's drag is one of its odds against it, which are in
     proportion to the drag while that is small, and never come to it."""
-    return next(s.parameter.high for s in slots(vehicle, "fossen") if (s.effect, s.parameter.name) == ("tether_drag", "coefficient"))
+    coefficient = next(p for p in effects.load("tether_drag").parameters if p.name == "coefficient")
+    return grown(coefficient, sizes(vehicle)[coefficient.sized]).high

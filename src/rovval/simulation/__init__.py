@@ -13,7 +13,7 @@ from rovval.plant import Plant, parse_settings
 from rovval.simulation.actuation import Actuation, recorded_actuation, start_states, startable
 from rovval.simulation.boundaries import beyond_the_water
 from rovval.simulation.sanity_limits import first_beyond
-from rovval.simulation.step import steps_a_sample
+from rovval.simulation.step import stable_plant
 from rovval.vehicle.model import Vehicle
 
 WINDOW_S = 10.0  # about three to five time constants of surge of an observation-class ROV
@@ -36,8 +36,7 @@ def simulate(
     if length < 2:
         raise UsageProblem(f"window of {window_s} s at {run.dt} s a sample", "use at least two samples a window")
     driven = recorded_actuation(run, vehicle)
-    plant = Plant(vehicle, model)
-    plant = Plant(vehicle, model, steps_a_sample(vehicle, plant.thrust(driven.inputs.speed), run.dt))
+    plant = stable_plant(vehicle, model, driven.inputs.speed, run.dt)
     settings = (*carried_effects(vehicle), *effects)
     beta = parse_settings(plant, settings)
     ready = startable(run)

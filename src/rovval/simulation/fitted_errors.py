@@ -7,12 +7,8 @@ only nearly right, and no number of the file mends what is left.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
-import numpy as np
-
-from rovval.core.channels import VELOCITIES
-from rovval.core.data import Array, Flags
 from rovval.vehicle.model import Vehicle
 
 ERROR = "error."  # before the channel's name
@@ -23,13 +19,6 @@ def fitted_errors(vehicle: Vehicle) -> Mapping[str, float]:
     return {key.removeprefix(ERROR): value for key, value in vehicle.calibration.items() if key.startswith(ERROR)}
 
 
-def errors_left(residuals: Sequence[Array], ok: Sequence[Flags]) -> dict[str, float]:
-    """Errors by their keys in `[calibration]`, from ``residuals`` (m, n, 10) of each log by `fit.record.CHANNELS`, where ``ok``: six velocities, roll and pitch
-    (of level vehicles the body components of the vertical are as large), depth."""
-    channels = {**{name: i for i, name in enumerate(VELOCITIES)}, "phi": 7, "theta": 6, "z": 9}
-    found = dict[str, float]()
-    for name, i in channels.items():
-        error = np.concatenate([r[..., i][good[..., i]] for r, good in zip(residuals, ok, strict=True)])
-        if len(error):
-            found[f"{ERROR}{name}"] = float(f"{np.sqrt(np.mean(error**2)):.4g}")
-    return found
+def kept(errors: Mapping[str, float]) -> dict[str, float]:
+    """Errors by channel as they stand in `[calibration]`, in four digits."""
+    return {f"{ERROR}{channel}": float(f"{error:.4g}") for channel, error in errors.items()}

@@ -7,6 +7,7 @@ from math import ceil
 import numpy as np
 
 from rovval.core.data import Array
+from rovval.plant import Plant
 from rovval.vehicle.model import Vehicle, allocation, as_matrix, rigid_body_mass
 
 STABLE = 2.0  # step times decay rate: the classic Runge-Kutta scheme is stable up to 2.785 (Hairer and Wanner 1996, IV.2), accurate well below
@@ -27,3 +28,8 @@ def steps_a_sample(vehicle: Vehicle, thrust: Array, dt: float, stiffer: float = 
         speed = np.where(quadratic > 0, (np.sqrt(linear**2 + 4 * quadratic * force) - linear) / (2 * quadratic), force / linear)
     decay = (linear + 2 * quadratic * np.nan_to_num(speed, nan=0.0, posinf=0.0)) / mass
     return min(max(1, ceil(stiffer * float(decay.max()) * dt / STABLE)), MOST)
+
+
+def stable_plant(vehicle: Vehicle, model: str, speed: Array, dt: float, stiffer: float = 1.0) -> Plant:
+    """The plant of a platform in as many steps as `steps_a_sample` asks for with the thrust of thruster speeds ``speed`` (n, k) rev/s."""
+    return Plant(vehicle, model, steps_a_sample(vehicle, Plant(vehicle, model).thrust(speed), dt, stiffer))

@@ -10,26 +10,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import exp, log, pi, sqrt
 
-from rovval.diagnose.criteria import CALIBRATED_SPREAD, PRIOR_CAUSES, PRIOR_HEALTHY, PRIOR_SOMETHING_ELSE
+from rovval.diagnose.criteria import CALIBRATED_SPREAD, PRIOR_HEALTHY
 from rovval.diagnose.inference.gap import TINY
 
 
-def odds_over_causes(grown: float | None) -> float:
-    """Odds that what looks like causes was left by the calibration, by how much the gap has ``grown`` since then where they act; none without a calibration."""
-    return PRIOR_HEALTHY / PRIOR_CAUSES * _as_it_was(grown)
+def odds_as_calibrated(grown: Sequence[float], other: float) -> float:
+    """Odds of a vehicle that is as it was calibrated over another model of prior mass ``other``, by how much the gap has ``grown`` since then, where that model
+    acts, or on each of several axes: it may act on any one of them. None without a calibration."""
+    return PRIOR_HEALTHY / other * len(grown) / sum(1.0 / max(_as_it_was(size), TINY) for size in grown) if grown else 0.0
 
 
-def odds_over_something_else(grown: Sequence[float]) -> float:
-    """The same of something else, by how much each of several axes has ``grown``: it may be at work on any one of them."""
-    if not grown:
-        return 0.0
-    return PRIOR_HEALTHY / PRIOR_SOMETHING_ELSE / (sum(1.0 / max(_as_it_was(size), TINY) for size in grown) / len(grown))
-
-
-def _as_it_was(grown: float | None) -> float:
+def _as_it_was(grown: float) -> float:
     """Ratio of both densities of a gap that is ``grown`` times what it was (1); of one that became smaller as of one that is as it was."""
-    if grown is None:
-        return 0.0
     size = max(grown, 1.0)
-    as_it_was = exp(-0.5 * (log(size) / CALIBRATED_SPREAD) ** 2) / (CALIBRATED_SPREAD * sqrt(2.0 * pi) * size)
-    return as_it_was * size**2
+    return size * exp(-0.5 * (log(size) / CALIBRATED_SPREAD) ** 2) / (CALIBRATED_SPREAD * sqrt(2.0 * pi))

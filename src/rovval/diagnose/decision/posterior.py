@@ -37,7 +37,7 @@ from rovval.diagnose.criteria import (
     PRIOR_HEALTHY,
     PRIOR_SOMETHING_ELSE,
 )
-from rovval.diagnose.decision.as_calibrated import odds_over_causes, odds_over_something_else
+from rovval.diagnose.decision.as_calibrated import odds_as_calibrated
 from rovval.diagnose.decision.constancy import Variation
 from rovval.diagnose.decision.resemblance import Left, form_error, looks_only_alike
 from rovval.diagnose.effort import NEGLIGIBLE
@@ -186,18 +186,18 @@ def probabilities(
         _leave_what_varies(believed, names, more)
     share, causes = dict(believed), {h.name: h for m in models for h in m.causes}
     for kind, names in believed:
-        grown = left.grown_where_they_act(names) if left else None
+        grown = left.grown_since(names) if left else ()
         if names and kind in (*CAUSES, FORM):
             wanders = all(causes[name].effect.wanders for name in names)
             shows = beside.get(names, -inf) > -inf and not wanders
-            none, as_it_was = looks_only_alike(names, None if wanders else left, shows, odds_over_causes(grown))
-            share[kind, names] -= (none + as_it_was) * believed[kind, names]
-            share[HEALTHY] += as_it_was * believed[kind, names]
+            none, as_it_was = looks_only_alike(names, None if wanders else left, shows, odds_as_calibrated(grown, PRIOR_CAUSES))
         elif kind == "else" or kind.startswith(VARYING):
-            sizes = (left.grown_by_axis if kind == "else" else () if grown is None else (grown,)) if left else ()
-            as_it_was = (odds := odds_over_something_else(sizes)) / (1.0 + odds)
-            share[kind, names] -= as_it_was * believed[kind, names]
-            share[HEALTHY] += as_it_was * believed[kind, names]
+            odds = odds_as_calibrated(grown, PRIOR_SOMETHING_ELSE)
+            none, as_it_was = 0.0, odds / (1.0 + odds)
+        else:
+            continue
+        share[kind, names] -= (none + as_it_was) * believed[kind, names]
+        share[HEALTHY] += as_it_was * believed[kind, names]
     for names in varying:
         share["beside", names] = share.get(("beside", names), 0.0) + share.pop((FORM, names))
     _move_form_errors(share, best, left)

@@ -79,9 +79,11 @@ class Left:
         best = self._best_part(names)
         return self.acting[best] if best else (1.0, TINY)
 
-    def grown_where_they_act(self, names: Names) -> float | None:
-        """How many times the gap is what the calibration left (`grown`) where the best of the parts acts; None where that is not known."""
-        return self.grown.get(self._best_part(names))
+    def grown_since(self, names: Names) -> tuple[float, ...]:
+        """How many times the gap is what the calibration left where causes act, with the best of their parts (`grown`); of none on each axis; () where that is
+        not known."""
+        best = self._best_part(names)
+        return (self.grown[best],) if best in self.grown else () if names else self.grown_by_axis
 
     def _best_part(self, names: Names) -> Names:
         """The part of ``names`` that leaves least; none where none was fitted."""
@@ -97,7 +99,7 @@ def gap_left(problem: Problem, models: Iterable[Model]) -> Left:
     fits = [(m.names, m.fit) for m in models if m.fit]
     losses = [np.array([fit.dynamics_loss.sum(), fit.loss.sum()]) for _, fit in fits]
     shares, acting, gap = dict[Names, Array](), dict[Names, tuple[float, float]](), _Gap.of(problem)
-    grown, axes = dict[Names, float](), tuple((gap.errors[part] / size) for part, size in gap.calibrated.items() if size > 0.0)
+    grown, axes = dict[Names, float](), tuple(gap.errors[part] / size for part, size in gap.calibrated.items() if size > 0.0)
     for (names, fit), share in zip(fits, explainable_left(problem, losses), strict=True):
         if names not in shares or share.min() < shares[names].min():
             acting[names] = gap.left_where_it_acts(fit.parts)

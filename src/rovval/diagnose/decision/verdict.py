@@ -40,8 +40,8 @@ class Decision:
     Attributes:
         verdict: ``no_gap``, ``explained``, ``partly_explained`` or ``unknown``.
         probabilities: of all models.
-        causes: those of the set that is named (`Probabilities.best`) without those without which it is as probable, the surest first; empty for ``no_gap`` and
-            ``unknown``, of as sure ones the one of most evidence.
+        causes: those of the set that is named (`Probabilities.best`) without those without which it is as probable, the surest first, and of those
+            that are as sure to a hundredth the one of most evidence; empty for ``no_gap`` and ``unknown``.
         fit: their joint fit; None without causes.
         groups: of each cause the names that this log does not tell from it (itself first) with their probabilities.
         probability: that each cause is at work.

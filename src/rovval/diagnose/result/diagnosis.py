@@ -73,6 +73,11 @@ class Gap(Record):
     where: tuple[GapSlice, ...] = Field(description="regimes that hold most of the gap in little of the time, the worst first")
     change_points_s: tuple[float, ...] = Field(description="times at which the mean residual changes level, s")
 
+    @property
+    def calibrated(self) -> bool:
+        """Whether it is known what the vehicle's calibration left on some axis."""
+        return any(row.calibrated_rms is not None for row in self.axes.values())
+
 
 class Interval(Record):
     """A 90 % interval."""

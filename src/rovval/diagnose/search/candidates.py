@@ -84,9 +84,9 @@ def candidates(
         for begin in (start, *_departed(problem, base, h, start)):
             fit_from(h, begin, slots)
         if astray(h):
-            fit_from(h, begin := alone(h, slots), slots)
-            if astray(h):
-                fit_from(h, progressive_start(problem, begin, slots), slots)
+            fit_from(h, alone(h, slots), slots)
+        if astray(h):
+            fit_from(h, progressive_start(problem, alone(h, slots), slots), slots)
 
     tries = Counter[str]()
     for h in ordered:

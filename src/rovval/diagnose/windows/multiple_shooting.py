@@ -20,9 +20,8 @@ from rovval.diagnose.windows.conditioning import condition
 from rovval.diagnose.windows.contact import in_contact
 from rovval.diagnose.windows.noise import clean_channels, sample_strides
 from rovval.diagnose.windows.windows import Windows, residual_channels
-from rovval.plant import Plant
 from rovval.simulation.actuation import recorded_actuation, start_states, startable
-from rovval.simulation.step import steps_a_sample
+from rovval.simulation.step import stable_plant
 from rovval.vehicle.model import Vehicle
 
 
@@ -73,7 +72,7 @@ def cut_run(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Windows:
 def _cut(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Windows:
     """The windows of ``window_s`` (s) in which inputs are known, the vehicle is out of contact and enough is measured; raises as `cut_run`."""
     driven = recorded_actuation(run, vehicle)
-    plant = Plant(vehicle, model, steps_a_sample(vehicle, Plant(vehicle, model).thrust(driven.inputs.speed), run.dt, STIFFER))
+    plant = stable_plant(vehicle, model, driven.inputs.speed, run.dt, STIFFER)
     channels = residual_channels(run)
     steps = round(window_s / run.dt) - 1
     contact = in_contact(run, driven)

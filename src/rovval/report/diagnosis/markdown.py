@@ -51,7 +51,7 @@ def text(d: Diagnosis) -> str:
 
 
 def _axes(d: Diagnosis) -> str:
-    rows, known = [], any(row.calibrated_rms is not None for row in d.gap.axes.values())
+    rows, known = [], d.gap.calibrated
     for axis, row in d.gap.axes.items():
         left = [MISSING if row.calibrated_rms is None else quantity(row.calibrated_rms, row.unit)] if known else []
         values = [quantity(row.rms, row.unit), *left, quantity(row.floor_rms, row.unit), quantity(row.iae, integral_unit(row.unit))]

@@ -61,7 +61,7 @@ def _lines(text: str, first: str = "", rest: str = "") -> list[str]:
 
 
 def _axes(d: Diagnosis) -> list[str]:
-    known = any(row.calibrated_rms is not None for row in d.gap.axes.values())
+    known = d.gap.calibrated
     rows = [("axis", "rms", *(("calibration",) if known else ()), "sensor noise", "share")]
     for axis, row in d.gap.axes.items():
         left = (MISSING if row.calibrated_rms is None else quantity(row.calibrated_rms, row.unit),) if known else ()
