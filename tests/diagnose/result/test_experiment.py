@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from diagnose_case import posed
 
-from rovval.diagnose.result.experiment import Experiment
+from rovval.diagnose.result.experiment import Experiment, best
 from rovval.diagnose.result.manoeuvres import Helm, bank
 from rovval.vehicle import load
 from rovval.vehicle.model import Vehicle, allocation
@@ -52,3 +53,12 @@ def test_the_schedule_is_told_in_rpm_leg_after_leg(helm: Helm):
     assert list(first.values()) == pytest.approx([60.0 * s for s in experiment.manoeuvre.legs[0].speed], abs=0.05)
     assert set(first) == set(helm.vehicle.thrusters) and not any(schedule.schedule[1].thrusters.values())
     assert experiment.summary().separates == ("inflow_loss", "quadratic_drag[surge]")
+
+
+def test_a_member_of_a_group_is_flown_without_what_the_log_does_not_hold():
+    """The sag of a supply has a loss by the logged voltage beside a steady one: a log without voltage can still be told by the latter."""
+    problem, _ = posed(("rpm_scale:scale=0.1",))
+    beta = problem.origin.copy()
+    beta[[slot.key for slot in problem.plant.slots].index("rpm_scale.scale")] = 0.1
+    found = best(problem, beta, ("rpm_scale", "voltage_sag"), np.full(len(problem.plant.vehicle.thrusters), 10.0))
+    assert found is not None and found.separates == ("rpm_scale", "voltage_sag")

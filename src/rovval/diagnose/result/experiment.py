@@ -25,6 +25,7 @@ from rovval.diagnose.result.causes import alone, members
 from rovval.diagnose.result.diagnosis import NextExperiment, ScheduleLeg, ThrusterSchedule
 from rovval.diagnose.result.manoeuvres import Helm, Manoeuvre, bank
 from rovval.diagnose.windows.multiple_shooting import cut_run
+from rovval.effects import Parameter
 from rovval.plant import Inputs
 
 DT = 0.1  # s, the common grid
@@ -92,7 +93,7 @@ def _misfit(problem: Problem, beta: Array, members: tuple[str, ...], manoeuvre: 
         return None
     plant = problem.plant
     stretches = cut_run(run, plant.vehicle, plant.model, DT * (problem.runs[0].steps + 1))
-    free = {name: plant.hypotheses[name] for name in members}
+    free = {name: tuple(s for s in plant.hypotheses[name] if _can_act(plant.slots[s].parameter, run)) for name in members}
     base = np.where([slot.hypothesis in free and slot.parameter.places for slot in plant.slots], problem.prior_mean, plant.null)
     columns = tuple(sorted({s for slots in free.values() for s in slots}))
     keep = [problem.runs[0].channels.index(c) for c in stretches.channels if c in problem.runs[0].channels]
@@ -106,6 +107,11 @@ def _misfit(problem: Problem, beta: Array, members: tuple[str, ...], manoeuvre: 
         for name, slots in free.items()
     ]
     return (min(left[1:]) - left[0]) / (problem.design_effect * len(data.c))
+
+
+def _can_act(parameter: Parameter, run: Run) -> bool:
+    """Whether the run holds what a parameter acts by; that of another parameter of the effect may be missing."""
+    return not parameter.needs or run.measured(parameter.needs)
 
 
 def _flown(problem: Problem, beta: Array, manoeuvre: Manoeuvre) -> Run | None:
