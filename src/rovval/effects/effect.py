@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from math import nextafter
 from types import MappingProxyType
 from typing import Literal, get_args
 
@@ -111,6 +112,11 @@ class Parameter:
     def places(self) -> bool:
         """Whether it only places an effect in time or space: it has no null value of its own, and is no departure."""
         return self.role not in SIZES
+
+    def within(self, value: float) -> float:
+        """The value, or the bound that it is beyond; short of a bound at which a parameter that stands in a channel's place would be none."""
+        high = nextafter(self.high, self.low) if self.instead_of and self.high == self.null else self.high
+        return min(max(value, self.low), high)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from diagnose_case import posed, without
 
-from rovval.diagnose.hypotheses.spectrum import spectral_lines, wave_periods
+from rovval.diagnose.hypotheses.spectrum import oscillation, spectral_lines, wave_periods
 from rovval.diagnose.inference.map_fit import map_fit
 
 
@@ -34,4 +34,15 @@ def test_a_vehicle_under_way_meets_waves_at_another_period_than_theirs(period, d
 
 def test_a_healthy_log_has_no_line():
     p, _ = posed()
-    assert max((share for _, share in spectral_lines(p, map_fit(p, p.origin, ()))), default=0.0) < 0.1
+    point = map_fit(p, p.origin, ())
+    assert max((share for _, share in spectral_lines(p, point)), default=0.0) < 0.1
+    assert oscillation(p, point) is None
+
+
+def test_a_sea_of_several_trains_is_a_narrow_band_and_a_drag_is_none():
+    sea = "waves:amplitude=0.7,period=6.0,direction=1.0,cosine_2=0.5,period_2=6.6,sine_3=0.5,period_3=5.4"
+    p, _ = posed((sea,))
+    found = oscillation(p, map_fit(p, p.origin, ()))
+    assert found is not None and found.period == pytest.approx(6.0, rel=0.15) and found.share > 0.6
+    p, _ = posed(("quadratic_drag[surge]:scale=1.5",))
+    assert oscillation(p, map_fit(p, p.origin, ())) is None

@@ -83,3 +83,13 @@ def test_a_refit_under_wider_priors_is_the_fit_under_these():
     assert again.predicted_cost() == pytest.approx(anew.predicted_cost(), rel=0.02)
     assert again.predicted_cost() < healthy.predicted_cost()
     assert abs(again.beta[freed] - p.origin[freed]) > abs(healthy.beta[freed] - p.origin[freed])
+
+
+def test_a_seabed_that_is_fitted_away_is_no_reason_to_stop():
+    """At its bound it would be none, and without one, and without an altitude, ground effect is refused."""
+    problem, _ = posed()
+    beta, slots = problem.origin.copy(), problem.plant.hypotheses["ground_effect"]
+    for s in slots:
+        parameter = problem.plant.slots[s].parameter
+        beta[s] = parameter.within(np.inf) if parameter.name == "seabed" else parameter.within(parameter.null + parameter.typical)
+    assert np.isfinite(map_fit(problem, beta, slots, rounds=1).cost())

@@ -114,6 +114,15 @@ def test_a_formula_that_helps_little_is_not_offered() -> None:
     assert "a force in pitch that nothing in the library explains; it varies with pitch angle." in said and "formula" not in said
 
 
+def test_what_is_steady_and_what_comes_and_goes_are_told_as_such() -> None:
+    """"It varies with constant", and of a seaway not a word, in a log of an outside plant."""
+    left = {"axes": ["heave"], "depends_on": ["constant", "u"], "oscillation": {"period_s": 5.38, "share": 0.71}}
+    said = sentence(diagnosis(left=left))
+    assert "explains; part of it is steady; it varies with u; 71 % of its square comes and goes in a narrow band about 5.4 s, as in a seaway" in said
+    open_gap = null(0.1, 0.1, verdict="unknown", left={**left, "accounted": 0.1})
+    assert "is shown to be the rest; 71 % of its square comes and goes in a narrow band about 5.4 s, as in a seaway." in sentence(open_gap)
+
+
 @pytest.mark.parametrize(
     ("likely", "said", "then"),
     [

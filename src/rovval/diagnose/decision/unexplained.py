@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from rovval.core.data import Array
 from rovval.diagnose.criteria import OUT_OF_TOLERANCE
+from rovval.diagnose.hypotheses.spectrum import Oscillation, oscillation
 from rovval.diagnose.inference.gap import calibrated_by_part, floor_losses, share_left, weighted_errors
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
@@ -47,6 +48,7 @@ class Unexplained:
         departed: coefficient furthest beyond its tolerance and its standardised departure; None where none is.
         inconstant: effects that come near, but whose value would have to change along the log.
         goes_with: (effect, covariate): the size of a cause, or of what comes near to one, and what it changes with; None where none does.
+        oscillation: the narrow band of periods in which most of it comes and goes; None where there is none.
         accounted: of an open gap, the share (1) of it, or of what the causes leave of it, that noise and tolerance account for; None where a force, a
             coefficient or an effect is surely at work.
     """
@@ -57,6 +59,7 @@ class Unexplained:
     departed: tuple[str, float] | None = None
     inconstant: tuple[str, ...] = ()
     goes_with: tuple[str, str] | None = None
+    oscillation: Oscillation | None = None
     accounted: float | None = None
 
 
@@ -78,13 +81,13 @@ def unexplained(
     departures = zip(point.columns[point.effect_count :], point.standardised_departures(), strict=True)
     beyond = [(problem.plant.slots[c].key, float(z)) for c, z in departures if abs(z) > OUT_OF_TOLERANCE]
     departed = max(beyond, key=lambda one: abs(one[1]), default=None)
-    return Unexplained(axes, depends, forces.held_out_gain(problem.folds), departed, tuple(inconstant), goes_with)
+    return Unexplained(axes, depends, forces.held_out_gain(problem.folds), departed, tuple(inconstant), goes_with, oscillation(problem, point))
 
 
-def unexplained_by_any(problem: Problem, accounted: float, residuals: list[Array]) -> Unexplained:
-    """A gap that goes with nothing that was logged: the axis of its largest part. ``residuals`` are the nominal vehicle's, or with the causes that are named;
-    noise and tolerance account for a share ``accounted`` of it."""
-    return Unexplained((_largest_part(problem, residuals),), accounted=accounted)
+def unexplained_by_any(problem: Problem, accounted: float, residuals: list[Array], point: Posterior) -> Unexplained:
+    """A gap that goes with nothing that was logged: the axis of its largest part. ``residuals`` are the nominal vehicle's, or with the causes that are named,
+    which were fitted at ``point``; noise and tolerance account for a share ``accounted`` of it."""
+    return Unexplained((_largest_part(problem, residuals),), oscillation=oscillation(problem, point), accounted=accounted)
 
 
 def _largest_part(problem: Problem, residuals: list[Array]) -> str:

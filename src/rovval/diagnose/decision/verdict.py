@@ -107,7 +107,7 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
     inconstant = [h.name for h in best.causes] if belief.varying > 0.5 * belief.unexplained else []
     goes_with = varies[best.names].goes_with if inconstant else None
     if belief.unexplained > max(belief.healthy, belief.causes) and evidence <= 0.0 and not inconstant:
-        return replace(found, verdict="unknown", unexplained=unexplained_by_any(problem, known.share, residuals))
+        return replace(found, verdict="unknown", unexplained=unexplained_by_any(problem, known.share, residuals, selection.healthy))
     return replace(found, verdict="unknown", unexplained=unexplained(problem, nominal_forces(problem), selection.healthy, inconstant, goes_with))
 
 
@@ -172,7 +172,7 @@ def _named(
     if something_beside(evidence, varying):
         rest = unexplained(problem, beside, fit.posterior, goes_with=varying.goes_with)
     elif left > 1.0:
-        rest = unexplained_by_any(problem, 1.0 / left, corrected_residuals(problem, fit.beta))
+        rest = unexplained_by_any(problem, 1.0 / left, corrected_residuals(problem, fit.beta), fit.posterior)
     return replace(
         found,
         verdict="partly_explained" if rest else "explained",

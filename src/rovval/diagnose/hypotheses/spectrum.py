@@ -26,6 +26,7 @@ VELOCITY = ("u", "v", "w")
 TIME_CONSTANT_S = 3.0  # s, of the body: a third of a window of 10 s (`windows`)
 PER_TURN = 3.0  # frequencies tried for each one turn over the log: neighbours are a third of a turn apart at its end
 PER_PERIOD = 10.0  # samples of the shortest period
+BAND = 1.3  # times a frequency, and the same below it: most of a seaway (JONSWAP, DNV 2010, 3.5.5), and of white noise 41 % at the highest frequency
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +57,34 @@ def spectral_lines(problem: Problem, point: Posterior) -> tuple[tuple[float, flo
     share = np.array([_share(runs, 2.0 * np.pi * rate) for rate in rates])
     tops = [i for i in range(1, len(rates) - 1) if share[i - 1] < share[i] >= share[i + 1]]
     return tuple((1.0 / float(rates[i]), float(share[i])) for i in sorted(tops, key=lambda i: -share[i]))
+
+
+@dataclass(frozen=True, slots=True)
+class Oscillation:
+    """What comes and goes: the middle ``period`` (s) of the narrow `BAND` that holds most of the squared residual velocities, and its ``share`` (1) of them."""
+
+    period: float
+    share: float
+
+
+def oscillation(problem: Problem, point: Posterior) -> Oscillation | None:
+    """The narrow band in which most of the squared residual velocities at ``point`` lie, as in a seaway (Longuet-Higgins 1984) and not of a slow or a sudden
+    force; None where they do not, or where a log lacks a velocity.
+
+    Frequencies are whole turns over the log, which are independent, from half a turn a window on: what is slower is a steady force there.
+    """
+    runs = _velocities(problem, point)
+    if not runs:
+        return None
+    seconds, window = _duration(runs), problem.runs[0].steps * problem.runs[0].run.dt
+    rates = np.arange(1.0, seconds / SHORTEST_PERIOD_S) / seconds
+    summed = np.concatenate([[0.0], np.cumsum([_share(runs, 2.0 * np.pi * rate) for rate in rates])])
+    middle = rates[(rates > 0.5 / window) & (BAND * rates < rates[-1])]
+    if not len(middle) or summed[-1] <= 0.0:
+        return None
+    share = (summed[np.searchsorted(rates, BAND * middle, side="right")] - summed[np.searchsorted(rates, middle / BAND)]) / summed[-1]
+    best = int(np.argmax(share))
+    return Oscillation(1.0 / float(middle[best]), float(share[best])) if share[best] > 0.5 else None
 
 
 def wave_periods(

@@ -167,6 +167,5 @@ def _clipped(problem: Problem, point: Posterior, step: Array) -> Array:
     """The step, stopped at the parameters' bounds (a parameter that rests there is reported as such)."""
     trial = point.beta.copy()
     for slot, own in zip(point.columns, step, strict=True):
-        parameter = problem.plant.slots[slot].parameter
-        trial[slot] = min(max(point.beta[slot] + own, parameter.low), parameter.high)
+        trial[slot] = problem.plant.slots[slot].parameter.within(point.beta[slot] + own)
     return trial

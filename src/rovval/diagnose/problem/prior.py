@@ -35,7 +35,7 @@ def prior_mean(parameter: Parameter, runs: Sequence[Windows], otherwise: float) 
         return otherwise
     z = np.concatenate([part.depths() for part in runs])
     mean = float(z.max()) + PRIOR_WIDTH * parameter.typical if parameter.role == "bottom" else float(np.median(z))
-    return min(max(mean, parameter.low), parameter.high)
+    return parameter.within(mean)
 
 
 def loosened_by_closed_loop(prior: Prior, plant: Plant, gain: Mapping[str, float]) -> Prior:

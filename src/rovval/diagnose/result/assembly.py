@@ -36,6 +36,7 @@ from rovval.diagnose.result.diagnosis import (
     Indications,
     LogRemark,
     NotTestable,
+    Oscillation,
     Probabilities,
     Reduction,
     Score,
@@ -186,9 +187,10 @@ def _unexplained(rest: Rest | None) -> Unexplained | None:
         return None
     departed = Departure(coefficient=rest.departed[0], departure=rest.departed[1]) if rest.departed else None
     goes_with = Dependence(effect=rest.goes_with[0], covariate=rest.goes_with[1]) if rest.goes_with else None
+    swings = Oscillation(period_s=rest.oscillation.period, share=rest.oscillation.share) if rest.oscillation else None
     return Unexplained(
         axes=rest.axes, depends_on=rest.depends_on, share=rest.share, departed=departed, inconstant=rest.inconstant, goes_with=goes_with,
-        accounted=rest.accounted,
+        oscillation=swings, accounted=rest.accounted,
     )  # fmt: skip
 
 

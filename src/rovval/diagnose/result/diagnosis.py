@@ -232,6 +232,13 @@ class Dependence(Record):
     covariate: str = Field(description="what it changes with")
 
 
+class Oscillation(Record):
+    """A narrow band of periods."""
+
+    period_s: float = Field(description="its middle, s")
+    share: float = Field(description="its share of the squared residual velocities")
+
+
 class Unexplained(Record):
     """What the causes leave unexplained; all of the gap where none is named."""
 
@@ -241,6 +248,7 @@ class Unexplained(Record):
     departed: Departure | None = Field(default=None, description="coefficient furthest beyond its tolerance, where one is")
     inconstant: tuple[str, ...] = Field(default=(), description="effects that come near, but whose value would change along the log")
     goes_with: Dependence | None = Field(default=None, description="cause, or what comes near to one, of which the size changes with something that was logged")
+    oscillation: Oscillation | None = Field(default=None, description="the narrow band of periods in which most of it comes and goes, as in a seaway")
     accounted: float | None = Field(
         default=None,
         description="share of the gap, or of what causes leave of it, that noise and tolerance account for, where that is so little that it stays open; "

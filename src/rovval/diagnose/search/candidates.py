@@ -210,7 +210,7 @@ def start_of(problem: Problem, data: NormalEquations, h: Hypothesis, steps: Arra
             parameter = problem.plant.slots[slot].parameter
             if parameter.role == "amplitude" and start[slot] + move < parameter.low:
                 start, move = _half_a_turn_later(problem, h, start), -move
-            start[slot] = float(np.clip(start[slot] + move, parameter.low, parameter.high))
+            start[slot] = parameter.within(start[slot] + move)
     return start
 
 

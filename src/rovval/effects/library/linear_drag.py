@@ -33,7 +33,7 @@ EFFECT = Effect(
         Parameter(
             "scale", "1", -0.95, 9.0, 0.0, 0.3, "published BlueROV2 surge values run from 4 (Wu 2018) to 14 N s/m (von Benzon 2022)",
             vanishes_at="low",
-            tolerance=Tolerance(_tolerance, "the calibration tolerance, and how much of a drag that is known as a whole is linear (chosen)", loop_gain=1.0),
+            tolerance=Tolerance(_tolerance, "the calibration tolerance, and how much of a drag that is known as a whole is linear (chosen)", loop_gain=2.0),
         ),
     ),
     per="axis",

@@ -9,6 +9,7 @@ from rovval.report.diagnosis.sentences.plain import falls, remaining, titled
 from rovval.report.diagnosis.sentences.words import parameter, sensor_tolerance
 
 NOISE = "sensor noise"
+STEADY = "constant"  # of the generic forces, the one that depends on nothing
 WORTH_A_FORMULA = 0.95  # of the rms error: a formula that leaves more of it helps nobody (chosen)
 
 
@@ -109,7 +110,10 @@ def _axes(d: Diagnosis, left: Unexplained) -> list[str]:
 
 def _force(d: Diagnosis, left: Unexplained) -> str:
     text = f"a force in {listed(_axes(d, left))} that nothing in the library explains"
-    text += f"; it varies with {listed(left.depends_on)}" if left.depends_on else ""
+    varies = [name for name in left.depends_on if name != STEADY]
+    text += "; part of it is steady" if STEADY in left.depends_on else ""
+    text += f"; it varies with {listed(varies)}" if varies else ""
+    text += _swings(left)
     if d.causes and left.goes_with:
         text += f", and the size of {titled(left.goes_with.effect)} with {left.goes_with.covariate}"
     return text + (f", and with a formula for it the error {falls(left.share)}" if remaining(left.share) <= WORTH_A_FORMULA else "")
@@ -120,10 +124,17 @@ def _open(d: Diagnosis, accounted: float) -> str:
     found, beyond, whole = d.detection, "", "what the causes leave" if d.causes else "the squared gap"
     if found and not d.causes and accounted < found.noise + found.tolerance_share - 1e-9:  # the tolerances were overdrawn: they were not counted
         beyond = f" (for {per_cent(found.tolerance_share)} if a coefficient were {found.largest_departure:.1f} times its tolerance off)"
+    swings = _swings(d.left) if d.left else ""
     return (
-        f"{known(d)} account for only {per_cent(accounted)} of {whole}{beyond}; no effect of the library and no smooth force is shown to be the rest. "
+        f"{known(d)} account for only {per_cent(accounted)} of {whole}{beyond}; no effect of the library and no smooth force is shown to be the rest{swings}. "
         f"It may be a disturbance{_largest(d)}, an effect that comes and goes, or motion that this log shows too little of"
     )
+
+
+def _swings(left: Unexplained) -> str:
+    """The period of what comes and goes in one narrow band."""
+    band = left.oscillation
+    return f"; {per_cent(band.share)} of its square comes and goes in a narrow band about {number(band.period_s, 2)} s, as in a seaway" if band else ""
 
 
 def _largest(d: Diagnosis) -> str:
