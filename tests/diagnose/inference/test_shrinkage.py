@@ -12,7 +12,7 @@ from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.inference.gap import squared_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, fit_hypothesis, held_out_linearisations
-from rovval.diagnose.inference.shrinkage import GapReduction, shrinkage, worsened_axes
+from rovval.diagnose.inference.shrinkage import GapReduction, form_error, shrinkage, worsened_axes
 from rovval.diagnose.problem.problem import Problem, corrected_residuals, pose
 from rovval.diagnose.residuals.normal_equations import normal_equations
 from rovval.diagnose.residuals.nuisances import initial_state_sd
@@ -60,3 +60,9 @@ def test_nothing_fitted_shrinks_nothing_and_a_worse_axis_is_named():
     problem, _ = fitted("cg_offset", "", 7)
     assert shrinkage(problem, None, [], 0) == GapReduction(0.0, 0.0, 0.0, 0.0, {}, {}, held_out=True)
     assert worsened_axes(GapReduction(axes={"surge": 0.4, "yaw": -0.051, "roll": -0.049})) == {"yaw": 0.051}
+
+
+def test_a_cause_that_closes_a_fifth_of_what_others_leave_may_as_well_be_their_form_error():
+    likely = [form_error(beyond) for beyond in (0.1, 0.5, 0.787, 0.95, 1.0, 2.0)]
+    assert likely == sorted(likely) and likely[0] < 0.01 and likely[2] == pytest.approx(0.5, abs=0.01)
+    assert likely[-2:] == [1.0, 1.0]

@@ -24,6 +24,7 @@ def test_only_what_turns_about_a_steadied_axis_is_loosened():
     }
     by_key = {plant.slots[s].key: loose.sd[s] / tight.sd[s] for s in tight.sd}
     assert by_key["cg_offset.z"] == pytest.approx(4.0) and by_key["cg_offset.x"] == by_key["cg_offset.y"] == pytest.approx(2.0)
+    assert by_key["linear_drag[roll].scale"] == pytest.approx(16.0) and by_key["quadratic_drag[roll].scale"] == pytest.approx(4.0)
     assert replace(tight).sd == tolerance_prior(plant, 0.05).sd, "nothing was changed in place"
 
 

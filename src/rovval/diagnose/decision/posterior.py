@@ -39,7 +39,7 @@ from rovval.diagnose.criteria import (
 )
 from rovval.diagnose.decision.as_calibrated import odds_as_calibrated
 from rovval.diagnose.decision.constancy import Variation
-from rovval.diagnose.decision.resemblance import Left, form_error, looks_only_alike
+from rovval.diagnose.decision.resemblance import Left, looks_like_form_error, looks_only_alike
 from rovval.diagnose.effort import NEGLIGIBLE
 from rovval.diagnose.search.model import Model, Names, best_of_each_set
 
@@ -249,7 +249,7 @@ def _move_form_errors(share: dict[tuple[str, Names], float], best: Mapping[Names
     for size in range(_most(share), 1, -1):
         for names in dict.fromkeys(names for kind, names in share if kind in CAUSES and len(names) == size):
             least = _least(names, best, left)
-            part = form_error(least, names, left)
+            part = looks_like_form_error(least, names, left)
             for kind in (kind for kind in CAUSES if (kind, names) in share):
                 moved, fewer = share[kind, names] * part, (kind, names - {least})
                 share[kind, names] -= moved

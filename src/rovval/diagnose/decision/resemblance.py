@@ -34,7 +34,6 @@ from rovval.core.data import Array
 from rovval.diagnose.criteria import (
     CAUSES_LEAVE,
     FORM_ALIKE,
-    FORM_LEAVES,
     FURTHER_CAUSE,
     HEALTHY_GAP,
     LIBRARY_ALIKE,
@@ -43,11 +42,10 @@ from rovval.diagnose.criteria import (
     SHOWS_BESIDE,
 )
 from rovval.diagnose.inference.gap import TINY, calibrated_by_part, errors_by_part, noise_by_part, tolerated_by_part
-from rovval.diagnose.inference.shrinkage import explainable_left
+from rovval.diagnose.inference.shrinkage import NOTHING_LEFT, explainable_left, form_error
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.search.model import Model, Names
 
-NOTHING_LEFT = 1e-3  # share of the gap: rounding of a ratio to what is left
 FALLS = np.array([1.0, 3.0, 10.0, 30.0])  # means of an exponential: where its integral is cut into parts
 NODES = 40  # of the integral over each part
 
@@ -105,7 +103,7 @@ def gap_left(problem: Problem, models: Iterable[Model]) -> Left:
             acting[names] = gap.left_where_it_acts(fit.parts)
             if gap.calibrated:
                 grown[names] = gap.grown(fit.parts)
-        shares[names] = np.minimum(np.maximum(share, NOTHING_LEFT), shares.get(names, np.inf))
+        shares[names] = np.minimum(share, shares.get(names, np.inf))
     return Left(shares, acting, grown, axes)
 
 
@@ -164,17 +162,11 @@ def looks_only_alike(names: Names, left: Left | None, beside: bool = False, as_c
     return none * alike / total, as_calibrated * alike / total
 
 
-def form_error(name: str, names: Names, left: Left | None) -> float:
+def looks_like_form_error(name: str, names: Names, left: Left | None) -> float:
     """Probability that the cause ``name`` of ``names`` is the form error of the others; by the priors alone where nothing is known of what they leave."""
-    odds = FORM_ALIKE / FURTHER_CAUSE
     if left is None:
-        return odds / (odds + 1.0)
-    beyond = float(np.min(left.beyond(name, names)))
-    if beyond >= 1.0:
-        return 1.0
-    freedom = FORM_LEAVES / (1.0 - FORM_LEAVES)  # Beta(a, 1), of mean a / (a + 1)
-    odds *= freedom * float(beyond ** (freedom - 1.0))
-    return odds / (odds + 1.0)
+        return FORM_ALIKE / (FORM_ALIKE + FURTHER_CAUSE)
+    return form_error(float(np.min(left.beyond(name, names))))
 
 
 def _densities(left: float, healthy: float, density: Callable[[Array], Array]) -> tuple[float, float]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from rovval.core.data import Array
 from rovval.core.large_arrays import taken
-from rovval.diagnose.criteria import MATERIAL
+from rovval.diagnose.criteria import FORM_ALIKE, FORM_LEAVES, FURTHER_CAUSE, MATERIAL
 from rovval.diagnose.effort import MOST_REFITS
 from rovval.diagnose.inference.bootstrap import shrinkage_interval
 from rovval.diagnose.inference.gap import explainable_gap, floor_losses, squared_errors
@@ -27,6 +27,8 @@ from rovval.diagnose.residuals.sensitivities import linearise
 from rovval.diagnose.windows.windows import Windows
 
 T = TypeVar("T")
+NOTHING_LEFT = 1e-3  # share of the gap: rounding of a ratio to what is left
+
 
 @dataclass(frozen=True, slots=True)
 class AxisInterval:
@@ -34,6 +36,8 @@ class AxisInterval:
 
     low: float
     high: float
+
+NOTHING_LEFT = 1e-3  # share of the gap: rounding of a ratio to what is left
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,9 +90,19 @@ def shrinkage_of(problem: Problem, loss: Array, after: list[Array], before: list
 
 def explainable_left(problem: Problem, losses: Sequence[Array]) -> list[Array]:
     """Share (2,) of the squared error above noise that each of ``losses`` (2,) is, above 1 where it is more than all: of the dynamics alone, and of these
-    with the parity residuals. All of it where there is no error above noise that could be taken away."""
+    with the parity residuals; next to none (`NOTHING_LEFT`) at least. All of it where there is no error above noise that could be taken away."""
     before, floor = explainable_gap(problem), floor_losses(problem)
-    return [np.asarray(np.divide(loss - floor, before, out=np.ones(2), where=before > 0.0)) for loss in losses]
+    return [np.maximum(np.divide(loss - floor, before, out=np.ones(2), where=before > 0.0), NOTHING_LEFT) for loss in losses]
+
+
+def form_error(beyond: float) -> float:
+    """Probability that one more cause is the form error of others, by the share (1) that it leaves ``beyond`` them of what they leave of held-out windows: beta
+    distributed about `FORM_LEAVES` and densest at all of it, where a cause of its own leaves any share alike."""
+    if beyond >= 1.0:
+        return 1.0
+    freedom = FORM_LEAVES / (1.0 - FORM_LEAVES)  # Beta(a, 1), of mean a / (a + 1)
+    odds = FORM_ALIKE / FURTHER_CAUSE * freedom * beyond ** (freedom - 1.0)
+    return float(odds / (odds + 1.0))
 
 
 def worsened_axes(reduction: GapReduction) -> dict[str, float]:

@@ -1,7 +1,8 @@
 """Forward search over sets of causes: the most probable set is extended by one cause at a time, and its causes are then weighed beside each other.
 
 Every model that is fitted is kept with its evidence and its prior mass; which of them is believed is decided elsewhere (`decision`). The search only has
-to meet the probable ones. It goes one cause beyond the best set, since of two causes that offset each other neither explains the logs alone.
+to meet the probable ones. It goes one cause beyond the best set, since of two causes that offset each other neither explains the logs alone, and one beyond a
+cause that is more likely the form error of the others than not.
 """
 
 from __future__ import annotations
@@ -12,10 +13,12 @@ from math import log
 
 import numpy as np
 
+from rovval.diagnose.criteria import EVEN_ODDS
 from rovval.diagnose.effort import MOST_CAUSES, NEGLIGIBLE, SETS_WEIGHED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import refit_healthy
+from rovval.diagnose.inference.shrinkage import explainable_left, form_error
 from rovval.diagnose.problem.cross_validation import FoldSums, compare_held_out
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.ridge import Prior
@@ -74,7 +77,7 @@ def search(
     """
     prior = ModelPrior.of(library)
     best = front = Model((), None, laplace_evidence(problem, healthy), prior.log_mass(()))
-    models, tried, onset = [best], list[list[Candidate]](), None
+    models, tried, onset, doubted = [best], list[list[Candidate]](), None, False
     for number in range(most):
         progress(f"adding each of {len(initialised)} hypotheses to {number} causes", 0.7 - 0.4 * 0.7**number)
         found, suspected = _extended(problem, prior, initialised, front, healthy, best.log_posterior + log(NEGLIGIBLE))
@@ -84,9 +87,10 @@ def search(
         tried.append(found)
         added = settled(problem, [_model(prior, front, c) for c in found], 1)
         models += added
-        front = max(added, key=lambda m: m.log_posterior)
+        before, front = front, max(added, key=lambda m: m.log_posterior)
         best = max(best, front, key=lambda m: m.log_posterior)
-        if front.log_posterior < best.log_posterior + log(NEGLIGIBLE) or len(front.causes) > len(best.causes) + 1:
+        before_doubted, doubted = doubted, _looks_like_form_error(problem, before, front)
+        if front.log_posterior < best.log_posterior + log(NEGLIGIBLE) or len(front.causes) > len(best.causes) + 1 or (doubted and before_doubted):
             break
     progress("weighing the causes beside each other", 0.7)
     healthy, models, best = _reconsidered(problem, prior, healthy, models, best, tried)
@@ -108,6 +112,15 @@ def _extended(
     if not any(h.evident or promised[h.label] > needed[h.label] for h in open_now):
         return [], onset
     return [c for c in candidates(problem, data, open_now, promised, needed, baseline, chosen) if plausible(problem, c)], onset
+
+
+def _looks_like_form_error(problem: Problem, before: Model, after: Model) -> bool:
+    """Whether the last cause of a model leaves so much of what the model ``before`` it leaves of held-out windows that it is rather the form error of that."""
+    left = [np.array([fit.dynamics_loss.sum(), fit.loss.sum()]) for fit in (before.fit, after.fit) if fit]
+    if len(left) < 2:
+        return False
+    without, beside = (float(share.min()) for share in explainable_left(problem, left))
+    return form_error(beside / without) > EVEN_ODDS
 
 
 def _model(prior: ModelPrior, front: Model, one: Candidate) -> Model:
