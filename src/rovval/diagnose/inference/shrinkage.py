@@ -37,8 +37,6 @@ class AxisInterval:
     low: float
     high: float
 
-NOTHING_LEFT = 1e-3  # share of the gap: rounding of a ratio to what is left
-
 
 @dataclass(frozen=True, slots=True)
 class GapReduction:
