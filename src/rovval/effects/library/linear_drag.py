@@ -12,7 +12,7 @@ from rovval.effects.effect import TOGETHER, Effect, Parameter, Tolerance
 from rovval.effects.lanes import Array, Lanes, drag_departure, drag_tolerances
 from rovval.vehicle.model import Vehicle
 
-STEADIED = 2.0  # power of (1 + loop gain): under an autopilot it is the thrusters that damp what a disturbance moves, and the hull's own damping shows as little
+STEADIED = 2.0  # power of (1 + loop gain): under an autopilot the thrusters damp what a disturbance moves, and the hull's own damping shows as little
 # as the variance of the replay is large (healthy BlueROV2s of an outside plant: by 0.3 N m s/rad off, 2 to 3 standard deviations with 1, and one with 2)
 
 
