@@ -198,7 +198,8 @@ def _extrapolated(records: Sequence[Record], vehicle: Vehicle) -> tuple[tuple[st
 def _left(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unknown], model: str, by: Sequence[Estimate]) -> dict[str, float]:
     """Errors by channel that the calibrations ``by`` leave of one run each, in windows: on a log that it has not seen a vehicle shows those of a prediction."""
     each = [_problem((one,), vehicle, chosen, model).residuals(e.values)[0] for one, e in zip(records, by, strict=True)]
-    return kept(rms(each, [one.ok & np.isfinite(r) for one, r in zip(records, each, strict=True)]))
+    ok = [one.ok & np.isfinite(r) for one, r in zip(records, each, strict=True)]
+    return kept(rms(each, ok), [rms([r], [k]) for r, k in zip(each, ok, strict=True)])
 
 
 def _speed(one: Record) -> Array:

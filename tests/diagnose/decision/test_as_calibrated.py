@@ -9,13 +9,13 @@ import pytest
 from diagnose_case import merlin, posed
 from scipy import integrate
 
-from rovval.diagnose.criteria import PRIOR_CAUSES, PRIOR_HEALTHY, PRIOR_SOMETHING_ELSE
+from rovval.diagnose.criteria import CALIBRATED_SPREAD, PRIOR_CAUSES, PRIOR_HEALTHY, PRIOR_SOMETHING_ELSE
 from rovval.diagnose.decision.as_calibrated import odds_as_calibrated
 from rovval.diagnose.decision.open_gap import open_gap
 from rovval.diagnose.decision.posterior import probabilities
 from rovval.diagnose.decision.resemblance import Left, gap_left
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
-from rovval.diagnose.inference.gap import calibrated_by_part, errors_by_part, noise_by_part
+from rovval.diagnose.inference.gap import calibrated_by_part, errors_by_part, noise_by_part, spread_as_calibrated
 from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
 from rovval.diagnose.inference.map_fit import healthy_fit
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
@@ -34,7 +34,7 @@ def remembering(problem: Problem, error: dict[str, float]) -> Problem:
 
 
 def test_without_a_calibration_nothing_is_as_it_was():
-    assert odds_as_calibrated((), PRIOR_CAUSES) == odds_as_calibrated((), PRIOR_SOMETHING_ELSE) == 0.0
+    assert odds_as_calibrated((), PRIOR_CAUSES, 0.7) == odds_as_calibrated((), PRIOR_SOMETHING_ELSE, 0.7) == 0.0
     problem, _ = posed(("inflow_loss:loss=0.3",))
     assert not any(calibrated_by_part(problem).values()) and gap_left(problem, []).grown == {}
 
@@ -42,18 +42,18 @@ def test_without_a_calibration_nothing_is_as_it_was():
 def test_the_odds_are_a_ratio_of_two_distributions():
     """Over sizes from what there was on, both densities integrate to what lies there: half of a log-normal, all of a log-logistic."""
     prior = PRIOR_HEALTHY / PRIOR_CAUSES
-    found, _ = integrate.quad(lambda size: odds_as_calibrated((size,), PRIOR_CAUSES) / prior / size**2, 1.0, 60.0)
+    found, _ = integrate.quad(lambda size: odds_as_calibrated((size,), PRIOR_CAUSES, 0.7) / prior / size**2, 1.0, 60.0)
     assert found == pytest.approx(0.5, abs=1e-6)
 
 
 def test_a_gap_as_large_as_it_was_is_the_vehicle_and_a_larger_one_is_not():
-    odds = [odds_as_calibrated((grown,), PRIOR_CAUSES) for grown in (0.3, 1.0, 2.0, 8.0, 30.0)]
+    odds = [odds_as_calibrated((grown,), PRIOR_CAUSES, 0.7) for grown in (0.3, 1.0, 2.0, 8.0, 30.0)]
     assert odds[0] == odds[1] > 0.5 > odds[3] > odds[4] and odds[3] < 0.2 and odds[4] < 1e-3
-    assert odds_as_calibrated((1.0,), PRIOR_SOMETHING_ELSE) > 5.0 * odds[1]  # of which there was less beforehand
+    assert odds_as_calibrated((1.0,), PRIOR_SOMETHING_ELSE, 0.7) > 5.0 * odds[1]  # of which there was less beforehand
 
 
 def test_something_else_is_at_work_on_one_axis_though_the_others_are_as_they_were():
-    still, one, more = (odds_as_calibrated((1.0, 1.0, size, 1.0), PRIOR_SOMETHING_ELSE) for size in (1.0, 8.0, 50.0))
+    still, one, more = (odds_as_calibrated((1.0, 1.0, size, 1.0), PRIOR_SOMETHING_ELSE, 0.7) for size in (1.0, 8.0, 50.0))
     assert still > one > 1.0 > 0.1 > more
 
 
@@ -98,8 +98,18 @@ def test_errors_are_kept_by_channel_and_read_again():
     residuals[0][..., 0], residuals[1][..., 0], residuals[0][..., 7] = 0.1, 0.3, 0.2
     ok = [np.ones((2, 3, 10), dtype=bool), np.ones((1, 3, 10), dtype=bool)]
     ok[1][..., 7] = False
-    found = fitted_errors(merlin().model_copy(update={"calibration": kept(rms(residuals, ok)) | {"thrust.gain": 0.1}}))
+    found = fitted_errors(merlin().model_copy(update={"calibration": kept(rms(residuals, ok), []) | {"thrust.gain": 0.1}}))
     assert found["u"] == pytest.approx(np.sqrt((2 * 0.1**2 + 0.3**2) / 3), rel=1e-3) and found["phi"] == pytest.approx(0.2)
     assert found["w"] == 0.0 and "thrust.gain" not in found
 
 
+
+
+def test_runs_that_differ_little_among_themselves_say_that_one_more_differs_little():
+    """Of two runs whose squared errors differ by a factor of e squared in every channel, and of four that hardly do, beside one that says nothing of it."""
+    two = kept({"u": 0.1, "r": 0.2}, [{"u": 0.1, "r": 0.2}, {"u": 0.1 * np.e, "r": 0.2 * np.e}])
+    alike = kept({"u": 0.1}, [{"u": 0.1}, {"u": 0.101}, {"u": 0.1}, {"u": 0.099}])
+    one, wide, narrow = (spread_as_calibrated(merlin().model_copy(update={"calibration": c})) for c in (kept({"u": 0.1}, [{"u": 0.1}]), two, alike))
+    assert one == CALIBRATED_SPREAD and set(fitted_errors(merlin().model_copy(update={"calibration": two}))) == {"u", "r"}
+    assert wide == pytest.approx(np.sqrt((CALIBRATED_SPREAD**2 + 1.5 * 2.0) / 2.0), rel=1e-3)
+    assert narrow == pytest.approx(CALIBRATED_SPREAD / 2.0, rel=0.01)

@@ -1,8 +1,8 @@
 """The vehicle as it was calibrated: what its equations left of the logs that it was calibrated on, they leave of every other, and no cause is new in that.
 
 What is left goes with the motion, so that causes of the library explain a part of it, surely and on every log. A cause that came since then makes the gap
-larger than it was where the cause acts. How much larger it is, of squared errors above noise, is log-normal about 1 where nothing came (`CALIBRATED_SPREAD`),
-and else log-logistic of median 1 beyond it: as much as there was, or any.
+larger than it was where the cause acts. How much larger it is, of squared errors above noise, is log-normal about 1 where nothing came, as wide as the
+runs of the calibration differ among themselves, and else log-logistic of median 1 beyond it: as much as there was, or any.
 """
 
 from __future__ import annotations
@@ -10,17 +10,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import exp, log, pi, sqrt
 
-from rovval.diagnose.criteria import CALIBRATED_SPREAD, PRIOR_HEALTHY
+from rovval.diagnose.criteria import PRIOR_HEALTHY
 from rovval.diagnose.inference.gap import TINY
 
 
-def odds_as_calibrated(grown: Sequence[float], other: float) -> float:
+def odds_as_calibrated(grown: Sequence[float], other: float, spread: float) -> float:
     """Odds of a vehicle that is as it was calibrated over another model of prior mass ``other``, by how much the gap has ``grown`` since then, where that model
-    acts, or on each of several axes: it may act on any one of them. None without a calibration."""
-    return PRIOR_HEALTHY / other * len(grown) / sum(1.0 / max(_as_it_was(size), TINY) for size in grown) if grown else 0.0
+    acts, or on each of several axes: it may act on any one of them. ``spread`` is that of a vehicle that is as it was (`gap.spread_as_calibrated`). None
+    without a calibration."""
+    return PRIOR_HEALTHY / other * len(grown) / sum(1.0 / max(_as_it_was(size, spread), TINY) for size in grown) if grown else 0.0
 
 
-def _as_it_was(grown: float) -> float:
+def _as_it_was(grown: float, spread: float) -> float:
     """Ratio of both densities of a gap that is ``grown`` times what it was (1); of one that became smaller as of one that is as it was."""
     size = max(grown, 1.0)
-    return size * exp(-0.5 * (log(size) / CALIBRATED_SPREAD) ** 2) / (CALIBRATED_SPREAD * sqrt(2.0 * pi))
+    return size * exp(-0.5 * (log(size) / spread) ** 2) / (spread * sqrt(2.0 * pi))

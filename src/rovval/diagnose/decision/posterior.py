@@ -186,13 +186,13 @@ def probabilities(
         _leave_what_varies(believed, names, more)
     share, causes = dict(believed), {h.name: h for m in models for h in m.causes}
     for kind, names in believed:
-        grown = left.grown_since(names) if left else ()
+        grown, spread = (left.grown_since(names), left.spread) if left else ((), 1.0)
         if names and kind in (*CAUSES, FORM):
             wanders = all(causes[name].effect.wanders for name in names)
             shows = beside.get(names, -inf) > -inf and not wanders
-            none, as_it_was = looks_only_alike(names, None if wanders else left, shows, odds_as_calibrated(grown, PRIOR_CAUSES))
+            none, as_it_was = looks_only_alike(names, None if wanders else left, shows, odds_as_calibrated(grown, PRIOR_CAUSES, spread))
         elif kind == "else" or kind.startswith(VARYING):
-            odds = odds_as_calibrated(grown, PRIOR_SOMETHING_ELSE)
+            odds = odds_as_calibrated(grown, PRIOR_SOMETHING_ELSE, spread)
             none, as_it_was = 0.0, odds / (1.0 + odds)
         else:
             continue

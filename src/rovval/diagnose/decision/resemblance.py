@@ -32,6 +32,7 @@ from scipy.integrate import fixed_quad
 
 from rovval.core.data import Array
 from rovval.diagnose.criteria import (
+    CALIBRATED_SPREAD,
     CAUSES_LEAVE,
     FORM_ALIKE,
     FURTHER_CAUSE,
@@ -41,7 +42,14 @@ from rovval.diagnose.criteria import (
     PRIOR_SOMETHING_ELSE,
     SHOWS_BESIDE,
 )
-from rovval.diagnose.inference.gap import TINY, calibrated_by_part, errors_by_part, noise_by_part, tolerated_by_part
+from rovval.diagnose.inference.gap import (
+    TINY,
+    calibrated_by_part,
+    errors_by_part,
+    noise_by_part,
+    spread_as_calibrated,
+    tolerated_by_part,
+)
 from rovval.diagnose.inference.shrinkage import NOTHING_LEFT, explainable_left, form_error
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.search.model import Model, Names
@@ -60,12 +68,14 @@ class Left:
         acting: of each set the share that it leaves where it acts, 1 where it closes nothing; and the share that a healthy vehicle is expected to show there.
         grown: of each set how many times the gap where it acts is what the calibration left there; empty without calibration.
         grown_by_axis: the same of each axis, whatever acts there.
+        spread: by how much a vehicle that is as it was calibrated may show so (`gap.spread_as_calibrated`).
     """
 
     shares: Mapping[Names, Array]
     acting: Mapping[Names, tuple[float, float]]
     grown: Mapping[Names, float] = field(default_factory=dict)
     grown_by_axis: tuple[float, ...] = ()
+    spread: float = CALIBRATED_SPREAD
 
     def least(self, which: Callable[[Names], bool]) -> Array:
         """The least (2,) that is left by the sets ``which``; all of the gap where there is none."""
@@ -104,7 +114,7 @@ def gap_left(problem: Problem, models: Iterable[Model]) -> Left:
             if gap.calibrated:
                 grown[names] = gap.grown(fit.parts)
         shares[names] = np.minimum(share, shares.get(names, np.inf))
-    return Left(shares, acting, grown, axes)
+    return Left(shares, acting, grown, axes, spread_as_calibrated(problem.plant.vehicle))
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,10 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.data import Array, Flags
+from rovval.diagnose.criteria import CALIBRATED_SPREAD
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.windows.windows import axis_channels
-from rovval.simulation.fitted_errors import fitted_errors
+from rovval.simulation.fitted_errors import fitted_errors, spread_of_errors
+from rovval.vehicle.model import Vehicle
 
 ANGULAR = ("roll", "pitch", "yaw")
 PARITY = "parity"  # of a relation of the pose, its name behind it
@@ -148,6 +150,15 @@ def calibrated_by_part(problem: Problem) -> dict[str, float]:
         for axis, value in zip(windows.axes, error, strict=True):
             found[axis] = found.get(axis, 0.0) + float(value)
     return found
+
+
+def spread_as_calibrated(vehicle: Vehicle) -> float:
+    """Standard deviation of the logarithm of the squared errors of one more run over those of the ``vehicle``'s calibration, where nothing came since then.
+
+    One degree of freedom is that of other vehicles (`CALIBRATED_SPREAD`), the others are of its own runs and the error of their mean (Gelman et al. 2013, 2.6).
+    """
+    own, runs = spread_of_errors(vehicle)
+    return float(np.sqrt((CALIBRATED_SPREAD**2 + (runs - 1) * (1.0 + 1.0 / runs) * own**2) / runs))
 
 
 def _of_parity(runs: Sequence[Mapping[str, float]]) -> dict[str, float]:
