@@ -107,7 +107,8 @@ def test_errors_are_kept_by_channel_and_read_again():
 
 def test_runs_that_differ_little_among_themselves_say_that_one_more_differs_little():
     """Of two runs whose squared errors differ by a factor of e squared in every channel, and of four that hardly do, beside one that says nothing of it."""
-    two = kept({"u": 0.1, "r": 0.2}, [{"u": 0.1, "r": 0.2}, {"u": 0.1 * np.e, "r": 0.2 * np.e}])
+    more = float(np.exp(1.0))
+    two = kept({"u": 0.1, "r": 0.2}, [{"u": 0.1, "r": 0.2}, {"u": 0.1 * more, "r": 0.2 * more}])
     alike = kept({"u": 0.1}, [{"u": 0.1}, {"u": 0.101}, {"u": 0.1}, {"u": 0.099}])
     one, wide, narrow = (spread_as_calibrated(merlin().model_copy(update={"calibration": c})) for c in (kept({"u": 0.1}, [{"u": 0.1}]), two, alike))
     assert one == CALIBRATED_SPREAD and set(fitted_errors(merlin().model_copy(update={"calibration": two}))) == {"u", "r"}
