@@ -103,8 +103,6 @@ def test_errors_are_kept_by_channel_and_read_again():
     assert found["w"] == 0.0 and "thrust.gain" not in found
 
 
-
-
 def test_runs_that_differ_little_among_themselves_say_that_one_more_differs_little():
     """Of two runs whose squared errors differ by a factor of e squared in every channel, and of four that hardly do, beside one that says nothing of it."""
     more = float(np.exp(1.0))

@@ -186,13 +186,12 @@ def probabilities(
         _leave_what_varies(believed, names, more)
     share, causes = dict(believed), {h.name: h for m in models for h in m.causes}
     for kind, names in believed:
-        grown, spread = (left.grown_since(names), left.spread) if left else ((), 1.0)
         if names and kind in (*CAUSES, FORM):
             wanders = all(causes[name].effect.wanders for name in names)
             shows = beside.get(names, -inf) > -inf and not wanders
-            none, as_it_was = looks_only_alike(names, None if wanders else left, shows, odds_as_calibrated(grown, PRIOR_CAUSES, spread))
+            none, as_it_was = looks_only_alike(names, None if wanders else left, shows, _as_calibrated(left, names, PRIOR_CAUSES))
         elif kind == "else" or kind.startswith(VARYING):
-            odds = odds_as_calibrated(grown, PRIOR_SOMETHING_ELSE, spread)
+            odds = _as_calibrated(left, names, PRIOR_SOMETHING_ELSE)
             none, as_it_was = 0.0, odds / (1.0 + odds)
         else:
             continue
@@ -212,6 +211,11 @@ def probabilities(
         file=share.get(("filed", frozenset()), 0.0), varying=inconstant,
         something_else=(1.0 - missed) * unexplained, not_found=missed * unexplained,
     )  # fmt: skip
+
+
+def _as_calibrated(left: Left | None, names: Names, other: float) -> float:
+    """Odds of a vehicle that is as it was calibrated over a model with these causes, of prior mass ``other``."""
+    return odds_as_calibrated(left.grown_since(names), other, left.spread) if left else 0.0
 
 
 def _log_varying(model: Model, varying: Variation) -> tuple[float, dict[str, float]]:

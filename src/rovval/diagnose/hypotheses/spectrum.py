@@ -54,7 +54,7 @@ def spectral_lines(problem: Problem, point: Posterior) -> tuple[tuple[float, flo
         return ()
     seconds = _duration(runs)
     rates = np.arange(1.0 / (2.0 * seconds), 1.0 / SHORTEST_PERIOD_S, 1.0 / (PER_TURN * seconds))
-    share = np.array([_share(runs, 2.0 * np.pi * rate) for rate in rates])
+    share = _periodogram(runs, rates)
     tops = [i for i in range(1, len(rates) - 1) if share[i - 1] < share[i] >= share[i + 1]]
     return tuple((1.0 / float(rates[i]), float(share[i])) for i in sorted(tops, key=lambda i: -share[i]))
 
@@ -78,7 +78,7 @@ def oscillation(problem: Problem, point: Posterior) -> Oscillation | None:
         return None
     seconds, window = _duration(runs), problem.runs[0].steps * problem.runs[0].run.dt
     rates = np.arange(1.0, seconds / SHORTEST_PERIOD_S) / seconds
-    summed = np.concatenate([[0.0], np.cumsum([_share(runs, 2.0 * np.pi * rate) for rate in rates])])
+    summed = np.concatenate([[0.0], np.cumsum(_periodogram(runs, rates))])
     middle = rates[(rates > 0.5 / window) & (BAND * rates < rates[-1])]
     if not len(middle) or summed[-1] <= 0.0:
         return None
@@ -159,6 +159,11 @@ def _start_eliminated(t: Array, ok: Flags, x: Array) -> Array:
     fades = np.where(ok, np.exp(-(t - t[:, :1]) / TIME_CONSTANT_S), 0.0)[..., None]
     much = (fades * x).sum(axis=1, keepdims=True) / np.maximum((fades**2).sum(axis=1, keepdims=True), 1e-12)
     return np.where(ok[..., None], x - fades * much, 0.0)
+
+
+def _periodogram(runs: Sequence[_Velocities], rates: Array) -> Array:
+    """Share of the squared residual velocities that a force of each of the frequencies ``rates`` (f,) Hz explains (f,)."""
+    return np.array([_share(runs, 2.0 * np.pi * rate) for rate in rates])
 
 
 def _share(runs: Sequence[_Velocities], omega: float, wave: Array | None = None) -> float:
