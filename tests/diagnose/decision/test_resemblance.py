@@ -13,12 +13,14 @@ from rovval.diagnose.criteria import (
     FORM_ALIKE,
     FURTHER_CAUSE,
     HEALTHY_GAP,
+    LEAST_EVIDENCE,
     LIBRARY_ALIKE,
+    NOT_FOUND,
     PRIOR_CAUSES,
     PRIOR_SOMETHING_ELSE,
     SHOWS_BESIDE,
 )
-from rovval.diagnose.decision.resemblance import Left, gap_left, looks_like_form_error, none_of_the_library
+from rovval.diagnose.decision.resemblance import Left, adds_to_forces, gap_left, looks_like_form_error, none_of_the_library
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.gap import explainable_gap, tolerated_gap, weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
@@ -46,6 +48,21 @@ def test_a_force_that_shows_beside_causes_speaks_against_them_by_how_often_it_do
     assert none_of_the_library(AB, None, beside=True) == pytest.approx(odds / (1.0 + odds))
     shown, alone = (none_of_the_library(AB, left(a_b=0.3), beside) for beside in (True, False))
     assert shown / (1.0 - shown) == pytest.approx(SHOWS_BESIDE[1] / SHOWS_BESIDE[0] * alone / (1.0 - alone))
+
+
+def test_what_adds_to_the_forces_where_it_acts_is_told_from_what_takes_them_away():
+    alone = {"surge": 40.0, "sway": 10.0, "yaw": 500.0}
+    assert not adds_to_forces(alone, alone) and not adds_to_forces({}, {})
+    assert not adds_to_forces(alone, {"surge": 0.0, "sway": 30.0, "yaw": 510.0}), "less in all, and what hardly changes in yaw is none of theirs"
+    assert adds_to_forces(alone, {"surge": 40.0, "sway": 10.0, "yaw": 600.0}) and adds_to_forces(alone, {"surge": 30.0, "sway": 30.0, "yaw": 500.0})
+    assert not adds_to_forces({"surge": 0.0}, {"surge": 0.9 * LEAST_EVIDENCE}), "no strong evidence"
+
+
+def test_causes_that_add_to_the_forces_where_they_act_are_rather_something_else():
+    known = left(a_b=0.3)
+    fewer, more = (none_of_the_library(AB, replace(known, adding=frozenset(sets))) for sets in ([], [AB]))
+    assert more / (1.0 - more) == pytest.approx(SHOWS_BESIDE[1] / NOT_FOUND * fewer / (1.0 - fewer))
+    assert none_of_the_library(AB, replace(known, adding=frozenset({frozenset("a")}))) == fewer, "of another set it says nothing"
 
 
 def test_both_distributions_are_distributions():

@@ -6,10 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from diagnose_case import posed, slot
 
 from rovval.diagnose.criteria import GENERIC_SIZES
+from rovval.diagnose.inference.map_fit import map_fit
 from rovval.diagnose.residuals.normal_equations import NormalEquations
-from rovval.diagnose.search.discrepancy import GenericForces
+from rovval.diagnose.search.discrepancy import GenericForces, fine_forces
 
 AXES = ("surge", "sway", "surge", "yaw", "roll", "heave")
 
@@ -69,3 +71,20 @@ def test_a_force_that_a_coefficient_undoes_is_no_force_of_its_own(own: float, co
     beside = GenericForces((("surge", "u"),), data, np.full(1, 1e-3), np.zeros(1), 1.0)
     assert max(evidence(beside, size) for size in GENERIC_SIZES) > 100.0
     assert bool(beside.sparse()[1]) is counts
+
+
+def test_forces_on_one_axis_are_those_of_that_axis_alone():
+    both = forces({2: 0.8, 3: 0.9})
+    found = both.by_axis()
+    assert set(found) == set(AXES) and found["surge"] > 6.0 and found["yaw"] > 6.0
+    assert max(found["sway"], found["roll"], found["heave"]) < 2.0
+    worth, names = both.sparse("yaw")
+    assert worth == found["yaw"] and names == (("yaw", "3"),)
+
+
+def test_in_the_fine_metric_a_force_shows_on_the_axis_of_a_cause_and_none_beside_it():
+    p, _ = posed(("cross_drag:yaw_to_sway=0.0,sway_to_yaw=0.3",))
+    own = tuple(slot(p, key) for key in ("cross_drag.yaw_to_sway", "cross_drag.sway_to_yaw"))
+    alone, beside = (fine_forces(p, map_fit(p, p.origin, slots)) for slots in ((), own))
+    assert alone["yaw"] > 10.0 and beside["yaw"] < 0.05 * alone["yaw"]
+    assert fine_forces(replace(p, components=None), map_fit(p, p.origin, ())) == {}, "where windows are too few to tell disturbances from anything"

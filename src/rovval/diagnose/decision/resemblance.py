@@ -12,7 +12,9 @@ vehicles show (`HEALTHY_GAP`), and what a calibrated vehicle left of its own log
 because it leaves what many a healthy vehicle shows.
 
 Beside what only looks like a cause generic forces often show that go with the motion: the rest of what it really is. Beside causes they hardly ever do
-(`SHOWS_BESIDE`).
+(`SHOWS_BESIDE`). In the fine metric (`problem.problem`) they show on a vehicle without causes already. Right causes take more or less of them away where they
+act, but where their equations are others here (`NOT_FOUND`). What only looks like causes adds to them as often as not: what it closes in one way it opens in
+another (`adds_to_forces`).
 
 Shares are of the errors above the noise of the sensors. Whether causes are of the library is judged where they act: by what they leave of the gap on each
 axis, and of the parity residuals, which faults of sensors close, the mean of these weighted with how much of each they close or open; what they open speaks as
@@ -37,7 +39,10 @@ from rovval.diagnose.criteria import (
     FORM_ALIKE,
     FURTHER_CAUSE,
     HEALTHY_GAP,
+    LEAST_EVIDENCE,
     LIBRARY_ALIKE,
+    MATERIAL,
+    NOT_FOUND,
     PRIOR_CAUSES,
     PRIOR_SOMETHING_ELSE,
     SHOWS_BESIDE,
@@ -69,6 +74,7 @@ class Left:
         grown: of each set how many times the gap where it acts is what the calibration left there; empty without calibration.
         grown_by_axis: the same of each axis, whatever acts there.
         spread: by how much a vehicle that is as it was calibrated may show so (`gap.spread_as_calibrated`).
+        adding: the sets that add to generic forces where they act (`adds_to_forces`), of those that were asked.
     """
 
     shares: Mapping[Names, Array]
@@ -76,6 +82,7 @@ class Left:
     grown: Mapping[Names, float] = field(default_factory=dict)
     grown_by_axis: tuple[float, ...] = ()
     spread: float = CALIBRATED_SPREAD
+    adding: frozenset[Names] = frozenset()
 
     def least(self, which: Callable[[Names], bool]) -> Array:
         """The least (2,) that is left by the sets ``which``; all of the gap where there is none."""
@@ -154,6 +161,13 @@ class _Gap:
         return share / sum(change.values()), max(healthy / sum(change.values()), TINY)
 
 
+def adds_to_forces(alone: Mapping[str, float], beside: Mapping[str, float]) -> bool:
+    """Whether generic forces have more evidence (`discrepancy.fine_forces`) ``beside`` causes than ``alone``, on a healthy vehicle: in all, of the axes on
+    which the causes change it by a `MATERIAL` part that is strong (`LEAST_EVIDENCE`)."""
+    more = [(beside[axis] - size, max(beside[axis], size)) for axis, size in alone.items() if axis in beside]
+    return sum(change for change, whole in more if abs(change) > max(LEAST_EVIDENCE, MATERIAL * whole)) > 0.0
+
+
 def none_of_the_library(names: Names, left: Left | None, beside: bool = False) -> float:
     """Probability that what looks like the causes ``names`` is none of the library; by the priors alone where nothing is known of what they leave. That
     generic forces show ``beside`` them is evidence (`SHOWS_BESIDE`); that none do says little of a small gap, and is not counted."""
@@ -168,6 +182,7 @@ def looks_only_alike(names: Names, left: Left | None, beside: bool = False, as_c
     if left is not None:
         freedom = 1.0 / CAUSES_LEAVE - 1.0  # Beta(1, b), of mean 1 / (1 + b)
         right, alike = _densities(*left.where_they_act(names), lambda share: freedom * (1.0 - share) ** (freedom - 1.0))
+        none *= SHOWS_BESIDE[1] / NOT_FOUND if names in left.adding else 1.0
     total = right + (none + as_calibrated) * alike
     return none * alike / total, as_calibrated * alike / total
 

@@ -17,7 +17,7 @@ from rovval.diagnose.decision.indications import Indications, indications
 from rovval.diagnose.decision.miscalibration import file_evidence
 from rovval.diagnose.decision.open_gap import evidence_of_something_else, left_open, open_gap
 from rovval.diagnose.decision.posterior import Probabilities, probabilities, something_beside
-from rovval.diagnose.decision.resemblance import gap_left
+from rovval.diagnose.decision.resemblance import adds_to_forces, gap_left
 from rovval.diagnose.decision.unexplained import Accounted, Unexplained, accounted, unexplained, unexplained_by_any
 from rovval.diagnose.effort import NEGLIGIBLE, SETS_WEIGHED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
@@ -25,7 +25,7 @@ from rovval.diagnose.inference.gap import weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.residuals.sensor_faults import FittedFault
-from rovval.diagnose.search.discrepancy import GenericForces, generic_forces, nominal_forces
+from rovval.diagnose.search.discrepancy import GenericForces, fine_forces, generic_forces, nominal_forces
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.search.joint import joint_fit, refitted
 from rovval.diagnose.search.model import Model, Names, best_of_each_set
@@ -84,12 +84,15 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
     met, evidence = list(selection.models), instead.sparse()[0]
     unexplained_gap = open_gap(problem, [selection.healthy, *(m.fit.posterior for m in met if m.fit)])
     beside, varies, weigh = dict[Names, GenericForces](), dict[Names, Variation](), _leading(problem, selection)
+    alone, adding = fine_forces(problem, selection.healthy), frozenset[Names]()
     while True:  # the sets that lead are weighed, and then each that would be named
         at_work = [(m, *_where_at_work(problem, m, m.fit)) for m in weigh if m.fit]
         beside |= {m.names: generic_forces(there, fit.posterior) for m, there, fit in at_work}
         varies |= {m.names: variation(there, fit.posterior, m.causes) for m, there, fit in at_work}
+        adding |= {m.names for m, _, fit in at_work if not m.part and adds_to_forces(alone, fine_forces(problem, fit.posterior))}
         more = {names: forces.sparse()[0] for names, forces in beside.items()}
-        belief = probabilities(met, file, evidence, more, varies, evidence_of_something_else(unexplained_gap), gap_left(problem, met))
+        left = replace(gap_left(problem, met), adding=adding)
+        belief = probabilities(met, file, evidence, more, varies, evidence_of_something_else(unexplained_gap), left)
         best, without = _needed(problem, selection, met, _fitted(problem, selection, met, belief.best))
         if best.fit is None or best.names in beside:
             break

@@ -64,11 +64,15 @@ class UnitResponses:
 def unit_responses(runs: Sequence[Windows], beta: Array) -> UnitResponses:
     """Simulate the responses about ``beta`` (k,)."""
     wrench = typical_wrench(runs)
-    segments = tuple(
+    return UnitResponses(wrench, segment_responses(runs, beta, wrench), tuple(generic_force_responses(runs, beta, ENVIRONMENT)[1]))
+
+
+def segment_responses(runs: Sequence[Windows], beta: Array, wrench: Array) -> tuple[Array, ...]:
+    """Response of each run's windows (m, n, c, 6 s) about ``beta`` (k,) to a force of ``wrench`` (6,), N and N m, on one axis in one of their s segments."""
+    return tuple(
         force_sensitivities(windows, beta, [(axis, series * wrench[AXES.index(axis)]) for axis, series in unit_forces(windows)])
         for windows in runs
     )
-    return UnitResponses(wrench, segments, tuple(generic_force_responses(runs, beta, ENVIRONMENT)[1]))
 
 
 def no_disturbance() -> Disturbance:
@@ -96,8 +100,8 @@ def estimate_disturbance(
     segment_s = (runs[0].steps + 1) * runs[0].run.dt / DISTURBANCE_SEGMENTS
     share, correlation = before.rms / responses.wrench, np.exp(-segment_s / before.memory_s)
     share, correlation = _expectation_maximisation(_equations(runs, less, responses.segments, variance), share, correlation)
-    root = np.asarray(np.linalg.cholesky(_covariance(share, correlation)), dtype=float)
-    return Disturbance(share * responses.wrench, -segment_s / np.log(correlation), tuple(_times(one, root) for one in responses.segments))
+    root = np.asarray(np.linalg.cholesky(covariance(share, correlation)), dtype=float)
+    return Disturbance(share * responses.wrench, -segment_s / np.log(correlation), tuple(times(one, root) for one in responses.segments))
 
 
 def unit_forces(windows: Windows) -> list[tuple[str, Array]]:
@@ -141,21 +145,25 @@ def _expectation_maximisation(data: NormalEquations, share: Array, correlation: 
     Expectation: posterior mean and covariance of every window's forces. Maximisation: their mean second moments over windows and segments.
     """
     for _ in range(DISTURBANCE_ROUNDS):
-        cover = np.linalg.inv(data.A + np.linalg.inv(_covariance(share, correlation)))
+        cover = np.linalg.inv(data.A + np.linalg.inv(covariance(share, correlation)))
         mean = np.einsum("wij,wj->wi", cover, data.b)
-        square = (cover + mean[:, :, None] * mean[:, None, :]).mean(axis=0).reshape(len(AXES), DISTURBANCE_SEGMENTS, len(AXES), DISTURBANCE_SEGMENTS)
-        own = np.einsum("aiaj->aij", square)
-        alone, next_one = np.einsum("aii->a", own) / DISTURBANCE_SEGMENTS, np.einsum("aii->a", own[:, :-1, 1:]) / (DISTURBANCE_SEGMENTS - 1)
-        share, correlation = np.sqrt(alone), np.clip(next_one / alone, *SEGMENT_CORRELATION)
+        share, correlation = moments(cover + mean[:, :, None] * mean[:, None, :])
     return share, correlation
 
 
-def _covariance(share: Array, correlation: Array) -> Array:
+def moments(second: Array) -> tuple[Array, Array]:
+    """Standard deviation (6,) and correlation (6,) of forces of which the posterior second moments (m, 6 s, 6 s) in m windows are given."""
+    own = np.einsum("aiaj->aij", second.mean(axis=0).reshape(len(AXES), DISTURBANCE_SEGMENTS, len(AXES), DISTURBANCE_SEGMENTS))
+    alone, next_one = np.einsum("aii->a", own) / DISTURBANCE_SEGMENTS, np.einsum("aii->a", own[:, :-1, 1:]) / (DISTURBANCE_SEGMENTS - 1)
+    return np.sqrt(alone), np.clip(next_one / alone, *SEGMENT_CORRELATION)
+
+
+def covariance(share: Array, correlation: Array) -> Array:
     """Covariance (6 s, 6 s) of the forces in the s segments of a window: correlation falls geometrically with the number of segments between."""
     apart = np.abs(np.subtract.outer(np.arange(DISTURBANCE_SEGMENTS), np.arange(DISTURBANCE_SEGMENTS)))
     return np.asarray(block_diag(*[max(s, LEAST) ** 2 * m**apart for s, m in zip(share, correlation, strict=True)]))
 
 
-def _times(response: Array, root: Array) -> Array:
+def times(response: Array, root: Array) -> Array:
     """Responses (m, n, c, d) to forces that are ``root`` (d, d) times independent ones, to those."""
     return np.matmul(response, root, out=zeros(*response.shape))

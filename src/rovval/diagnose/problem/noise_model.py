@@ -2,7 +2,8 @@
 
 The white variance of a channel at a time in the window is that of sensor noise (from the log) and of model-form error (what a fit of the whole library
 leaves of the residuals); in the metric of the gap it is also that of tolerances and disturbances. Disturbances are estimated from what the library
-leaves; then the library is fitted again with them as nuisances, and so on (`NOISE_MODEL_ROUNDS`).
+leaves; then the library is fitted again with them as nuisances, and so on (`NOISE_MODEL_ROUNDS`). In the fine metric both are as large as is most likely for
+what the library leaves, and nothing is allowed for form error.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy as np
 from rovval.core.data import Array
 from rovval.core.large_arrays import side_by_side
 from rovval.diagnose.criteria import FEW_WINDOWS, LEAST_NOISE, SMOOTHING
-from rovval.diagnose.effort import INITIAL_DESIGN_EFFECT, NOISE_MODEL_ROUNDS
+from rovval.diagnose.effort import COMPONENT_ROUNDS, INITIAL_DESIGN_EFFECT, NOISE_MODEL_ROUNDS
 from rovval.diagnose.problem.cross_validation import Fold, FoldSums, cross_validate
 from rovval.diagnose.problem.disturbance import (
     Disturbance,
@@ -23,8 +24,10 @@ from rovval.diagnose.problem.disturbance import (
     initial_disturbance,
     no_disturbance,
     principal_parts,
+    times,
     unit_responses,
 )
+from rovval.diagnose.problem.variance_components import Components, variance_components
 from rovval.diagnose.residuals.normal_equations import (
     Linearisation,
     NormalEquations,
@@ -48,6 +51,7 @@ class NoiseModel:
         total_variance: the same with tolerance and disturbances in it, of the metric of the gap.
         design_effect: of the autocorrelation that is left.
         disturbance: the forces that nobody logged.
+        components: noise and disturbances of the fine metric; None where disturbances are not looked for.
     """
 
     runs: tuple[Windows, ...]
@@ -56,6 +60,7 @@ class NoiseModel:
     total_variance: Array
     design_effect: float
     disturbance: Disturbance
+    components: Components | None = None
 
 
 def fit_noise_model(
@@ -92,8 +97,14 @@ def fit_noise_model(
         disturbed, beside = _with_disturbances(runs, plain, disturbance.response)
         white = sensor + _form_variance(disturbed, beside, expected, best)
         design_effect, best = _library_fit(disturbed, beside, white * channel_factor, library, folds, design_effect)
+    components = None
+    for _ in range(COMPONENT_ROUNDS):
+        left = [replace(one, r=np.where(windows.ok, one.r - one.S @ best, 0.0)) for windows, one in zip(runs, plain, strict=True)]
+        components = variance_components(runs, left, responses.segments, np.sqrt(white.mean(axis=0)))
+        disturbed, beside = _with_disturbances(runs, plain, [times(segments, components.root()) for segments in responses.segments])
+        _, best = _library_fit(disturbed, beside, np.tile(components.noise**2, (len(white), 1)), library, folds, design_effect)
     runs, linear = _with_disturbances(runs, linear, principal_parts(runs, disturbance.response, white))
-    return NoiseModel(runs, linear, white * channel_factor, total, design_effect, disturbance)
+    return NoiseModel(runs, linear, white * channel_factor, total, design_effect, disturbance, components)
 
 
 def equations_of_runs(

@@ -2,7 +2,8 @@
 
 A *metric* is the covariance V = diag(variance) + J Sigma J^T in which residuals are weighted. In that of the *likelihood*, in which models are fitted
 and compared, disturbances are nuisances beside the initial states. In that of the *gap*, in which the prediction error and its reduction are stated,
-they count as error, and the variance holds what they and the tolerances make.
+they count as error, and the variance holds what they and the tolerances make. In the *fine* metric noise and disturbances are as large as is most likely for
+what the whole library leaves, with nothing for equations that are only nearly right: too fine to compare models in, it shows what they leave.
 """
 
 from __future__ import annotations
@@ -14,11 +15,14 @@ import numpy as np
 
 from rovval.core.data import Array
 from rovval.core.errors import BadInput
+from rovval.core.large_arrays import side_by_side
 from rovval.diagnose.criteria import EXACT_WINDOWS, LEAST_WINDOWS
 from rovval.diagnose.problem.cross_validation import Fold, make_folds
-from rovval.diagnose.problem.disturbance import Disturbance
+from rovval.diagnose.problem.disturbance import Disturbance, principal_parts, segment_responses, times
 from rovval.diagnose.problem.noise_model import equations_of_runs, fit_noise_model
 from rovval.diagnose.problem.prior import loosened_by_closed_loop, prior_mean, tolerance_prior
+from rovval.diagnose.problem.variance_components import Components
+from rovval.diagnose.residuals.external_forces import typical_wrench
 from rovval.diagnose.residuals.normal_equations import (
     Linearisation,
     NormalEquations,
@@ -72,6 +76,7 @@ class Problem:
             Miller and Dunson 2019).
         run_of_window: number of the run that each window is of (m,).
         disturbance: what pushed the vehicle that nobody logged.
+        components: noise and disturbances of the fine metric; None where the windows are too few to tell disturbances from steady forces.
     """
 
     runs: tuple[Windows, ...]
@@ -87,6 +92,7 @@ class Problem:
     coarsening: float
     run_of_window: np.ndarray
     disturbance: Disturbance
+    components: Components | None
 
     @property
     def plant(self) -> Plant:
@@ -133,6 +139,7 @@ def pose(runs: tuple[Windows, ...], asked: Columns, tolerance: float) -> Problem
         likelihood=Metric(noise.white_variance, likelihood, likelihood + parity), gap=Metric(noise.total_variance, gap, gap + parity),
         parity=checks, folds=folds, design_effect=noise.design_effect,
         coarsening=1.0 + len(run_of_window) / EXACT_WINDOWS, run_of_window=run_of_window, disturbance=noise.disturbance,
+        components=noise.components,
     )  # fmt: skip
 
 
@@ -168,6 +175,20 @@ def whitened(problem: Problem, linear: Sequence[Linearisation]) -> tuple[Whitene
     """Linearisations of each run in the metric of the likelihood."""
     variance = problem.likelihood.variance
     return tuple(whiten(one, windows.ok, variance, nuisance_sd(windows)) for windows, one in zip(problem.runs, linear, strict=True))
+
+
+def in_fine_metric(problem: Problem, beta: Array, linear: Sequence[Linearisation]) -> tuple[Problem, tuple[Linearisation, ...]] | None:
+    """The problem with the fine metric in place of that of its likelihood, and the linearisation ``linear`` of each run about ``beta`` (k,) with the
+    disturbances of that metric among its nuisances; None where the problem has no such metric."""
+    if problem.components is None:
+        return None
+    found, starts = problem.components, len(initial_state_sd(problem.runs[0]))
+    variance = np.tile(found.noise**2, (len(problem.likelihood.variance), 1))
+    responses = [times(segments, found.root()) for segments in segment_responses(problem.runs, beta, typical_wrench(problem.runs))]
+    parts = principal_parts(problem.runs, responses, variance)
+    runs = tuple(replace(windows, disturbance_response=one) for windows, one in zip(problem.runs, parts, strict=True))
+    beside = tuple(replace(one, J=side_by_side(one.J[..., :starts], more)) for one, more in zip(linear, parts, strict=True))
+    return replace(problem, runs=runs, likelihood=replace(problem.likelihood, variance=variance)), beside
 
 
 def equations_of(problem: Problem, beta: Array, linear: Sequence[Whitened]) -> tuple[NormalEquations, NormalEquations]:

@@ -18,7 +18,7 @@ from rovval.core.large_arrays import side_by_side
 from rovval.diagnose.criteria import GENERIC_SIZES, MATERIAL, MOST_FORCES
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.cross_validation import Fold, held_out_losses
-from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.problem.problem import Problem, in_fine_metric
 from rovval.diagnose.residuals.external_forces import generic_force_responses
 from rovval.diagnose.residuals.normal_equations import Linearisation, NormalEquations, concatenated, normal_equations
 from rovval.diagnose.residuals.nuisances import nuisance_sd
@@ -49,9 +49,14 @@ class GenericForces:
         A, b = self._eliminated(self.precision)
         return self._of_each(A[k:, k:], b[k:], self.tempering / prior_size**2)
 
-    def sparse(self, most: int = MOST_FORCES) -> tuple[float, tuple[tuple[str, str], ...]]:
-        """(Evidence of the few forces, each of one feature on one axis, that explain most, the names of these): up to ``most``, each beside those before and
-        only where it gains, after the prior of one force and one size among all has been paid; minus infinity where none does.
+    def by_axis(self) -> dict[str, float]:
+        """Evidence of the few forces on each axis that explain most (`sparse`); 0 of an axis on which none does."""
+        return {axis: max(self.sparse(axis)[0], 0.0) for axis in dict.fromkeys(axis for axis, _ in self.names)}
+
+    def sparse(self, only: str = "") -> tuple[float, tuple[tuple[str, str], ...]]:
+        """(Evidence of the few forces, each of one feature on one axis, that explain most, the names of these): up to `MOST_FORCES`, each beside those before
+        and only where it gains, after the prior of one force and one size among all has been paid; minus infinity where none does. Of those on the axis
+        ``only``, where one is given.
 
         One that the fit's columns can undo all but a little of (`MATERIAL`), as drag undoes a force that varies with speed, is none: the two
         against each other hold the simulation to the measured speed, whatever it is that is missing.
@@ -59,11 +64,11 @@ class GenericForces:
         k = len(self.precision)
         A, b = self._eliminated(self.precision)
         at_first = np.einsum("wii->i", self.data.A)
-        own = [k + i for i in range(len(self.names)) if A[k + i, k + i] > MATERIAL * at_first[k + i]]
+        own = [k + i for i, (axis, _) in enumerate(self.names) if only in ("", axis) and A[k + i, k + i] > MATERIAL * at_first[k + i]]
         A, b, names = A[np.ix_(own, own)], b[own], [self.names[i - k] for i in own]
         ridge, total, found = self.tempering / np.array(GENERIC_SIZES)[:, None] ** 2, 0.0, list[tuple[str, str]]()
         each = 2.0 * np.log(max(len(own) * len(ridge), 1))
-        for _ in range(min(most, len(own))):
+        for _ in range(min(MOST_FORCES, len(own))):
             worth = self._of_each(A, b, ridge) - each
             size, best = np.unravel_index(int(np.argmax(worth)), worth.shape)
             if worth[size, best] <= 0.0:
@@ -95,6 +100,15 @@ def generic_forces(problem: Problem, point: Posterior) -> GenericForces:
     """Every feature on every axis, simulated about a fit, beside its columns."""
     names, answers = generic_force_responses(problem.runs, point.beta)
     return beside(problem, names, answers, point.linear, point.precision, point.precision * point.departure)
+
+
+def fine_forces(problem: Problem, point: Posterior) -> dict[str, float]:
+    """Evidence by axis of forces beside a fit in the fine metric, in which what is left of the gap is no form error; none where there is no such metric."""
+    fine = in_fine_metric(problem, point.beta, point.linear)
+    if fine is None:
+        return {}
+    names, answers = generic_force_responses(problem.runs, point.beta)
+    return beside(fine[0], names, answers, fine[1], point.precision, point.precision * point.departure).by_axis()
 
 
 def nominal_forces(problem: Problem) -> GenericForces:
