@@ -97,12 +97,13 @@ def fit_noise_model(
         disturbed, beside = _with_disturbances(runs, plain, disturbance.response)
         white = sensor + _form_variance(disturbed, beside, expected, best)
         design_effect, best = _library_fit(disturbed, beside, white * channel_factor, library, folds, design_effect)
-    components = None
+    components: Components | None = None
     for _ in range(COMPONENT_ROUNDS):
+        if components:
+            disturbed, beside = _with_disturbances(runs, plain, [times(segments, components.root()) for segments in responses.segments])
+            _, best = _library_fit(disturbed, beside, np.tile(components.noise**2, (len(white), 1)), library, folds, design_effect)
         left = [replace(one, r=np.where(windows.ok, one.r - one.S @ best, 0.0)) for windows, one in zip(runs, plain, strict=True)]
         components = variance_components(runs, left, responses.segments, np.sqrt(white.mean(axis=0)))
-        disturbed, beside = _with_disturbances(runs, plain, [times(segments, components.root()) for segments in responses.segments])
-        _, best = _library_fit(disturbed, beside, np.tile(components.noise**2, (len(white), 1)), library, folds, design_effect)
     runs, linear = _with_disturbances(runs, linear, principal_parts(runs, disturbance.response, white))
     return NoiseModel(runs, linear, white * channel_factor, total, design_effect, disturbance, components)
 

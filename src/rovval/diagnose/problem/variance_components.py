@@ -97,7 +97,7 @@ def variance_components(runs: Sequence[Windows], left: Sequence[Linearisation], 
 def _equations(runs: Sequence[Windows], left: Sequence[Linearisation], segments: Sequence[Array], every: int) -> _Equations:
     """Those of ``every`` so many-th window."""
     A, b, c, count = list[Array](), list[Array](), list[Array](), list[Array]()
-    sd, least = initial_state_sd(runs[0]), np.array([LEAST_NOISE[name] for name in runs[0].channels])
+    starts, least = len(initial_state_sd(runs[0])), np.array([LEAST_NOISE[name] for name in runs[0].channels])
     for windows, one, forces in zip(runs, left, segments, strict=True):
         sd = initial_state_sd(windows)
         for w in range(0, windows.count, every):
@@ -108,7 +108,7 @@ def _equations(runs: Sequence[Windows], left: Sequence[Linearisation], segments:
             b.append((J.transpose(0, 2, 1) @ r[..., None])[..., 0])
             c.append((r**2).sum(axis=1))
             count.append(ok.sum(axis=1).astype(float))
-    return _Equations(np.stack(A, axis=1), np.stack(b, axis=1), np.stack(c, axis=1), np.stack(count, axis=1), len(sd), least)
+    return _Equations(np.stack(A, axis=1), np.stack(b, axis=1), np.stack(c, axis=1), np.stack(count, axis=1), starts, least)
 
 
 def _round(data: _Equations, at: Components) -> tuple[float, Components]:
