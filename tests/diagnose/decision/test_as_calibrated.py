@@ -9,11 +9,11 @@ import pytest
 from diagnose_case import merlin, posed
 from scipy import integrate
 
-from rovval.diagnose.criteria import CALIBRATED_SPREAD, PRIOR_CAUSES, PRIOR_HEALTHY, PRIOR_SOMETHING_ELSE
+from rovval.diagnose.criteria import CALIBRATED_SPREAD, FORCE_RIGHT, PRIOR_CAUSES, PRIOR_HEALTHY, PRIOR_SOMETHING_ELSE
 from rovval.diagnose.decision.as_calibrated import odds_as_calibrated
 from rovval.diagnose.decision.open_gap import open_gap
 from rovval.diagnose.decision.posterior import probabilities
-from rovval.diagnose.decision.resemblance import Left, gap_left
+from rovval.diagnose.decision.resemblance import Left, gap_left, unlogged_where_they_act
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.gap import calibrated_by_part, errors_by_part, noise_by_part, spread_as_calibrated
 from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
@@ -85,6 +85,15 @@ def test_what_a_calibration_left_is_in_the_metric_of_the_gap():
     once, twice = (remembering(problem, {c: x / by for c, x in error.items()}) for by in (1.0, 2.0))
     [grown], [more] = (gap_left(one, models).grown_since(LOSS) for one in (once, twice))
     assert grown == pytest.approx(1.0, rel=0.35) and more > 3.0 * grown
+
+
+def test_an_unlogged_force_as_large_as_the_calibration_left_is_expected():
+    """Where all of the gap on an axis was there when the vehicle was calibrated, so was the force that it takes."""
+    problem, _ = posed(("inflow_loss:loss=0.3",))
+    nominal = dict.fromkeys(("surge", "sway", "heave", "roll", "pitch", "yaw"), 0.5)
+    known = remembering(problem, {"u": 10.0})
+    ahead, down = (unlogged_where_they_act(known, nominal | {axis: 0.1}, nominal, wanders=False) for axis in ("surge", "heave"))
+    assert ahead == pytest.approx((0.1, FORCE_RIGHT + 0.5)) and down == pytest.approx((0.1, FORCE_RIGHT))
 
 
 def test_what_a_calibration_left_is_no_open_gap():

@@ -10,6 +10,8 @@ from diagnose_case import posed
 
 from rovval.diagnose.criteria import (
     CAUSES_LEAVE,
+    FORCE_ALIKE,
+    FORCE_RIGHT,
     FORM_ALIKE,
     FURTHER_CAUSE,
     HEALTHY_GAP,
@@ -19,8 +21,17 @@ from rovval.diagnose.criteria import (
     PRIOR_CAUSES,
     PRIOR_SOMETHING_ELSE,
     SHOWS_BESIDE,
+    VARIATIONS,
 )
-from rovval.diagnose.decision.resemblance import Left, adds_to_forces, gap_left, looks_like_form_error, none_of_the_library
+from rovval.diagnose.decision.resemblance import (
+    Left,
+    adds_to_forces,
+    gap_left,
+    looks_like_form_error,
+    looks_only_alike,
+    none_of_the_library,
+    unlogged_where_they_act,
+)
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.gap import explainable_gap, tolerated_gap, weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
@@ -63,6 +74,32 @@ def test_causes_that_add_to_the_forces_where_they_act_are_rather_something_else(
     fewer, more = (none_of_the_library(AB, replace(known, adding=frozenset(sets))) for sets in ([], [AB]))
     assert more / (1.0 - more) == pytest.approx(SHOWS_BESIDE[1] / NOT_FOUND * fewer / (1.0 - fewer))
     assert none_of_the_library(AB, replace(known, adding=frozenset({frozenset("a")}))) == fewer, "of another set it says nothing"
+
+
+def test_causes_that_leave_a_force_where_they_act_are_rather_something_else():
+    """The odds are a ratio of two densities: over all forces that of something else, so found, integrates to one."""
+
+    def odds(size: float, mean: float = FORCE_RIGHT, wanders: bool = False) -> float:
+        none, _ = looks_only_alike(AB, replace(left(a_b=0.3), unlogged={AB: (size, mean)}), wanders=wanders)
+        return none / (1.0 - none)
+
+    at_rest = none_of_the_library(AB, left(a_b=0.3))
+    size = np.arange(0.00005, 1.0, 0.0001)
+    alike = np.array([odds(s) for s in size]) / (at_rest / (1.0 - at_rest)) * np.exp(-size / FORCE_RIGHT) / FORCE_RIGHT
+    assert alike.sum() * 0.0001 == pytest.approx(1.0 / (1.0 + FORCE_ALIKE), rel=1e-3), "the rest of it is beyond the thrusters' own force"
+    assert odds(0.01) < at_rest / (1.0 - at_rest) < odds(0.2) < odds(0.4)
+    assert odds(0.2, 3.0 * FORCE_RIGHT) < 0.5 * odds(0.2), "of what a calibration left, or what wanders, more is expected"
+    assert odds(0.4, wanders=True) > 10.0 * odds(0.01, wanders=True)
+    beyond = replace(left(a_b=0.3), unlogged={AB: (1e5, FORCE_RIGHT)})
+    assert looks_only_alike(AB, beyond) == (1.0, 0.0), "however large"
+
+
+def test_what_a_calibration_left_and_what_wanders_is_expected_to_leave_a_force():
+    problem, _ = posed(("inflow_loss:loss=0.3",))
+    nominal = dict.fromkeys(("surge", "sway", "heave", "roll", "pitch", "yaw"), 0.5)
+    beside = nominal | {"surge": 0.1}
+    assert unlogged_where_they_act(problem, beside, nominal, wanders=False) == pytest.approx((0.1, FORCE_RIGHT))
+    assert unlogged_where_they_act(problem, beside, nominal, wanders=True) == pytest.approx((0.1, FORCE_RIGHT + VARIATIONS[0] * 0.5))
 
 
 def test_both_distributions_are_distributions():

@@ -189,7 +189,7 @@ def probabilities(
         if names and kind in (*CAUSES, FORM):
             wanders = all(causes[name].effect.wanders for name in names)
             shows = beside.get(names, -inf) > -inf and not wanders
-            none, as_it_was = looks_only_alike(names, None if wanders else left, shows, _as_calibrated(left, names, PRIOR_CAUSES))
+            none, as_it_was = looks_only_alike(names, left, shows, _as_calibrated(left, names, PRIOR_CAUSES), wanders)
         elif kind == "else" or kind.startswith(VARYING):
             odds = _as_calibrated(left, names, PRIOR_SOMETHING_ELSE)
             none, as_it_was = 0.0, odds / (1.0 + odds)

@@ -16,6 +16,10 @@ Beside what only looks like a cause generic forces often show that go with the m
 act, but where their equations are others here (`NOT_FOUND`). What only looks like causes adds to them as often as not: what it closes in one way it opens in
 another (`adds_to_forces`).
 
+Forces that nobody logged are a nuisance of every model, as large as the log shows them, so that the likelihood alone never calls them too large. Beside right
+causes they are what pilots and seas make, some per cent of the thrusters' own (`FORCE_RIGHT`); beside what only looks like them they take over the rest of what
+it really is (`FORCE_ALIKE`).
+
 Shares are of the errors above the noise of the sensors. Whether causes are of the library is judged where they act: by what they leave of the gap on each
 axis, and of the parity residuals, which faults of sensors close, the mean of these weighted with how much of each they close or open; what they open speaks as
 much against them as what they close speaks for them, however little there was of it. A real vehicle is off
@@ -27,7 +31,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
-from math import log1p
+from math import exp, log1p
 
 import numpy as np
 from scipy.integrate import fixed_quad
@@ -36,6 +40,8 @@ from rovval.core.data import Array
 from rovval.diagnose.criteria import (
     CALIBRATED_SPREAD,
     CAUSES_LEAVE,
+    FORCE_ALIKE,
+    FORCE_RIGHT,
     FORM_ALIKE,
     FURTHER_CAUSE,
     HEALTHY_GAP,
@@ -46,6 +52,7 @@ from rovval.diagnose.criteria import (
     PRIOR_CAUSES,
     PRIOR_SOMETHING_ELSE,
     SHOWS_BESIDE,
+    VARIATIONS,
 )
 from rovval.diagnose.inference.gap import (
     TINY,
@@ -56,6 +63,7 @@ from rovval.diagnose.inference.gap import (
     tolerated_by_part,
 )
 from rovval.diagnose.inference.shrinkage import NOTHING_LEFT, explainable_left, form_error
+from rovval.diagnose.inference.unlogged_forces import where_causes_act
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.search.model import Model, Names
 
@@ -74,6 +82,7 @@ class Left:
         grown: of each set how many times the gap where it acts is what the calibration left there; empty without calibration.
         grown_by_axis: the same of each axis, whatever acts there.
         spread: by how much a vehicle that is as it was calibrated may show so (`gap.spread_as_calibrated`).
+        unlogged: of each set that was asked the force that nobody logged where it acts, and its mean about right causes (`unlogged_where_they_act`).
         adding: the sets that add to generic forces where they act (`adds_to_forces`), of those that were asked.
     """
 
@@ -82,6 +91,7 @@ class Left:
     grown: Mapping[Names, float] = field(default_factory=dict)
     grown_by_axis: tuple[float, ...] = ()
     spread: float = CALIBRATED_SPREAD
+    unlogged: Mapping[Names, tuple[float, float]] = field(default_factory=dict)
     adding: frozenset[Names] = frozenset()
 
     def least(self, which: Callable[[Names], bool]) -> Array:
@@ -168,21 +178,33 @@ def adds_to_forces(alone: Mapping[str, float], beside: Mapping[str, float]) -> b
     return sum(change for change, whole in more if abs(change) > max(LEAST_EVIDENCE, MATERIAL * whole)) > 0.0
 
 
+def unlogged_where_they_act(problem: Problem, left: Mapping[str, float], nominal: Mapping[str, float], wanders: bool) -> tuple[float, float]:
+    """The unlogged force that is ``left`` where causes act, by axis, of that beside the ``nominal`` vehicle, and its mean where causes are right: what pilots,
+    seas and equations leave (`FORCE_RIGHT`), what a calibration left, and, of a cause that ``wanders`` by nature, its variation (`VARIATIONS`)."""
+    gap = _Gap.of(problem)
+    kept = {axis: nominal[axis] * min(gap.calibrated.get(axis, 0.0) / max(gap.errors[axis], TINY), 1.0) ** 0.5 for axis in left}
+    calibrated, at_first = (where_causes_act(size, left, nominal) for size in (kept, nominal))
+    return where_causes_act(left, left, nominal), FORCE_RIGHT + calibrated + (VARIATIONS[0] * at_first if wanders else 0.0)
+
+
 def none_of_the_library(names: Names, left: Left | None, beside: bool = False) -> float:
     """Probability that what looks like the causes ``names`` is none of the library; by the priors alone where nothing is known of what they leave. That
     generic forces show ``beside`` them is evidence (`SHOWS_BESIDE`); that none do says little of a small gap, and is not counted."""
     return looks_only_alike(names, left, beside)[0]
 
 
-def looks_only_alike(names: Names, left: Left | None, beside: bool = False, as_calibrated: float = 0.0) -> tuple[float, float]:
+def looks_only_alike(names: Names, left: Left | None, beside: bool = False, as_calibrated: float = 0.0, wanders: bool = False) -> tuple[float, float]:
     """The same, and the probability that what looks like causes was left by the calibration of the vehicle, by the odds ``as_calibrated`` of it over causes: it
-    closes any part of the gap, too."""
+    closes any part of the gap, too. How much of the gap causes close that all go on otherwise from window to window (``wanders``) says nothing."""
     none = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / PRIOR_CAUSES * (SHOWS_BESIDE[1] / SHOWS_BESIDE[0] if beside else 1.0)
     right, alike = 1.0, 1.0
-    if left is not None:
+    if left is not None and not wanders:
         freedom = 1.0 / CAUSES_LEAVE - 1.0  # Beta(1, b), of mean 1 / (1 + b)
         right, alike = _densities(*left.where_they_act(names), lambda share: freedom * (1.0 - share) ** (freedom - 1.0))
         none *= SHOWS_BESIDE[1] / NOT_FOUND if names in left.adding else 1.0
+    if left is not None and names in left.unlogged:
+        by_right, by_alike = _densities_of_force(*left.unlogged[names])
+        right, as_calibrated, none = right * by_right, as_calibrated * by_right, none * by_alike
     total = right + (none + as_calibrated) * alike
     return none * alike / total, as_calibrated * alike / total
 
@@ -192,6 +214,12 @@ def looks_like_form_error(name: str, names: Names, left: Left | None) -> float:
     if left is None:
         return FORM_ALIKE / (FORM_ALIKE + FURTHER_CAUSE)
     return form_error(float(np.min(left.beyond(name, names))))
+
+
+def _densities_of_force(size: float, mean: float) -> tuple[float, float]:
+    """Densities of an unlogged force: exponential about ``mean`` where right causes act, log-logistic of median `FORCE_ALIKE` where only what looks like them
+    does."""
+    return exp(-size / mean) / mean, FORCE_ALIKE / (FORCE_ALIKE + size) ** 2
 
 
 def _densities(left: float, healthy: float, density: Callable[[Array], Array]) -> tuple[float, float]:

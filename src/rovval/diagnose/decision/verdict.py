@@ -17,12 +17,13 @@ from rovval.diagnose.decision.indications import Indications, indications
 from rovval.diagnose.decision.miscalibration import file_evidence
 from rovval.diagnose.decision.open_gap import evidence_of_something_else, left_open, open_gap
 from rovval.diagnose.decision.posterior import Probabilities, probabilities, something_beside
-from rovval.diagnose.decision.resemblance import adds_to_forces, gap_left
+from rovval.diagnose.decision.resemblance import adds_to_forces, gap_left, unlogged_where_they_act
 from rovval.diagnose.decision.unexplained import Accounted, Unexplained, accounted, unexplained, unexplained_by_any
 from rovval.diagnose.effort import NEGLIGIBLE, SETS_WEIGHED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.gap import weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
+from rovval.diagnose.inference.unlogged_forces import unlogged_forces
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.residuals.sensor_faults import FittedFault
 from rovval.diagnose.search.discrepancy import GenericForces, fine_forces, generic_forces, nominal_forces
@@ -85,13 +86,15 @@ def decide(problem: Problem, selection: Selection, residuals: list[Array], fault
     unexplained_gap = open_gap(problem, [selection.healthy, *(m.fit.posterior for m in met if m.fit)])
     beside, varies, weigh = dict[Names, GenericForces](), dict[Names, Variation](), _leading(problem, selection)
     alone, adding = fine_forces(problem, selection.healthy), frozenset[Names]()
+    nominal, unlogged = unlogged_forces(problem), dict[Names, tuple[float, float]]()
     while True:  # the sets that lead are weighed, and then each that would be named
         at_work = [(m, *_where_at_work(problem, m, m.fit)) for m in weigh if m.fit]
         beside |= {m.names: generic_forces(there, fit.posterior) for m, there, fit in at_work}
         varies |= {m.names: variation(there, fit.posterior, m.causes) for m, there, fit in at_work}
         adding |= {m.names for m, _, fit in at_work if not m.part and adds_to_forces(alone, fine_forces(problem, fit.posterior))}
+        unlogged |= {m.names: size for m, there, fit in at_work if (size := _unlogged(there, fit, m, nominal))}
         more = {names: forces.sparse()[0] for names, forces in beside.items()}
-        left = replace(gap_left(problem, met), adding=adding)
+        left = replace(gap_left(problem, met), unlogged=unlogged, adding=adding)
         belief = probabilities(met, file, evidence, more, varies, evidence_of_something_else(unexplained_gap), left)
         best, without = _needed(problem, selection, met, _fitted(problem, selection, met, belief.best))
         if best.fit is None or best.names in beside:
@@ -123,6 +126,14 @@ def _leading(problem: Problem, selection: Selection) -> list[Model]:
 def _where_at_work(problem: Problem, model: Model, fit: HypothesisFit) -> tuple[Problem, HypothesisFit]:
     """The windows in which the causes of a model are at work, and the ``fit`` of the model, or the one to these windows."""
     return (model.part.problem, model.part.fit) if model.part else (problem, fit)
+
+
+def _unlogged(problem: Problem, fit: HypothesisFit, model: Model, nominal: Mapping[str, float]) -> tuple[float, float] | None:
+    """The unlogged force where the causes of a model act, and what is expected of it (`unlogged_where_they_act`), ``nominal`` being those of the whole log
+    beside the nominal vehicle; None where they are not known."""
+    left, at_first = unlogged_forces(problem, fit.posterior), unlogged_forces(problem) if model.part else nominal
+    wanders = any(h.effect.wanders for h in model.causes)
+    return unlogged_where_they_act(problem, left, at_first, wanders) if left and at_first else None
 
 
 def _fitted(problem: Problem, selection: Selection, met: Sequence[Model], names: Names) -> Model:

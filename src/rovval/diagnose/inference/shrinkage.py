@@ -24,7 +24,6 @@ from rovval.diagnose.problem.cross_validation import Fold, make_folds
 from rovval.diagnose.problem.problem import Problem, corrected_of, corrected_residuals, gap_equations_at, pose, whitened
 from rovval.diagnose.residuals.perturbations import Columns
 from rovval.diagnose.residuals.sensitivities import linearise
-from rovval.diagnose.windows.windows import Windows
 
 T = TypeVar("T")
 NOTHING_LEFT = 1e-3  # share of the gap: rounding of a ratio to what is left
@@ -142,7 +141,7 @@ def _folds(problem: Problem) -> tuple[Fold, ...]:
 def _without(problem: Problem, fitted: HypothesisFit, fold: Fold, tolerance: float) -> Array:
     """Parameters (k,) with the fitted slots as the windows outside ``fold.test`` give them; the fit begins at the fit of all windows, whose sensitivities to
     coefficients within tolerance it keeps."""
-    runs = [_some(windows, which) for windows, which in _by_run(problem, problem.runs, fold.train) if which.any()]
+    runs = [windows.some(which) for windows, which in _by_run(problem, problem.runs, fold.train) if which.any()]
     slopes = [(taken(one.S, which), one.columns) for one, which in _by_run(problem, fitted.posterior.linear, fold.train) if which.any()]
     less = pose(tuple(runs), Columns(), tolerance)
     near = [replace(one, S=S, columns=columns) for one, (S, columns) in zip(less.nominal, slopes, strict=True)]
@@ -150,12 +149,6 @@ def _without(problem: Problem, fitted: HypothesisFit, fold: Fold, tolerance: flo
     beta = problem.origin.copy()
     beta[list(fitted.slots)] = point.beta[list(fitted.slots)]
     return beta
-
-
-def _some(windows: Windows, which: np.ndarray) -> Windows:
-    """The windows ``which`` (m,) of a run, their disturbances not estimated yet."""
-    kept = {name: getattr(windows, name)[which] for name in ("start", "nu0", "eta0", "y", "ok")}
-    return replace(windows, disturbance_response=None, **kept)
 
 
 def _by_run(problem: Problem, items: Sequence[T], which: np.ndarray) -> Iterator[tuple[T, np.ndarray]]:

@@ -70,14 +70,18 @@ class _Equations:
     least: Array
 
 
+def evenly_spread(runs: Sequence[Windows]) -> slice:
+    """The windows of each run that components are found from (`COMPONENT_WINDOWS`)."""
+    return slice(None, None, max(1, -(-sum(windows.count for windows in runs) // COMPONENT_WINDOWS)))
+
+
 def variance_components(runs: Sequence[Windows], left: Sequence[Linearisation], segments: Sequence[Array], noise: Array) -> Components:
-    """The components under which the residuals of ``left`` are most likely, of some windows of all runs (`COMPONENT_WINDOWS`, evenly spread).
+    """The components under which the residuals of ``left`` are most likely, of some windows of all runs (`evenly_spread`).
 
     ``segments`` are the responses (m, n, c, 6 s) to forces of the thrusters' rms (`disturbance.segment_responses`); ``noise`` (c,) of each channel is where the
     search begins.
     """
-    every = max(1, -(-sum(windows.count for windows in runs) // COMPONENT_WINDOWS))
-    data = _equations(runs, left, segments, every)
+    data = _equations(runs, left, segments, evenly_spread(runs))
     axes, before = len(AXES), -np.inf
     x = Components(np.full(axes, INITIAL_DISTURBANCE), np.full(axes, INITIAL_CORRELATION), np.maximum(noise, data.least)).packed()
     for _ in range(COMPONENT_CYCLES):
@@ -94,13 +98,13 @@ def variance_components(runs: Sequence[Windows], left: Sequence[Linearisation], 
     return Components.unpacked(x)
 
 
-def _equations(runs: Sequence[Windows], left: Sequence[Linearisation], segments: Sequence[Array], every: int) -> _Equations:
-    """Those of ``every`` so many-th window."""
+def _equations(runs: Sequence[Windows], left: Sequence[Linearisation], segments: Sequence[Array], which: slice) -> _Equations:
+    """Those of the windows ``which`` of each run."""
     A, b, c, count = list[Array](), list[Array](), list[Array](), list[Array]()
     starts, least = len(initial_state_sd(runs[0])), np.array([LEAST_NOISE[name] for name in runs[0].channels])
     for windows, one, forces in zip(runs, left, segments, strict=True):
         sd = initial_state_sd(windows)
-        for w in range(0, windows.count, every):
+        for w in range(windows.count)[which]:
             ok = windows.ok[w].T
             J = np.concatenate([one.J[w, ..., : len(sd)] * sd, forces[w]], axis=-1).transpose(1, 0, 2) * ok[..., None]
             r = np.where(ok, one.r[w].T, 0.0)

@@ -92,10 +92,7 @@ def onset_cost(problem: Problem) -> float:
 
 def windows_from(windows: Windows, time: float) -> Windows:
     """The windows of a run from ``time`` (s since its start) on."""
-    kept = windows.start * windows.run.dt >= time
-    return replace(
-        windows, start=windows.start[kept], nu0=windows.nu0[kept], eta0=windows.eta0[kept], y=windows.y[kept], ok=windows.ok[kept]
-    )
+    return windows.some(windows.start * windows.run.dt >= time)
 
 
 def with_onset(problem: Problem, causes: Sequence[Hypothesis], log_prior: float, part: Part, healthy: Posterior) -> Model:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,6 +66,11 @@ class Windows:
     def axes(self) -> tuple[str, ...]:
         """Axis that each channel belongs to."""
         return tuple(AXIS_OF[c] for c in self.channels)
+
+    def some(self, which: Flags | slice) -> Windows:
+        """Those of the windows ``which``, (m,) or a slice of them, their disturbances not estimated yet."""
+        kept = {name: getattr(self, name)[which] for name in ("start", "nu0", "eta0", "y", "ok")}
+        return replace(self, disturbance_response=None, **kept)
 
     def depths(self) -> Array:
         """Depths (m, down) that the run went through where they were measured, else those that its windows begin at."""
