@@ -11,7 +11,7 @@ from diagnose_case import posed, slot
 from rovval.diagnose.criteria import GENERIC_SIZES
 from rovval.diagnose.inference.map_fit import map_fit
 from rovval.diagnose.residuals.normal_equations import NormalEquations
-from rovval.diagnose.search.discrepancy import GenericForces, fine_forces
+from rovval.diagnose.search.discrepancy import GenericForces, forces_beside
 
 AXES = ("surge", "sway", "surge", "yaw", "roll", "heave")
 
@@ -85,6 +85,6 @@ def test_forces_on_one_axis_are_those_of_that_axis_alone():
 def test_in_the_fine_metric_a_force_shows_on_the_axis_of_a_cause_and_none_beside_it():
     p, _ = posed(("cross_drag:yaw_to_sway=0.0,sway_to_yaw=0.3",))
     own = tuple(slot(p, key) for key in ("cross_drag.yaw_to_sway", "cross_drag.sway_to_yaw"))
-    alone, beside = (fine_forces(p, map_fit(p, p.origin, slots)) for slots in ((), own))
+    alone, beside = (forces_beside(p, map_fit(p, p.origin, slots))[1] for slots in ((), own))
     assert alone["yaw"] > 10.0 and beside["yaw"] < 0.05 * alone["yaw"]
-    assert fine_forces(replace(p, components=None), map_fit(p, p.origin, ())) == {}, "where windows are too few to tell disturbances from anything"
+    assert forces_beside(replace(p, components=None), map_fit(p, p.origin, ()))[1] == {}, "where windows are too few to tell disturbances from anything"

@@ -59,7 +59,8 @@ def weighed_with(late: Finding, whole: Finding, time: float) -> Finding:
     found the causes which are named, or of the whole log where none are."""
     problem, selection = whole.problem, whole.selection
     later = [with_onset(problem, m.causes, selection.prior.log_mass(m.causes), part, selection.healthy) for m, part in _leading(late, time)]
-    decision = decide(problem, replace(selection, models=(*selection.models, *later)), whole.residuals, whole.faults)
+    both = replace(selection, models=(*selection.models, *later))
+    decision = decide(problem, both, whole.residuals, whole.faults, whole.decision.weighed)
     return replace(whole, decision=decision) if decision.since is None else replace(_with_the_rest(late, whole), decision=decision)
 
 

@@ -172,7 +172,7 @@ class _Gap:
 
 
 def adds_to_forces(alone: Mapping[str, float], beside: Mapping[str, float]) -> bool:
-    """Whether generic forces have more evidence (`discrepancy.fine_forces`) ``beside`` causes than ``alone``, on a healthy vehicle: in all, of the axes on
+    """Whether generic forces have more evidence (`discrepancy.forces_beside`) ``beside`` causes than ``alone``, on a healthy vehicle: in all, of the axes on
     which the causes change it by a `MATERIAL` part that is strong (`LEAST_EVIDENCE`)."""
     more = [(beside[axis] - size, max(beside[axis], size)) for axis, size in alone.items() if axis in beside]
     return sum(change for change, whole in more if abs(change) > max(LEAST_EVIDENCE, MATERIAL * whole)) > 0.0

@@ -26,12 +26,30 @@ from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 from rovval.diagnose.inference.unlogged_forces import unlogged_forces
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.residuals.sensor_faults import FittedFault
-from rovval.diagnose.search.discrepancy import GenericForces, fine_forces, generic_forces, nominal_forces
+from rovval.diagnose.search.discrepancy import forces_beside, generic_forces, nominal_forces
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.search.joint import joint_fit, refitted
 from rovval.diagnose.search.model import Model, Names, best_of_each_set
 
 Verdict = Literal["no_gap", "explained", "partly_explained", "unknown"]
+
+
+@dataclass(frozen=True, slots=True)
+class Weighed:
+    """What is found beside a model, in the windows in which its causes are at work.
+
+    Attributes:
+        of: evidence of the model, and the time from which its causes are at work, where not all through: by these it is known again.
+        forces: evidence of generic forces beside it; ``fine`` the same by axis in the fine metric, of a model of the whole log.
+        varying: by how much the sizes of its causes vary.
+        unlogged: the force that nobody logged where its causes act, and what is expected of it; None where that is not known.
+    """
+
+    of: tuple[float, float | None]
+    forces: float
+    fine: Mapping[str, float]
+    varying: Variation
+    unlogged: tuple[float, float] | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +70,7 @@ class Decision:
         generic_beside: the same of something else beside the causes, over the causes.
         departure: largest standardised departure of a coefficient that is no cause's, in standard deviations of its prior.
         accounted: what of the gap needs no cause.
-        varying: of the most probable sets of causes, how much likelier it is that their sizes vary.
+        weighed: what was found beside the most probable sets of causes.
         open_gap: what is left of the gap beyond noise, over what noise and tolerances are expected to make (1): with the causes that are named, on held-out
             windows.
         unexplained: what is left; None where nothing is.
@@ -72,41 +90,40 @@ class Decision:
     generic_beside: float
     departure: float
     accounted: Accounted
-    varying: Mapping[Names, Variation]
+    weighed: Mapping[Names, Weighed]
     open_gap: float
     unexplained: Unexplained | None
     indications: Indications | None = None
     since: float | None = None
 
 
-def decide(problem: Problem, selection: Selection, residuals: list[Array], faults: Sequence[FittedFault]) -> Decision:
-    """The verdict on what a search met; ``residuals`` are the nominal vehicle's, ``faults`` of sensors those that parity residuals show."""
-    instead, file = generic_forces(problem, selection.healthy), file_evidence(problem, selection)
-    met, evidence = list(selection.models), instead.sparse()[0]
+def decide(
+    problem: Problem, selection: Selection, residuals: list[Array], faults: Sequence[FittedFault], before: Mapping[Names, Weighed] | None = None
+) -> Decision:
+    """The verdict on what a search met; ``residuals`` are the nominal vehicle's, ``faults`` of sensors those that parity residuals show, ``before`` what an
+    earlier decision found beside models of the same log."""
+    evidence, alone = forces_beside(problem, selection.healthy)
+    file, met, nominal = file_evidence(problem, selection), list(selection.models), unlogged_forces(problem)
     unexplained_gap = open_gap(problem, [selection.healthy, *(m.fit.posterior for m in met if m.fit)])
-    beside, varies, weigh = dict[Names, GenericForces](), dict[Names, Variation](), _leading(problem, selection)
-    alone, adding = fine_forces(problem, selection.healthy), frozenset[Names]()
-    nominal, unlogged = unlogged_forces(problem), dict[Names, tuple[float, float]]()
+    weighed, weigh = dict[Names, Weighed](), _leading(problem, selection)
     while True:  # the sets that lead are weighed, and then each that would be named
-        at_work = [(m, *_where_at_work(problem, m, m.fit)) for m in weigh if m.fit]
-        beside |= {m.names: generic_forces(there, fit.posterior) for m, there, fit in at_work}
-        varies |= {m.names: variation(there, fit.posterior, m.causes) for m, there, fit in at_work}
-        adding |= {m.names for m, _, fit in at_work if not m.part and adds_to_forces(alone, fine_forces(problem, fit.posterior))}
-        unlogged |= {m.names: size for m, there, fit in at_work if (size := _unlogged(there, fit, m, nominal))}
-        more = {names: forces.sparse()[0] for names, forces in beside.items()}
+        weighed |= {m.names: _weighed(problem, m, m.fit, nominal, before or {}) for m in weigh if m.fit}
+        forces, varies = {names: one.forces for names, one in weighed.items()}, {names: one.varying for names, one in weighed.items()}
+        unlogged = {names: one.unlogged for names, one in weighed.items() if one.unlogged}
+        adding = frozenset(names for names, one in weighed.items() if adds_to_forces(alone, one.fine))
         left = replace(gap_left(problem, met), unlogged=unlogged, adding=adding)
-        belief = probabilities(met, file, evidence, more, varies, evidence_of_something_else(unexplained_gap), left)
+        belief = probabilities(met, file, evidence, forces, varies, evidence_of_something_else(unexplained_gap), left)
         best, without = _needed(problem, selection, met, _fitted(problem, selection, met, belief.best))
-        if best.fit is None or best.names in beside:
+        if best.fit is None or best.names in weighed:
             break
         met, weigh = [best, *(m for m in met if m.names != best.names)], [best]
     known = accounted(problem, selection.healthy)
     over = best.evidence - selection.models[0].evidence
     departure, instead_of_any = selection.healthy.largest_departure(), max(evidence, 0.0)
-    found = Decision("no_gap", belief, (), None, {}, {}, {}, over, instead_of_any, 0.0, departure, known, varies, unexplained_gap, None)
+    found = Decision("no_gap", belief, (), None, {}, {}, {}, over, instead_of_any, 0.0, departure, known, weighed, unexplained_gap, None)
     contradicted = any(h.effect.place != "sensor" for h in best.causes) and _contradicted(problem, residuals)
     if best.fit and belief.likelier_than_not == "causes" and not contradicted:
-        return _named(problem, found, best, best.fit, without, beside[best.names], varies[best.names])
+        return _named(problem, found, best, best.fit, without, varies[best.names])
     found = replace(found, indications=indications(selection.steps[0] if selection.steps else (), known, faults))
     if belief.likelier_than_not == "healthy":
         return found
@@ -128,12 +145,17 @@ def _where_at_work(problem: Problem, model: Model, fit: HypothesisFit) -> tuple[
     return (model.part.problem, model.part.fit) if model.part else (problem, fit)
 
 
-def _unlogged(problem: Problem, fit: HypothesisFit, model: Model, nominal: Mapping[str, float]) -> tuple[float, float] | None:
-    """The unlogged force where the causes of a model act, and what is expected of it (`unlogged_where_they_act`), ``nominal`` being those of the whole log
-    beside the nominal vehicle; None where they are not known."""
-    left, at_first = unlogged_forces(problem, fit.posterior), unlogged_forces(problem) if model.part else nominal
+def _weighed(problem: Problem, model: Model, fit: HypothesisFit, nominal: Mapping[str, float], before: Mapping[Names, Weighed]) -> Weighed:
+    """What is found beside a model; ``nominal`` are the unlogged forces of the whole log beside the nominal vehicle."""
+    of = model.evidence, model.part.since if model.part else None
+    if model.names in before and before[model.names].of == of:
+        return before[model.names]
+    there, fit = _where_at_work(problem, model, fit)
+    forces, fine = (generic_forces(there, fit.posterior).sparse()[0], {}) if model.part else forces_beside(there, fit.posterior)
+    left, at_first = unlogged_forces(there, fit.posterior), unlogged_forces(there) if model.part else nominal
     wanders = any(h.effect.wanders for h in model.causes)
-    return unlogged_where_they_act(problem, left, at_first, wanders) if left and at_first else None
+    unlogged = unlogged_where_they_act(there, left, at_first, wanders) if left and at_first else None
+    return Weighed(of, forces, fine, variation(there, fit.posterior, model.causes), unlogged)
 
 
 def _fitted(problem: Problem, selection: Selection, met: Sequence[Model], names: Names) -> Model:
@@ -174,17 +196,17 @@ def _without(problem: Problem, selection: Selection, best: Model, cause: Hypothe
 
 
 def _named(
-    problem: Problem, found: Decision, best: Model, fit: HypothesisFit, without: Mapping[str, Model], beside: GenericForces, varying: Variation
+    problem: Problem, found: Decision, best: Model, fit: HypothesisFit, without: Mapping[str, Model], varying: Variation
 ) -> Decision:
-    """The causes of the best set are named; they explain a part where generic forces ``beside`` them, or sizes ``varying`` along the log, are likelier than
+    """The causes of the best set are named; they explain a part where generic forces beside them, or sizes ``varying`` along the log, are likelier than
     not, or where they leave more of the gap than noise and tolerances make."""
-    belief, evidence, left = found.probabilities, beside.sparse()[0], left_open(problem, fit)
+    belief, evidence, left = found.probabilities, found.weighed[best.names].forces, left_open(problem, fit)
     problem, fit = _where_at_work(problem, best, fit)
     probability = {h.name: belief.of(h.name) for h in best.causes}
     added = {name: best.evidence - m.evidence for name, m in without.items()}
     rest = None
     if something_beside(evidence, varying):
-        rest = unexplained(problem, beside, fit.posterior, goes_with=varying.goes_with)
+        rest = unexplained(problem, generic_forces(problem, fit.posterior), fit.posterior, goes_with=varying.goes_with)
     elif left > 1.0:
         rest = unexplained_by_any(problem, 1.0 / left, corrected_residuals(problem, fit.beta), fit.posterior)
     return replace(

@@ -102,13 +102,14 @@ def generic_forces(problem: Problem, point: Posterior) -> GenericForces:
     return beside(problem, names, answers, point.linear, point.precision, point.precision * point.departure)
 
 
-def fine_forces(problem: Problem, point: Posterior) -> dict[str, float]:
-    """Evidence by axis of forces beside a fit in the fine metric, in which what is left of the gap is no form error; none where there is no such metric."""
+def forces_beside(problem: Problem, point: Posterior) -> tuple[float, dict[str, float]]:
+    """(Evidence of a few generic forces beside a fit (`GenericForces.sparse`), the same by axis in the fine metric, in which what is left of the gap is no form
+    error; empty where there is no such metric)."""
     fine = in_fine_metric(problem, point.beta, point.linear)
-    if fine is None:
-        return {}
     names, answers = generic_force_responses(problem.runs, point.beta)
-    return beside(fine[0], names, answers, fine[1], point.precision, point.precision * point.departure).by_axis()
+    prior = point.precision, point.precision * point.departure
+    evidence = beside(problem, names, answers, point.linear, *prior).sparse()[0]
+    return evidence, beside(fine[0], names, answers, fine[1], *prior).by_axis() if fine else {}
 
 
 def nominal_forces(problem: Problem) -> GenericForces:
