@@ -31,7 +31,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
-from math import exp, log1p
+from math import exp, log, log1p
 
 import numpy as np
 from scipy.integrate import fixed_quad
@@ -185,6 +185,11 @@ def unlogged_where_they_act(problem: Problem, left: Mapping[str, float], nominal
     kept = {axis: nominal[axis] * min(gap.calibrated.get(axis, 0.0) / max(gap.errors[axis], TINY), 1.0) ** 0.5 for axis in left}
     calibrated, at_first = (where_causes_act(size, left, nominal) for size in (kept, nominal))
     return where_causes_act(left, left, nominal), FORCE_RIGHT + calibrated + (VARIATIONS[0] * at_first if wanders else 0.0)
+
+
+def evidence_by_force(size: float, mean: float) -> float:
+    """Twice the log Bayes factor of what only looks like causes over these, by the unlogged force where they act and its mean about right ones."""
+    return 2.0 * (log(FORCE_ALIKE) - 2.0 * log(FORCE_ALIKE + size) + log(mean) + size / mean)
 
 
 def none_of_the_library(names: Names, left: Left | None, beside: bool = False) -> float:

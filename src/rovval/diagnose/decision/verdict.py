@@ -73,6 +73,8 @@ class Decision:
         weighed: what was found beside the most probable sets of causes.
         open_gap: what is left of the gap beyond noise, over what noise and tolerances are expected to make (1): with the causes that are named, on held-out
             windows.
+        unlogged: of the best set, named or not, the force that nobody logged where it acts, and what is expected of it about right causes; None where that
+            is not known.
         unexplained: what is left; None where nothing is.
         indications: what points to a cause where none is named; None where causes are.
         since: s since the run's start from which on the causes are at work, where they are fitted to that part alone; else None.
@@ -92,6 +94,7 @@ class Decision:
     accounted: Accounted
     weighed: Mapping[Names, Weighed]
     open_gap: float
+    unlogged: tuple[float, float] | None
     unexplained: Unexplained | None
     indications: Indications | None = None
     since: float | None = None
@@ -120,7 +123,8 @@ def decide(
     known = accounted(problem, selection.healthy)
     over = best.evidence - selection.models[0].evidence
     departure, instead_of_any = selection.healthy.largest_departure(), max(evidence, 0.0)
-    found = Decision("no_gap", belief, (), None, {}, {}, {}, over, instead_of_any, 0.0, departure, known, weighed, unexplained_gap, None)
+    pushed = weighed[best.names].unlogged if best.names in weighed else None
+    found = Decision("no_gap", belief, (), None, {}, {}, {}, over, instead_of_any, 0.0, departure, known, weighed, unexplained_gap, pushed, None)
     contradicted = any(h.effect.place != "sensor" for h in best.causes) and _contradicted(problem, residuals)
     if best.fit and belief.likelier_than_not == "causes" and not contradicted:
         return _named(problem, found, best, best.fit, without, varies[best.names])

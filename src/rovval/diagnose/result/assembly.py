@@ -14,6 +14,7 @@ from rovval.core.version import __version__
 from rovval.diagnose.criteria import SLICES
 from rovval.diagnose.decision.consistency import inconsistencies
 from rovval.diagnose.decision.finding import Finding
+from rovval.diagnose.decision.resemblance import evidence_by_force
 from rovval.diagnose.decision.unexplained import Unexplained as Rest
 from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.hypotheses.change_points import change_points
@@ -43,6 +44,7 @@ from rovval.diagnose.result.diagnosis import (
     SensorFault,
     Shrinkage,
     Unexplained,
+    UnloggedForce,
 )
 from rovval.diagnose.result.experiment import next_experiment
 from rovval.diagnose.result.figures import coherence_matrix, heat_map, traces
@@ -171,6 +173,7 @@ def _detection(decision: Decision) -> Detection:
         generic_beside=decision.generic_beside,
         largest_departure=decision.departure,
         open_gap=decision.open_gap,
+        unlogged_force=UnloggedForce(size=size[0], expected=size[1], evidence=evidence_by_force(*size)) if (size := decision.unlogged) else None,
         calibration_left=decision.accounted.calibrated,
     )
 

@@ -172,6 +172,14 @@ class Probabilities(Record):
     )
 
 
+class UnloggedForce(Record):
+    """The force that nobody logged, as large as is most likely for what a model leaves, where that acts: as a share of the rms force of all thrusters."""
+
+    size: float = Field(description="its standard deviation, 1 is the thrusters' own")
+    expected: float = Field(description="its mean beside causes that are right, the same unit")
+    evidence: float = Field(description="twice the log Bayes factor of something that only looks like the causes over these, by its size")
+
+
 class Detection(Record):
     """What the verdict rests on."""
 
@@ -190,6 +198,10 @@ class Detection(Record):
     open_gap: float = Field(
         default=0.0,
         description="squared gap that causes, or where none are named any model, leave beyond noise, over what noise and tolerances are expected to make",
+    )
+
+    unlogged_force: UnloggedForce | None = Field(
+        default=None, description="the force that nobody logged where the most probable causes act, named or rejected; null where it is not known"
     )
 
     calibration_left: float = Field(

@@ -43,7 +43,7 @@ def also(d: Diagnosis) -> list[str]:
 def _more(d: Diagnosis) -> list[str]:
     near = [no_cause.nearest(d)] if not d.causes and d.verdict == "no_gap" else []
     seen = [no_cause.sensors(d)] if not d.causes else []
-    return [_gap(d), *_each(d), _beside_tolerance(d), _harm(d), _left(d), *near, *seen, recalibration.sentence(d), _log(d)]
+    return [_gap(d), *_each(d), _beside_tolerance(d), _harm(d), _left(d), _unlogged(d), *near, *seen, recalibration.sentence(d), _log(d)]
 
 
 def facts(d: Diagnosis) -> dict[str, Any]:
@@ -103,6 +103,18 @@ def _harm(d: Diagnosis) -> str:
 def _left(d: Diagnosis) -> str:
     text = no_cause.unexplained(d)
     return f"Left unexplained: {text}." if text and d.verdict in ("partly_explained", "unknown") else ""
+
+
+def _unlogged(d: Diagnosis) -> str:
+    """The force that nobody logged beside causes, where it speaks for something that only looks like them."""
+    force = d.detection.unlogged_force if d.detection else None
+    if force is None or force.evidence <= 0.0 or d.verdict == "no_gap":
+        return ""
+    of = "the causes act" if len(d.causes) > 1 else "the cause acts" if d.causes else "what comes nearest acts"
+    return (
+        f"Where {of}, a force is left that nobody logged, {per_cent(force.size)} of the thrusters' own; beside right causes it is {per_cent(force.expected)} "
+        "on average. Something that only looks like them leaves so much."
+    )
 
 
 def _log(d: Diagnosis) -> str:
