@@ -26,6 +26,7 @@ from rovval.diagnose.criteria import (
 from rovval.diagnose.decision.resemblance import (
     Left,
     adds_to_forces,
+    evidence_by_force,
     gap_left,
     looks_like_form_error,
     looks_only_alike,
@@ -90,6 +91,7 @@ def test_causes_that_leave_a_force_where_they_act_are_rather_something_else():
     assert odds(0.01) < at_rest / (1.0 - at_rest) < odds(0.2) < odds(0.4)
     assert odds(0.2, 3.0 * FORCE_RIGHT) < 0.5 * odds(0.2), "of what a calibration left, or what wanders, more is expected"
     assert odds(0.4, wanders=True) > 10.0 * odds(0.01, wanders=True)
+    assert evidence_by_force(0.2, 0.07) == pytest.approx(2.0 * np.log(odds(0.2, 0.07) / at_rest * (1.0 - at_rest)))
     beyond = replace(left(a_b=0.3), unlogged={AB: (1e5, FORCE_RIGHT)})
     assert looks_only_alike(AB, beyond) == (1.0, 0.0), "however large"
 

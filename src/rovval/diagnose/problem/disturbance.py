@@ -101,7 +101,7 @@ def estimate_disturbance(
     share, correlation = before.rms / responses.wrench, np.exp(-segment_s / before.memory_s)
     share, correlation = _expectation_maximisation(_equations(runs, less, responses.segments, variance), share, correlation)
     root = np.asarray(np.linalg.cholesky(covariance(share, correlation)), dtype=float)
-    return Disturbance(share * responses.wrench, -segment_s / np.log(correlation), tuple(times(one, root) for one in responses.segments))
+    return Disturbance(share * responses.wrench, -segment_s / np.log(correlation), tuple(correlated(one, root) for one in responses.segments))
 
 
 def unit_forces(windows: Windows) -> list[tuple[str, Array]]:
@@ -164,6 +164,6 @@ def covariance(share: Array, correlation: Array) -> Array:
     return np.asarray(block_diag(*[max(s, LEAST) ** 2 * m**apart for s, m in zip(share, correlation, strict=True)]))
 
 
-def times(response: Array, root: Array) -> Array:
+def correlated(response: Array, root: Array) -> Array:
     """Responses (m, n, c, d) to forces that are ``root`` (d, d) times independent ones, to those."""
     return np.matmul(response, root, out=zeros(*response.shape))

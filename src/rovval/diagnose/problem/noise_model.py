@@ -20,11 +20,11 @@ from rovval.diagnose.effort import COMPONENT_ROUNDS, INITIAL_DESIGN_EFFECT, NOIS
 from rovval.diagnose.problem.cross_validation import Fold, FoldSums, cross_validate
 from rovval.diagnose.problem.disturbance import (
     Disturbance,
+    correlated,
     estimate_disturbance,
     initial_disturbance,
     no_disturbance,
     principal_parts,
-    times,
     unit_responses,
 )
 from rovval.diagnose.problem.variance_components import Components, variance_components
@@ -100,7 +100,7 @@ def fit_noise_model(
     components: Components | None = None
     for _ in range(COMPONENT_ROUNDS):
         if components:
-            disturbed, beside = _with_disturbances(runs, plain, [times(segments, components.root()) for segments in responses.segments])
+            disturbed, beside = _with_disturbances(runs, plain, [correlated(segments, components.root()) for segments in responses.segments])
             _, best = _library_fit(disturbed, beside, np.tile(components.noise**2, (len(white), 1)), library, folds, design_effect)
         left = [replace(one, r=np.where(windows.ok, one.r - one.S @ best, 0.0)) for windows, one in zip(runs, plain, strict=True)]
         components = variance_components(runs, left, responses.segments, np.sqrt(white.mean(axis=0)))

@@ -18,7 +18,7 @@ from rovval.core.errors import BadInput
 from rovval.core.large_arrays import side_by_side
 from rovval.diagnose.criteria import EXACT_WINDOWS, LEAST_WINDOWS
 from rovval.diagnose.problem.cross_validation import Fold, make_folds
-from rovval.diagnose.problem.disturbance import Disturbance, principal_parts, segment_responses, times
+from rovval.diagnose.problem.disturbance import Disturbance, correlated, principal_parts, segment_responses
 from rovval.diagnose.problem.noise_model import equations_of_runs, fit_noise_model
 from rovval.diagnose.problem.prior import loosened_by_closed_loop, prior_mean, tolerance_prior
 from rovval.diagnose.problem.variance_components import Components
@@ -184,7 +184,7 @@ def in_fine_metric(problem: Problem, beta: Array, linear: Sequence[Linearisation
         return None
     found, starts = problem.components, len(initial_state_sd(problem.runs[0]))
     variance = np.tile(found.noise**2, (len(problem.likelihood.variance), 1))
-    responses = [times(segments, found.root()) for segments in segment_responses(problem.runs, beta, typical_wrench(problem.runs))]
+    responses = [correlated(segments, found.root()) for segments in segment_responses(problem.runs, beta, typical_wrench(problem.runs))]
     parts = principal_parts(problem.runs, responses, variance)
     runs = tuple(replace(windows, disturbance_response=one) for windows, one in zip(problem.runs, parts, strict=True))
     beside = tuple(replace(one, J=side_by_side(one.J[..., :starts], more)) for one, more in zip(linear, parts, strict=True))
