@@ -8,7 +8,15 @@ from math import inf
 import numpy as np
 import pytest
 
-from rovval.diagnose.criteria import BETWEEN_CAUSES, GROUP_PROBABILITY, NOT_FOUND, PRIOR_CAUSES, PRIOR_SOMETHING_ELSE
+from rovval.diagnose.criteria import (
+    BETWEEN_CAUSES,
+    GROUP_PROBABILITY,
+    LIBRARY_ALIKE,
+    NOT_FOUND,
+    PRIOR_CAUSES,
+    PRIOR_FILE,
+    PRIOR_SOMETHING_ELSE,
+)
 from rovval.diagnose.decision.constancy import Variation
 from rovval.diagnose.decision.open_gap import evidence_of_something_else
 from rovval.diagnose.decision.posterior import Probabilities, probabilities, something_beside
@@ -170,7 +178,10 @@ def test_a_cause_that_varies_is_another_form_of_it_or_something_else(form: float
 
 
 def test_a_file_off_in_many_numbers_is_believed_where_it_explains_more():
-    assert belief({("inflow_loss",): 80.0}, file=200.0).file > 0.99
+    """Over causes and a healthy vehicle; not over what the library lacks and many numbers of a file imitate, which are told apart by the priors alone."""
+    found = belief({("inflow_loss",): 80.0}, file=200.0)
+    assert found.causes < 1e-20 and found.healthy < 1e-20
+    assert found.file / found.unexplained == pytest.approx(PRIOR_FILE / (LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE))
 
 
 def test_causes_are_at_work_whatever_else_of_the_file_is_off():

@@ -39,7 +39,7 @@ from rovval.diagnose.criteria import (
 )
 from rovval.diagnose.decision.as_calibrated import odds_as_calibrated
 from rovval.diagnose.decision.constancy import Variation
-from rovval.diagnose.decision.resemblance import Left, looks_like_form_error, looks_only_alike
+from rovval.diagnose.decision.resemblance import Left, looks_like_form_error, looks_only_alike, looks_only_like_a_file
 from rovval.diagnose.effort import NEGLIGIBLE
 from rovval.diagnose.search.model import Model, Names, best_of_each_set
 
@@ -190,6 +190,8 @@ def probabilities(
             wanders = all(causes[name].effect.wanders for name in names)
             shows = beside.get(names, -inf) > -inf and not wanders
             none, as_it_was = looks_only_alike(names, left, shows, _as_calibrated(left, names, PRIOR_CAUSES), wanders)
+        elif kind == "filed":
+            none, as_it_was = looks_only_like_a_file(), 0.0
         elif kind == "else" or kind.startswith(VARYING):
             odds = _as_calibrated(left, names, PRIOR_SOMETHING_ELSE)
             none, as_it_was = 0.0, odds / (1.0 + odds)

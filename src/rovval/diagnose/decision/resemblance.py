@@ -50,6 +50,7 @@ from rovval.diagnose.criteria import (
     MATERIAL,
     NOT_FOUND,
     PRIOR_CAUSES,
+    PRIOR_FILE,
     PRIOR_SOMETHING_ELSE,
     SHOWS_BESIDE,
     VARIATIONS,
@@ -212,6 +213,13 @@ def looks_only_alike(names: Names, left: Left | None, beside: bool = False, as_c
         right, as_calibrated, none = right * by_right, as_calibrated * by_right, none * by_alike
     total = right + (none + as_calibrated) * alike
     return none * alike / total, as_calibrated * alike / total
+
+
+def looks_only_like_a_file() -> float:
+    """Probability that what looks like a file that is off in many numbers, and like no cause, is none of the library: by the priors alone. So many numbers
+    imitate whatever acts."""
+    odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / PRIOR_FILE
+    return odds / (1.0 + odds)
 
 
 def looks_like_form_error(name: str, names: Names, left: Left | None) -> float:

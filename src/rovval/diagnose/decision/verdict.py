@@ -133,7 +133,8 @@ def decide(
         return found
     inconstant = [h.name for h in best.causes] if belief.varying > 0.5 * belief.unexplained else []
     goes_with = varies[best.names].goes_with if inconstant else None
-    if belief.unexplained > max(belief.healthy, belief.causes) and evidence <= 0.0 and not inconstant:
+    imitated = belief.file > NEGLIGIBLE  # what is at work looks like many numbers of the file, and so goes with the motion
+    if belief.unexplained > max(belief.healthy, belief.causes) and evidence <= 0.0 and not inconstant and not imitated:
         return replace(found, verdict="unknown", unexplained=unexplained_by_any(problem, known.share, residuals, selection.healthy))
     return replace(found, verdict="unknown", unexplained=unexplained(problem, nominal_forces(problem), selection.healthy, inconstant, goes_with))
 
