@@ -19,8 +19,8 @@ from rovval.diagnose.search.onset import evidence_with_onset, moved_onset, with_
 
 
 @dataclass(frozen=True, slots=True)
-class Searched:
-    """One pass of the algorithm, before anything is decided.
+class Finding:
+    """One pass of the algorithm.
 
     Attributes:
         problem: the estimation problem that was posed.
@@ -28,6 +28,7 @@ class Searched:
         selection: what the search found.
         residuals: the nominal vehicle's, per run (windows, samples, channels).
         faults: of sensors, each fitted to the parity residuals by itself.
+        decision: the verdict.
     """
 
     problem: Problem
@@ -35,19 +36,7 @@ class Searched:
     selection: Selection
     residuals: list[Array]
     faults: tuple[FittedFault, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Finding(Searched):
-    """The same with the verdict, the ``decision``."""
-
     decision: Decision
-
-    @classmethod
-    def of(cls, one: Searched) -> Finding:
-        """The verdict on what was searched."""
-        decision = decide(one.problem, one.selection, one.residuals, one.faults)
-        return cls(one.problem, one.untestable, one.selection, one.residuals, one.faults, decision)
 
 
 def may_begin(whole: Finding, time: float) -> bool:
@@ -59,7 +48,7 @@ def may_begin(whole: Finding, time: float) -> bool:
     return evidence_with_onset(problem, best.fit, time, healthy) > best.evidence + 2.0 * log(NEGLIGIBLE)
 
 
-def began(late: Searched, whole: Finding, time: float) -> float:
+def began(late: Finding, whole: Finding, time: float) -> float:
     """When (s) the likeliest causes in the part of the ``whole`` log from ``time`` on began; ``time`` where there are none."""
     best = late.selection.best
     return moved_onset(whole.problem, best.fit, time, whole.selection.healthy) if best.fit else time
