@@ -190,7 +190,8 @@ def unlogged_where_they_act(problem: Problem, left: Mapping[str, float], nominal
 
 def evidence_by_force(size: float, mean: float) -> float:
     """Twice the log Bayes factor of what only looks like causes over these, by the unlogged force where they act and its mean about right ones."""
-    return 2.0 * (log(FORCE_ALIKE) - 2.0 * log(FORCE_ALIKE + size) + log(mean) + size / mean)
+    right, alike = _log_densities_of_force(size, mean)
+    return 2.0 * (alike - right)
 
 
 def none_of_the_library(names: Names, left: Left | None, beside: bool = False) -> float:
@@ -209,7 +210,7 @@ def looks_only_alike(names: Names, left: Left | None, beside: bool = False, as_c
         right, alike = _densities(*left.where_they_act(names), lambda share: freedom * (1.0 - share) ** (freedom - 1.0))
         none *= SHOWS_BESIDE[1] / NOT_FOUND if names in left.adding else 1.0
     if left is not None and names in left.unlogged:
-        by_right, by_alike = _densities_of_force(*left.unlogged[names])
+        by_right, by_alike = (exp(density) for density in _log_densities_of_force(*left.unlogged[names]))
         right, as_calibrated, none = right * by_right, as_calibrated * by_right, none * by_alike
     total = right + (none + as_calibrated) * alike
     return none * alike / total, as_calibrated * alike / total
@@ -229,10 +230,10 @@ def looks_like_form_error(name: str, names: Names, left: Left | None) -> float:
     return form_error(float(np.min(left.beyond(name, names))))
 
 
-def _densities_of_force(size: float, mean: float) -> tuple[float, float]:
-    """Densities of an unlogged force: exponential about ``mean`` where right causes act, log-logistic of median `FORCE_ALIKE` where only what looks like them
-    does."""
-    return exp(-size / mean) / mean, FORCE_ALIKE / (FORCE_ALIKE + size) ** 2
+def _log_densities_of_force(size: float, mean: float) -> tuple[float, float]:
+    """Log densities of an unlogged force: exponential about ``mean`` where right causes act, log-logistic of median `FORCE_ALIKE` where only what looks like
+    them does."""
+    return -size / mean - log(mean), log(FORCE_ALIKE) - 2.0 * log(FORCE_ALIKE + size)
 
 
 def _densities(left: float, healthy: float, density: Callable[[Array], Array]) -> tuple[float, float]:
