@@ -39,6 +39,7 @@ CHANGE_STARTS = 2  # change points of the gap that an onset begins from (chosen)
 PERIOD_STARTS = 3  # periods of the residual that an effect begins from (chosen)
 LEVER_SHARE = 0.7  # of the furthest thruster's distance from the origin: where a force may act ahead or astern (chosen)
 DATUM_QUANTILES = (0.25, 0.5, 0.75)  # of a log's depth, where what changes with depth may have its datum (chosen)
+SPEED_QUANTILES = (0.25, 0.5, 0.75)  # of the speeds at which a thruster turns in a log, where it may break away (chosen)
 GAP_CHANGE_SPLITS = 2  # times that the gap is split: three change points at most (chosen)
 WAVE_LINES = 3  # periods about which waves are looked for (chosen)
 WAVE_TRAINS = 3  # periods in one direction that waves begin from, as many trains as the effect has

@@ -61,6 +61,23 @@ def test_a_change_with_depth_begins_at_depths_of_the_log():
         assert len(data) == 3 and z.min() < min(data) < max(data) < z.max()
 
 
+def test_a_threshold_begins_at_speeds_at_which_the_thruster_turns_in_the_log():
+    p, library = posed()
+    data = p.runs[0].actuation
+    for i, thruster in enumerate(merlin().thrusters):
+        turns = np.abs(data.inputs.speed[data.known][:, i])
+        begins = [dict(h.at)[slot(p, f"thruster_sticking[{thruster}].breakaway")] for h in library if h.name == f"thruster_sticking[{thruster}]"]
+        assert len(begins) == 3 and turns[turns > 0.0].min() < min(begins) < max(begins) < turns.max()
+
+
+@pytest.mark.slow
+def test_a_thruster_that_sticks_at_half_of_its_speed_is_found():
+    """Far beyond a usual dead band: a search that begins at the size of one changes nothing there, and sees no slope."""
+    document = diagnose([own(("thruster_sticking[HFP]:breakaway=2.2",), 5, 240.0)], merlin()).document()
+    assert [c["effect"] for c in document["causes"]] == ["thruster_sticking[HFP]"], document["sentence"]
+    assert document["causes"][0]["parameters"]["breakaway"]["value"] == pytest.approx(2.2, rel=0.1)
+
+
 @pytest.mark.slow
 def test_an_offset_along_one_axis_is_tried_by_itself():
     """Three parameters free for one that is off are evidence lost."""

@@ -20,6 +20,7 @@ from rovval.diagnose.effort import (
     MOST_STARTS,
     ONSET_STARTS,
     PERIOD_STARTS,
+    SPEED_QUANTILES,
     TRAIN_START,
     WHOLE_STARTS,
 )
@@ -151,6 +152,15 @@ def _depths(windows: Sequence[Windows]) -> tuple[float, ...]:
     return tuple(dict.fromkeys(float(d) for d in np.quantile(z, DATUM_QUANTILES)))
 
 
+def _speeds(target: Target, windows: Sequence[Windows]) -> tuple[float, ...]:
+    """Shaft speeds (rev/s) slow, middling and fast among those at which a thruster turns in the logs, or all do: a threshold below all of them changes
+    nothing, and above all of them it makes a dead thruster. None where it stands still."""
+    own = [i for i, thruster in enumerate(target.plant.vehicle.thrusters) if target.name == f"{target.effect.name}[{thruster}]"]
+    speed = np.abs(np.concatenate([part.actuation.inputs.speed[part.actuation.known] for part in windows])[:, own or slice(None)])
+    turning = speed[speed > 0.0]
+    return tuple(dict.fromkeys(float(n) for n in np.quantile(turning, SPEED_QUANTILES))) if turning.size else ()
+
+
 def _onsets(windows: Sequence[Windows], changes_s: Sequence[float]) -> tuple[float, ...]:
     """Onsets (s since the first run's start) at its first changes, and others spread over it, `MOST_STARTS` in all."""
     first, last = float(windows[0].start[0]), float(windows[0].start[-1])
@@ -161,8 +171,8 @@ def _onsets(windows: Sequence[Windows], changes_s: Sequence[float]) -> tuple[flo
 
 
 def _grids(target: Target, windows: Sequence[Windows], hints: Hints) -> dict[int, tuple[float, ...]]:
-    """Initial values by slot: onsets over the log and at its changes, depths within those of the log, the best periods as far as `MOST_STARTS` lets them,
-    and other grids as the effect states them, held within the bounds."""
+    """Initial values by slot: onsets over the log and at its changes, depths and shaft speeds within those of the log, the best periods as far as
+    `MOST_STARTS` lets them, and other grids as the effect states them, held within the bounds."""
     found, periods = {}, hints.periods.get(None, ())
     for slot in target.slots:
         parameter = target.parameter(slot)
@@ -170,6 +180,8 @@ def _grids(target: Target, windows: Sequence[Windows], hints: Hints) -> dict[int
             found[slot] = _onsets(windows, hints.changes_s)
         elif parameter.role == "datum":
             found[slot] = _depths(windows)
+        elif parameter.role == "threshold":
+            found[slot] = tuple(parameter.within(speed) for speed in _speeds(target, windows))
         elif parameter.starts:
             found[slot] = tuple(v for v in parameter.starts if parameter.low <= v <= parameter.high)
             if parameter.role == "period" and (here := [p for p in periods if parameter.low <= p <= parameter.high]):

@@ -16,7 +16,7 @@ EFFECT = Effect(
     "of it well above.",
     symbols={"n_i": "shaft speed of thruster i; rev/s", "breakaway": "speed that it has to be asked for before it turns; rev/s"},
     parameters=(
-        Parameter("breakaway", "rev/s", 0.0, 60.0, 0.0, 2.5, "as the width of `thruster_deadband`", "speed", starts=(4.0,)),
+        Parameter("breakaway", "rev/s", 0.0, 60.0, 0.0, 2.5, "as the width of `thruster_deadband`", "speed", role="threshold"),
     ),
     per="thruster",
     signature="small commands to that thruster do nothing, large ones all they should",
