@@ -44,6 +44,6 @@ def test_a_cause_without_which_the_named_set_is_as_probable_is_not_named():
     prior = ModelPrior.of(causes)
     fit = fit_hypothesis(problem, problem.origin, tuple(s for h in causes for s in h.slots)).without_sensitivities()
     alone, both = Model((), None, laplace_evidence(problem, healthy), prior.log_mass(())), Model(causes, fit, fit.evidence, prior.log_mass(causes))
-    found = decide(problem, Selection((alone, both), both, healthy, (), (), None, prior), corrected_residuals(problem), ())
+    found = decide(problem, Selection((alone, both), both, healthy, (), (), None, prior, ()), corrected_residuals(problem), ())
     assert [h.name for h in found.causes] == ["inflow_loss"] and found.verdict == "explained"
     assert found.added["inflow_loss"] > 10.0

@@ -28,7 +28,7 @@ from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.residuals.sensor_faults import FittedFault
 from rovval.diagnose.search.discrepancy import forces_beside, generic_forces, nominal_forces
 from rovval.diagnose.search.forward import Selection
-from rovval.diagnose.search.joint import joint_fit, refitted
+from rovval.diagnose.search.joint import joint_fit, refitted, with_relatives
 from rovval.diagnose.search.model import Model, Names, best_of_each_set
 
 Verdict = Literal["no_gap", "explained", "partly_explained", "unknown"]
@@ -108,8 +108,8 @@ def decide(
     evidence, alone = forces_beside(problem, selection.healthy)
     file, met, nominal = file_evidence(problem, selection), list(selection.models), unlogged_forces(problem)
     unexplained_gap = open_gap(problem, [selection.healthy, *(m.fit.posterior for m in met if m.fit)])
-    weighed, weigh = dict[Names, Weighed](), _leading(problem, selection)
-    while True:  # the sets that lead are weighed, and then each that would be named
+    weighed, weigh, exchanged = dict[Names, Weighed](), _leading(problem, selection), {selection.best.names}
+    while True:  # the sets that lead are weighed, and then each that would be named, beside others in the place of each of its causes
         weighed |= {m.names: _weighed(problem, m, m.fit, nominal, before or {}) for m in weigh if m.fit}
         forces, varies = {names: one.forces for names, one in weighed.items()}, {names: one.varying for names, one in weighed.items()}
         unlogged = {names: one.unlogged for names, one in weighed.items() if one.unlogged}
@@ -117,9 +117,12 @@ def decide(
         left = replace(gap_left(problem, met), unlogged=unlogged, adding=adding)
         belief = probabilities(met, file, evidence, forces, varies, evidence_of_something_else(unexplained_gap), left)
         best, without = _needed(problem, selection, met, _fitted(problem, selection, met, belief.best))
-        if best.fit is None or best.names in weighed:
+        if best.fit is None or (best.names in weighed and best.names in exchanged):
             break
-        met, weigh = [best, *(m for m in met if m.names != best.names)], [best]
+        met, weigh = [best, *(m for m in met if m.names != best.names)], [] if best.names in weighed else [best]
+        if best.names not in exchanged:
+            met += with_relatives(problem, selection.prior, selection.library, best, {m.names for m in met})
+            exchanged |= {best.names}
     known = accounted(problem, selection.healthy)
     over = best.evidence - selection.models[0].evidence
     departure, instead_of_any = selection.healthy.largest_departure(), max(evidence, 0.0)

@@ -24,7 +24,7 @@ from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.search.baseline import Candidate, baseline_of, healthy_baseline
 from rovval.diagnose.search.candidates import candidates
-from rovval.diagnose.search.joint import reconsidered, settled
+from rovval.diagnose.search.joint import reconsidered, settled, with_relatives
 from rovval.diagnose.search.model import Model, ModelPrior
 from rovval.diagnose.search.onset import suspected_onset
 from rovval.diagnose.search.plausible import plausible
@@ -45,6 +45,7 @@ class Selection:
         steps: candidates of each step that had any.
         onset: from when on (s since the run's start) something seems to be at work that was not there before; None where nothing does.
         prior: prior mass of any set of causes.
+        library: hypotheses that competed, with their initial points.
     """
 
     models: tuple[Model, ...]
@@ -54,6 +55,7 @@ class Selection:
     steps: tuple[tuple[Row, ...], ...]
     onset: float | None
     prior: ModelPrior
+    library: tuple[Hypothesis, ...]
 
     @property
     def log_posterior(self) -> float:
@@ -93,9 +95,9 @@ def search(
         if front.log_posterior < best.log_posterior + log(NEGLIGIBLE) or len(front.causes) > len(best.causes) + 1 or (doubted and before_doubted):
             break
     progress("weighing the causes beside each other", 0.7)
-    healthy, models, best = _reconsidered(problem, prior, healthy, models, best, tried)
+    healthy, models, best = _reconsidered(problem, prior, initialised, healthy, models, best, tried)
     rows = tuple(tuple((c.hypothesis.name, c.evidence, c.gain) for c in step) for step in tried)
-    return Selection(tuple(models), best, healthy, _ranking(problem, library, best, rows), rows, onset, prior)
+    return Selection(tuple(models), best, healthy, _ranking(problem, library, best, rows), rows, onset, prior, tuple(initialised))
 
 
 def _extended(
@@ -130,7 +132,8 @@ def _model(prior: ModelPrior, front: Model, one: Candidate) -> Model:
 
 
 def _reconsidered(
-    problem: Problem, prior: ModelPrior, healthy: Posterior, models: list[Model], best: Model, tried: Sequence[Sequence[Candidate]]
+    problem: Problem, prior: ModelPrior, initialised: list[Hypothesis], healthy: Posterior, models: list[Model], best: Model,
+    tried: Sequence[Sequence[Candidate]],
 ) -> tuple[Posterior, list[Model], Model]:
     """The healthy fit, tried from where it is beside the causes, too; the models with those that came of exchanging causes; and the best of them."""
     if best.fit is None:
@@ -139,7 +142,8 @@ def _reconsidered(
     models = [Model((), None, laplace_evidence(problem, healthy), models[0].log_prior), *models[1:]]
     known = {m.names for m in models}
     while len(best.causes) > 1:
-        models = settled(problem, [*models, *reconsidered(problem, prior, best, tried, known)], 1)
+        exchanged = [*reconsidered(problem, prior, best, tried, known), *with_relatives(problem, prior, initialised, best, known)]
+        models = settled(problem, [*models, *exchanged], 1)
         better = max(models, key=lambda m: m.log_posterior)
         if better.fit is None or better.log_posterior <= best.log_posterior:
             break

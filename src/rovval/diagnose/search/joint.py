@@ -1,7 +1,9 @@
-"""Joint reconsideration: each cause of a set is weighed against its absence and against the names that came nearest to it, beside the other causes.
+"""Joint reconsideration: each cause of a set is weighed against its absence, and against other names in its place, beside the other causes.
 
 A search that adds one cause after the other decides about the first without the second. Where two causes offset each other neither explains the
-logs alone, and where the first was the nearest relative of two, another name is better once both are there.
+logs alone, and where the first was the nearest relative of two, another name is better once both are there. So a set is a step of the search back, too
+(floating search: Pudil, Novovicova and Kittler 1994): each cause is taken out and what could stand in for it is fitted, which shows what the log does not
+tell from it.
 """
 
 from __future__ import annotations
@@ -10,12 +12,19 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import log
 
-from rovval.diagnose.effort import MOST_ALTERNATIVES, NEGLIGIBLE
-from rovval.diagnose.hypotheses.hypothesis import Hypothesis
+import numpy as np
+
+from rovval.core.data import Array
+from rovval.diagnose.effort import MOST_ALTERNATIVES, MOST_RELATIVES, NEGLIGIBLE
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of, wide_prior
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, fit_hypothesis, fit_quickly, only_places
 from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.residuals.normal_equations import NormalEquations
+from rovval.diagnose.residuals.ridge import ridge_step
 from rovval.diagnose.search.baseline import Candidate
-from rovval.diagnose.search.model import Model, ModelPrior, best_of_each_set
+from rovval.diagnose.search.candidates import start_of
+from rovval.diagnose.search.model import Model, ModelPrior, Names, best_of_each_set
+from rovval.diagnose.search.screening import linearised, screened
 
 
 def reconsidered(problem: Problem, prior: ModelPrior, best: Model, tried: Sequence[Sequence[Candidate]], known: set[frozenset[str]]) -> list[Model]:
@@ -53,6 +62,51 @@ def _exchanged(problem: Problem, whole: HypothesisFit, rest: Sequence[Hypothesis
     start[placed] = other.fit.beta[placed]
     again = fit_quickly(problem, start, fit.slots, without.posterior.whitened)
     return max(fit, again, key=lambda one: one.evidence)
+
+
+def with_relatives(problem: Problem, prior: ModelPrior, library: Sequence[Hypothesis], whole: Model, known: set[Names]) -> list[Model]:
+    """Models of a set of causes with each of them exchanged for the hypotheses of the library that would stand in for it, whether or not the search met them.
+
+    About the fit of the set each cause is taken out in turn, with its response in the linearised model, and every hypothesis is screened in its place; those
+    that promise most (`MOST_RELATIVES`) are fitted by re-simulation. Of a single cause every exchange was a candidate of the first step, and causes that begin
+    in mid-log were exchanged in their part: of these there are none.
+
+    Args:
+        problem: what they are fitted to.
+        prior: prior mass of sets of causes.
+        library: hypotheses to choose from.
+        whole: the set, its fit with sensitivities.
+        known: names of the sets that were fitted already; those that are fitted here are added to it.
+    """
+    if whole.fit is None or whole.part or len(whole.causes) < 2:
+        return []
+    fit, found = whole.fit, list[Model]()
+    data, others = linearised(problem, library, fit.posterior), [h for h in library if h.name not in whole.names]
+    for cause in whole.causes:
+        rest = [h for h in whole.causes if h is not cause]
+        kept = tuple(dict.fromkeys(s for h in rest for s in h.slots))
+        gone = [s for s in cause.slots if s not in kept]
+        start, without = fit.posterior.beta.copy(), _taken_out(problem, data, fit.posterior.beta, gone)
+        start[gone] = problem.origin[gone]
+        promised, beside = screened(problem, without, others, kept), problem.tolerance.widened(wide_prior(problem, kept))
+        nearest = dict[str, Hypothesis]()
+        for h in sorted(others, key=lambda h: -promised[h.label]):
+            nearest.setdefault(h.name, h)
+        for h in list(nearest.values())[:MOST_RELATIVES]:
+            if (names := frozenset({h.name, *(one.name for one in rest)})) not in known:
+                slots = tuple(dict.fromkeys((*kept, *h.slots)))
+                steps = ridge_step(without, beside.widened(prior_of(problem, h)), problem.tempering)
+                own = fit_quickly(problem, start_of(problem, without, h, steps, start, slots), slots, fit.posterior.whitened).without_sensitivities()
+                found.append(Model((*rest, h), own, own.evidence, prior.log_mass((*rest, h))))
+                known.add(names)
+    return found
+
+
+def _taken_out(problem: Problem, data: NormalEquations, beta: Array, gone: Sequence[int]) -> NormalEquations:
+    """Normal equations about ``beta`` as they are, in the linearised model, where the slots ``gone`` are as the vehicle's file has them."""
+    places, offset = data.place(tuple(gone)), np.zeros(len(data.columns)) if data.offset is None else data.offset.copy()
+    offset[places] = 0.0
+    return replace(data, b=data.b + data.A[:, :, places] @ (beta[list(gone)] - problem.origin[list(gone)]), offset=offset)
 
 
 def settled(problem: Problem, models: Sequence[Model], count: int) -> list[Model]:
