@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+import rovval
 
 
 @pytest.mark.slow
@@ -43,6 +46,26 @@ def test_a_damaged_kernel_cache_is_compiled_anew(tmp_path):
         file.write_bytes(content[: len(content) // 2] + bytes(9) + content[len(content) // 2 + 9 :])
     assert run() == (first, True)
     assert run() == (first, False)
+
+
+@pytest.mark.slow
+def test_a_source_is_written_once_and_anew_where_what_it_is_written_from_has_changed(tmp_path):
+    """Writing it takes a second of every command's time."""
+    package = tmp_path / "package"
+    shutil.copytree(Path(rovval.__file__).parent, package / "rovval", ignore=shutil.ignore_patterns("__pycache__"))
+    code = "import plant_cases as c; from rovval.plant import Plant; from rovval.plant.codegen import text; c.run(Plant(c.merlin())); "
+    code += "print(text.render.cache_info().misses)"
+    paths = os.pathsep.join([str(package), str(Path(__file__).parents[2] / "cases")])
+    environment = {**os.environ, "ROVVAL_CACHE": str(tmp_path / "cache"), "PYTHONPATH": paths}
+
+    def run() -> tuple[str, bool]:
+        done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
+        return done.stdout.strip(), "compiling" in done.stderr
+
+    assert run() == ("1", True) and run() == ("0", False)
+    kernel = package / "rovval" / "plant" / "codegen" / "kernel" / "thrust.py"
+    kernel.write_text(f"{kernel.read_text(encoding='utf-8')}# a remark\n", encoding="utf-8")
+    assert run() == ("1", False) and run() == ("0", False)  # the same source, of changed files
 
 
 @pytest.mark.slow

@@ -28,6 +28,8 @@ from rovval.plant.codegen.text import render
 from rovval.storage import lock
 
 ROOT = Path(__file__).parent
+PACKAGE = ROOT.parents[1]
+WRITTEN_FROM = ("core", "effects", "plant")  # packages that the source of a kernel is made of
 WORTH_A_THREAD = 2_000  # steps of a block, some 5 ms: a thread costs a tenth of a millisecond
 
 
@@ -55,31 +57,52 @@ def _own_folder() -> Path:
 
 
 @cache
-def _fingerprint(spec: Spec) -> str:
-    """Hash of all that the kernel's machine code depends on: its source with every effect in it, helpers, versions."""
+def _name(spec: Spec) -> str:
+    """Name of the kernel, by the hash of all that its machine code depends on: its source with every effect in it, helpers, versions. The source is in the
+    cache folder under that name.
+
+    To write it takes a second or two: where the files that it is written from are the same it is the one that was written before.
+    """
+    folder, entry = cache_folder(), cache_folder() / f"{_written_from(spec)}.name"
+    with suppress(OSError, UnicodeDecodeError):
+        known = entry.read_text(encoding="utf-8")
+        if known == _named(spec, (folder / f"{known}.py").read_text(encoding="utf-8")):
+            return known
+    text = render(spec)
+    name = _named(spec, text)
+    _write(folder / f"{name}.py", text)
+    _write(entry, name)
+    return name
+
+
+def _named(spec: Spec, text: str) -> str:
+    """Name of the kernel of that source."""
     import numba
 
-    digest = hashlib.sha256(f"{numba.__version__} {sys.version}\n{render(spec)}".encode())
+    digest = hashlib.sha256(f"{numba.__version__} {sys.version}\n{text}".encode())
     digest.update((ROOT / "runtime.py").read_bytes())
-    return digest.hexdigest()[:16]
+    return f"kernel_{spec.name}_{digest.hexdigest()[:16]}"
+
+
+def _written_from(spec: Spec) -> str:
+    """Hash of all that the source is written from: the files of the packages that it is made of, and Python, which writes it."""
+    digest = hashlib.sha256(f"{spec} {sys.version}".encode())
+    for file in sorted(path for package in WRITTEN_FROM for path in (PACKAGE / package).rglob("*.py")):
+        digest.update(f"\n{file.relative_to(PACKAGE).as_posix()}\n".encode())
+        digest.update(file.read_bytes())
+    return f"source_{spec.name}_{digest.hexdigest()[:16]}"
 
 
 @cache
 def module(spec: Spec) -> ModuleType:
     """The generated module of that spec, compiled or from the cache; says so when compilation takes longer than a second."""
-    name, text = _name(spec), render(spec)
+    name = _name(spec)
     path = cache_folder() / f"{name}.py"
-    if not path.is_file() or path.read_bytes() != text.encode():
-        _write(path, text)
     try:
         return _imported(name, path)
     except Exception:  # the file is as it must be: its bytecode is damaged
         Path(importlib.util.cache_from_source(str(path))).unlink(missing_ok=True)
         return _imported(name, path)
-
-
-def _name(spec: Spec) -> str:
-    return f"kernel_{spec.name}_{_fingerprint(spec)}"
 
 
 def _imported(name: str, path: Path) -> ModuleType:
