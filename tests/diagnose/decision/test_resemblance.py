@@ -36,6 +36,7 @@ from rovval.diagnose.decision.resemblance import (
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.gap import explainable_gap, tolerated_gap, weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
+from rovval.diagnose.inference.unlogged_forces import ForceLeft
 from rovval.diagnose.problem.problem import corrected_residuals
 from rovval.diagnose.search.model import Model
 
@@ -81,7 +82,7 @@ def test_causes_that_leave_a_force_where_they_act_are_rather_something_else():
     """The odds are a ratio of two densities: over all forces that of something else, so found, integrates to one."""
 
     def odds(size: float, mean: float = FORCE_RIGHT, wanders: bool = False) -> float:
-        none, _ = looks_only_alike(AB, replace(left(a_b=0.3), unlogged={AB: (size, mean)}), wanders=wanders)
+        none, _ = looks_only_alike(AB, replace(left(a_b=0.3), unlogged={AB: ForceLeft(size, mean)}), wanders=wanders)
         return none / (1.0 - none)
 
     at_rest = none_of_the_library(AB, left(a_b=0.3))
@@ -91,8 +92,8 @@ def test_causes_that_leave_a_force_where_they_act_are_rather_something_else():
     assert odds(0.01) < at_rest / (1.0 - at_rest) < odds(0.2) < odds(0.4)
     assert odds(0.2, 3.0 * FORCE_RIGHT) < 0.5 * odds(0.2), "of what a calibration left, or what wanders, more is expected"
     assert odds(0.4, wanders=True) > 10.0 * odds(0.01, wanders=True)
-    assert evidence_by_force(0.2, 0.07) == pytest.approx(2.0 * np.log(odds(0.2, 0.07) / at_rest * (1.0 - at_rest)))
-    beyond = replace(left(a_b=0.3), unlogged={AB: (1e5, FORCE_RIGHT)})
+    assert evidence_by_force(ForceLeft(0.2, 0.07)) == pytest.approx(2.0 * np.log(odds(0.2, 0.07) / at_rest * (1.0 - at_rest)))
+    beyond = replace(left(a_b=0.3), unlogged={AB: ForceLeft(1e5, FORCE_RIGHT)})
     assert looks_only_alike(AB, beyond) == (1.0, 0.0), "however large"
 
 

@@ -64,7 +64,7 @@ from rovval.diagnose.inference.gap import (
     tolerated_by_part,
 )
 from rovval.diagnose.inference.shrinkage import NOTHING_LEFT, explainable_left, form_error
-from rovval.diagnose.inference.unlogged_forces import where_causes_act
+from rovval.diagnose.inference.unlogged_forces import ForceLeft, where_causes_act
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.search.model import Model, Names
 
@@ -83,7 +83,7 @@ class Left:
         grown: of each set how many times the gap where it acts is what the calibration left there; empty without calibration.
         grown_by_axis: the same of each axis, whatever acts there.
         spread: by how much a vehicle that is as it was calibrated may show so (`gap.spread_as_calibrated`).
-        unlogged: of each set that was asked the force that nobody logged where it acts, and its mean about right causes (`unlogged_where_they_act`).
+        unlogged: of each set that was asked the force that nobody logged where it acts (`unlogged_where_they_act`).
         adding: the sets that add to generic forces where they act (`adds_to_forces`), of those that were asked.
     """
 
@@ -92,7 +92,7 @@ class Left:
     grown: Mapping[Names, float] = field(default_factory=dict)
     grown_by_axis: tuple[float, ...] = ()
     spread: float = CALIBRATED_SPREAD
-    unlogged: Mapping[Names, tuple[float, float]] = field(default_factory=dict)
+    unlogged: Mapping[Names, ForceLeft] = field(default_factory=dict)
     adding: frozenset[Names] = frozenset()
 
     def least(self, which: Callable[[Names], bool]) -> Array:
@@ -179,18 +179,18 @@ def adds_to_forces(alone: Mapping[str, float], beside: Mapping[str, float]) -> b
     return sum(change for change, whole in more if abs(change) > max(LEAST_EVIDENCE, MATERIAL * whole)) > 0.0
 
 
-def unlogged_where_they_act(problem: Problem, left: Mapping[str, float], nominal: Mapping[str, float], wanders: bool) -> tuple[float, float]:
+def unlogged_where_they_act(problem: Problem, left: Mapping[str, float], nominal: Mapping[str, float], wanders: bool) -> ForceLeft:
     """The unlogged force that is ``left`` where causes act, by axis, of that beside the ``nominal`` vehicle, and its mean where causes are right: what pilots,
     seas and equations leave (`FORCE_RIGHT`), what a calibration left, and, of a cause that ``wanders`` by nature, its variation (`VARIATIONS`)."""
     gap = _Gap.of(problem)
     kept = {axis: nominal[axis] * min(gap.calibrated.get(axis, 0.0) / max(gap.errors[axis], TINY), 1.0) ** 0.5 for axis in left}
     calibrated, at_first = (where_causes_act(size, left, nominal) for size in (kept, nominal))
-    return where_causes_act(left, left, nominal), FORCE_RIGHT + calibrated + (VARIATIONS[0] * at_first if wanders else 0.0)
+    return ForceLeft(where_causes_act(left, left, nominal), FORCE_RIGHT + calibrated + (VARIATIONS[0] * at_first if wanders else 0.0))
 
 
-def evidence_by_force(size: float, mean: float) -> float:
-    """Twice the log Bayes factor of what only looks like causes over these, by the unlogged force where they act and its mean about right ones."""
-    right, alike = _log_densities_of_force(size, mean)
+def evidence_by_force(left: ForceLeft) -> float:
+    """Twice the log Bayes factor of what only looks like causes over these, by the unlogged force that is left where they act."""
+    right, alike = _log_densities_of_force(left)
     return 2.0 * (alike - right)
 
 
@@ -210,7 +210,7 @@ def looks_only_alike(names: Names, left: Left | None, beside: bool = False, as_c
         right, alike = _densities(*left.where_they_act(names), lambda share: freedom * (1.0 - share) ** (freedom - 1.0))
         none *= SHOWS_BESIDE[1] / NOT_FOUND if names in left.adding else 1.0
     if left is not None and names in left.unlogged:
-        by_right, by_alike = (exp(density) for density in _log_densities_of_force(*left.unlogged[names]))
+        by_right, by_alike = (exp(density) for density in _log_densities_of_force(left.unlogged[names]))
         right, as_calibrated, none = right * by_right, as_calibrated * by_right, none * by_alike
     total = right + (none + as_calibrated) * alike
     return none * alike / total, as_calibrated * alike / total
@@ -230,10 +230,10 @@ def looks_like_form_error(name: str, names: Names, left: Left | None) -> float:
     return form_error(float(np.min(left.beyond(name, names))))
 
 
-def _log_densities_of_force(size: float, mean: float) -> tuple[float, float]:
-    """Log densities of an unlogged force: exponential about ``mean`` where right causes act, log-logistic of median `FORCE_ALIKE` where only what looks like
-    them does."""
-    return -size / mean - log(mean), log(FORCE_ALIKE) - 2.0 * log(FORCE_ALIKE + size)
+def _log_densities_of_force(left: ForceLeft) -> tuple[float, float]:
+    """Log densities of an unlogged force: exponential about what is expected where right causes act, log-logistic of median `FORCE_ALIKE` where only what
+    looks like them does."""
+    return -left.size / left.expected - log(left.expected), log(FORCE_ALIKE) - 2.0 * log(FORCE_ALIKE + left.size)
 
 
 def _densities(left: float, healthy: float, density: Callable[[Array], Array]) -> tuple[float, float]:

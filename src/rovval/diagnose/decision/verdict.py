@@ -23,7 +23,7 @@ from rovval.diagnose.effort import NEGLIGIBLE, SETS_WEIGHED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.gap import weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
-from rovval.diagnose.inference.unlogged_forces import unlogged_forces
+from rovval.diagnose.inference.unlogged_forces import ForceLeft, unlogged_forces
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.residuals.sensor_faults import FittedFault
 from rovval.diagnose.search.discrepancy import forces_beside, generic_forces, nominal_forces
@@ -42,14 +42,14 @@ class Weighed:
         of: evidence of the model, and the time from which its causes are at work, where not all through: by these it is known again.
         forces: evidence of generic forces beside it; ``fine`` the same by axis in the fine metric, of a model of the whole log.
         varying: by how much the sizes of its causes vary.
-        unlogged: the force that nobody logged where its causes act, and what is expected of it; None where that is not known.
+        unlogged: the force that nobody logged where its causes act; None where that is not known.
     """
 
     of: tuple[float, float | None]
     forces: float
     fine: Mapping[str, float]
     varying: Variation
-    unlogged: tuple[float, float] | None
+    unlogged: ForceLeft | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +73,7 @@ class Decision:
         weighed: what was found beside the most probable sets of causes.
         open_gap: what is left of the gap beyond noise, over what noise and tolerances are expected to make (1): with the causes that are named, on held-out
             windows.
-        unlogged: of the best set, named or not, the force that nobody logged where it acts, and what is expected of it about right causes; None where that
-            is not known.
+        unlogged: of the best set, named or not, the force that nobody logged where it acts; None where that is not known.
         unexplained: what is left; None where nothing is.
         indications: what points to a cause where none is named; None where causes are.
         since: s since the run's start from which on the causes are at work, where they are fitted to that part alone; else None.
@@ -94,7 +93,7 @@ class Decision:
     accounted: Accounted
     weighed: Mapping[Names, Weighed]
     open_gap: float
-    unlogged: tuple[float, float] | None
+    unlogged: ForceLeft | None
     unexplained: Unexplained | None
     indications: Indications | None = None
     since: float | None = None

@@ -7,6 +7,7 @@ thrusters: of their rms in all, and of its moment at their distance from the cen
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,6 +23,18 @@ from rovval.diagnose.windows.windows import axis_channels
 from rovval.vehicle.model import Vehicle
 
 TRANSLATION = 3  # axes
+
+
+class ForceLeft(NamedTuple):
+    """The force that nobody logged, in the thrusters' own (1), where causes act.
+
+    Attributes:
+        size: what it is beside them.
+        expected: its mean where they are right.
+    """
+
+    size: float
+    expected: float
 
 
 def unlogged_forces(problem: Problem, point: Posterior | None = None) -> dict[str, float]:

@@ -173,7 +173,7 @@ def _detection(decision: Decision) -> Detection:
         generic_beside=decision.generic_beside,
         largest_departure=decision.departure,
         open_gap=decision.open_gap,
-        unlogged_force=UnloggedForce(size=size[0], expected=size[1], evidence=evidence_by_force(*size)) if (size := decision.unlogged) else None,
+        unlogged_force=UnloggedForce(size=left.size, expected=left.expected, evidence=evidence_by_force(left)) if (left := decision.unlogged) else None,
         calibration_left=decision.accounted.calibrated,
     )
 
