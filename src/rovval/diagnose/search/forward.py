@@ -2,7 +2,7 @@
 
 Every model that is fitted is kept with its evidence and its prior mass; which of them is believed is decided elsewhere (`decision`). The search only has
 to meet the probable ones. It goes one cause beyond the best set, since of two causes that offset each other neither explains the logs alone, and one beyond a
-cause that is more likely the form error of the others than not.
+cause that is more likely the form error of the others than not. And it goes a second way, from the next best single cause, where that is not far behind.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from math import log
 
 import numpy as np
 
-from rovval.diagnose.criteria import EVEN_ODDS
+from rovval.diagnose.criteria import BETWEEN_CAUSES, EVEN_ODDS
 from rovval.diagnose.effort import MOST_CAUSES, NEGLIGIBLE, SETS_WEIGHED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
@@ -24,7 +24,7 @@ from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.search.baseline import Candidate, baseline_of, healthy_baseline
 from rovval.diagnose.search.candidates import candidates
-from rovval.diagnose.search.joint import reconsidered, settled, with_relatives
+from rovval.diagnose.search.joint import reconsidered, refitted, settled, with_relatives
 from rovval.diagnose.search.model import Model, ModelPrior
 from rovval.diagnose.search.onset import suspected_onset
 from rovval.diagnose.search.plausible import plausible
@@ -42,7 +42,7 @@ class Selection:
         best: the most probable of them, its fit with sensitivities.
         healthy: the fit of coefficients within tolerance, without causes.
         ranking: every hypothesis with the reduction of the gap that it makes by itself, held out: the causes first, then by that.
-        steps: candidates of each step that had any.
+        steps: candidates of each step that had any, on the way from the best single cause.
         onset: from when on (s since the run's start) something seems to be at work that was not there before; None where nothing does.
         prior: prior mass of any set of causes.
         library: hypotheses that competed, with their initial points.
@@ -78,11 +78,35 @@ def search(
         most: causes at once that are sought.
     """
     prior = ModelPrior.of(library)
-    best = front = Model((), None, laplace_evidence(problem, healthy), prior.log_mass(()))
-    models, tried, onset, doubted = [best], list[list[Candidate]](), None, False
-    for number in range(most):
-        progress(f"adding each of {len(initialised)} hypotheses to {number} causes", 0.7 - 0.4 * 0.7**number)
-        found, suspected = _extended(problem, prior, initialised, front, healthy, best.log_posterior + log(NEGLIGIBLE))
+    nothing = Model((), None, laplace_evidence(problem, healthy), prior.log_mass(()))
+    first = met = _grown(_Met([nothing], [], None), problem, prior, initialised, nothing, healthy, progress, most)
+    if rival := _rival(first):
+        met = _grown(first, problem, prior, initialised, refitted(problem, rival), healthy, progress, most)
+    progress("weighing the causes beside each other", 0.7)
+    healthy, models, best = _reconsidered(problem, prior, initialised, healthy, met)
+    rows = tuple(tuple((c.hypothesis.name, c.evidence, c.gain) for c in step) for step in first.tried)
+    return Selection(tuple(models), best, healthy, _ranking(problem, library, best, rows), rows, first.onset, prior, tuple(initialised))
+
+
+@dataclass(frozen=True, slots=True)
+class _Met:
+    """What a search met so far: models, the healthy vehicle first; candidates of each step that had any; and when something seems to begin (s)."""
+
+    models: list[Model]
+    tried: list[list[Candidate]]
+    onset: float | None
+
+
+def _grown(
+    met: _Met, problem: Problem, prior: ModelPrior, library: list[Hypothesis], front: Model, healthy: Posterior, progress: Callable[[str, float], None],
+    most: int,
+) -> _Met:
+    """What was met and what is met on the way from ``front`` on, to which one cause after the other is added."""
+    models, tried, onset, doubted = list(met.models), list(met.tried), met.onset, False
+    best = max(models, key=lambda m: m.log_posterior)
+    for number in range(len(front.causes), most):
+        progress(f"adding each of {len(library)} hypotheses to {number} causes", 0.7 - 0.4 * 0.7**number)
+        found, suspected = _extended(problem, prior, library, front, healthy, best.log_posterior + log(NEGLIGIBLE))
         onset = suspected if front.fit is None else onset
         if not found:
             break
@@ -94,10 +118,20 @@ def search(
         before_doubted, doubted = doubted, _looks_like_form_error(problem, before, front)
         if front.log_posterior < best.log_posterior + log(NEGLIGIBLE) or len(front.causes) > len(best.causes) + 1 or (doubted and before_doubted):
             break
-    progress("weighing the causes beside each other", 0.7)
-    healthy, models, best = _reconsidered(problem, prior, initialised, healthy, models, best, tried)
-    rows = tuple(tuple((c.hypothesis.name, c.evidence, c.gain) for c in step) for step in tried)
-    return Selection(tuple(models), best, healthy, _ranking(problem, library, best, rows), rows, onset, prior, tuple(initialised))
+    return _Met(models, tried, onset)
+
+
+def _rival(met: _Met) -> Model | None:
+    """The most probable single cause that is not in the best set, from which the search goes another way: a cause of many parameters may stand for two of few,
+    neither of which is as probable as it. None where it is negligible beside the best single one, as coarsely as causes are compared (`BETWEEN_CAUSES`)."""
+    best = max(met.models, key=lambda m: m.log_posterior)
+    single = [m for m in met.models if len(m.causes) == 1]
+    others = [m for m in single if not m.names & best.names]
+    if not others:
+        return None
+    rival = max(others, key=lambda m: m.log_posterior)
+    near = max(m.log_posterior for m in single) + log(NEGLIGIBLE) / BETWEEN_CAUSES
+    return rival if rival.log_posterior > near else None
 
 
 def _extended(
@@ -132,17 +166,17 @@ def _model(prior: ModelPrior, front: Model, one: Candidate) -> Model:
 
 
 def _reconsidered(
-    problem: Problem, prior: ModelPrior, initialised: list[Hypothesis], healthy: Posterior, models: list[Model], best: Model,
-    tried: Sequence[Sequence[Candidate]],
+    problem: Problem, prior: ModelPrior, library: list[Hypothesis], healthy: Posterior, met: _Met
 ) -> tuple[Posterior, list[Model], Model]:
     """The healthy fit, tried from where it is beside the causes, too; the models with those that came of exchanging causes; and the best of them."""
+    models, best = met.models, max(met.models, key=lambda m: m.log_posterior)
     if best.fit is None:
         return healthy, models, best
     healthy = refit_healthy(problem, healthy, best.fit.posterior, best.fit.slots)
     models = [Model((), None, laplace_evidence(problem, healthy), models[0].log_prior), *models[1:]]
     known = {m.names for m in models}
     while len(best.causes) > 1:
-        exchanged = [*reconsidered(problem, prior, best, tried, known), *with_relatives(problem, prior, initialised, best, known)]
+        exchanged = [*reconsidered(problem, prior, best, met.tried, known), *with_relatives(problem, prior, library, best, known)]
         models = settled(problem, [*models, *exchanged], 1)
         better = max(models, key=lambda m: m.log_posterior)
         if better.fit is None or better.log_posterior <= best.log_posterior:
