@@ -1,4 +1,4 @@
-"""The prior: tolerances under an autopilot, and of a thrust curve."""
+"""The prior: tolerances under an autopilot."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import pytest
 from diagnose_case import merlin, own
 
 from rovval import vehicle
-from rovval.diagnose import diagnose
 from rovval.diagnose.problem.prior import loosened_by_closed_loop, prior_mean, tolerance_prior
 from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.plant import Plant
@@ -39,12 +38,3 @@ def test_a_depth_is_expected_where_the_log_was_and_a_bottom_below_it():
     assert 0.5 < mean["ground_effect.seabed"] - z.max() < 2.0
     others = [s for s in parts[0].plant.slots if s.parameter.role not in ("datum", "level", "bottom")]
     assert all(mean[s.key] == s.parameter.null for s in others)
-
-
-def test_a_thrust_curve_within_tolerance_is_no_loss_at_high_speed():
-    """Some per cent of the thrust at strong commands are what a healthy vehicle's curve is off by; a loss of much more is named."""
-    within, beyond = (
-        diagnose([own((f"ventilation:loss={loss},onset_speed={onset}",), 5, 200.0)], merlin()).document() for loss, onset in ((0.06, 1.6), (0.4, 2.2))
-    )
-    assert within["verdict"] == "no_gap", within["sentence"]
-    assert [c["effect"] for c in beyond["causes"]] == ["ventilation"], beyond["sentence"]

@@ -5,19 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from rovval.effects.arithmetic import Number, sqrt
-from rovval.effects.effect import Effect, Parameter, Tolerance
+from rovval.effects.effect import Effect, Parameter
 from rovval.effects.lanes import Array, Lanes
-from rovval.vehicle.model import Vehicle
 
 WIDTH = 0.1  # of the speed at which it sets in: over which it does (chosen)
-
-
-def _tolerance(parameter: Parameter, vehicle: Vehicle, target: str) -> float:
-    """A share of the thrust, as the calibration tolerance is."""
-    return 1.0
-
-
-CURVED = Tolerance(_tolerance, "a thrust curve of which the exponent is off by the calibration tolerance loses as much over a factor of e in speed")
 
 EFFECT = Effect(
     name="ventilation",
@@ -32,7 +23,7 @@ EFFECT = Effect(
         "onset_speed": "shaft speed at which half of that is; rev/s",
     },
     parameters=(
-        Parameter("loss", "1", 0.0, 1.0, 0.0, 0.2, "up to nine tenths of the thrust (Kozlowska 2020)", tolerance=CURVED, vanishes_at="low"),
+        Parameter("loss", "1", 0.0, 1.0, 0.0, 0.2, "up to nine tenths of the thrust (Kozlowska 2020)", vanishes_at="low"),
         Parameter("onset_speed", "rev/s", 3.0, 120.0, 25.0, 10.0, "working speeds (chosen)", "speed", role="extent", starts=(15.0, 25.0, 40.0)),
     ),
     signature="strong commands do little more than middling ones, those below that all they should",
