@@ -96,14 +96,18 @@ class _Met:
     tried: list[list[Candidate]]
     onset: float | None
 
+    @property
+    def best(self) -> Model:
+        """The most probable of the models."""
+        return max(self.models, key=lambda m: m.log_posterior)
+
 
 def _grown(
     met: _Met, problem: Problem, prior: ModelPrior, library: list[Hypothesis], front: Model, healthy: Posterior, progress: Callable[[str, float], None],
     most: int,
 ) -> _Met:
     """What was met and what is met on the way from ``front`` on, to which one cause after the other is added."""
-    models, tried, onset, doubted = list(met.models), list(met.tried), met.onset, False
-    best = max(models, key=lambda m: m.log_posterior)
+    models, tried, onset, doubted, best = list(met.models), list(met.tried), met.onset, False, met.best
     for number in range(len(front.causes), most):
         progress(f"adding each of {len(library)} hypotheses to {number} causes", 0.7 - 0.4 * 0.7**number)
         found, suspected = _extended(problem, prior, library, front, healthy, best.log_posterior + log(NEGLIGIBLE))
@@ -124,9 +128,8 @@ def _grown(
 def _rival(met: _Met) -> Model | None:
     """The most probable single cause that is not in the best set, from which the search goes another way: a cause of many parameters may stand for two of few,
     neither of which is as probable as it. None where it is negligible beside the best single one, as coarsely as causes are compared (`BETWEEN_CAUSES`)."""
-    best = max(met.models, key=lambda m: m.log_posterior)
     single = [m for m in met.models if len(m.causes) == 1]
-    others = [m for m in single if not m.names & best.names]
+    others = [m for m in single if not m.names & met.best.names]
     if not others:
         return None
     rival = max(others, key=lambda m: m.log_posterior)
@@ -169,7 +172,7 @@ def _reconsidered(
     problem: Problem, prior: ModelPrior, library: list[Hypothesis], healthy: Posterior, met: _Met
 ) -> tuple[Posterior, list[Model], Model]:
     """The healthy fit, tried from where it is beside the causes, too; the models with those that came of exchanging causes; and the best of them."""
-    models, best = met.models, max(met.models, key=lambda m: m.log_posterior)
+    models, best = met.models, met.best
     if best.fit is None:
         return healthy, models, best
     healthy = refit_healthy(problem, healthy, best.fit.posterior, best.fit.slots)
