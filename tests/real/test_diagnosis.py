@@ -62,12 +62,15 @@ def test_ballast_is_fitted_as_its_publishers_fitted_it():
 def test_ballast_is_named():
     """By `diagnose`, with its sign and size, in heave; the log holds four windows of free motion."""
     document = diagnose([open_run(real("bluerov2_ballast/ff_nb1.bag"))], vehicle.load("bluerov2_heavy")).document()
-    assert max(document["gap"]["axes"], key=lambda axis: document["gap"]["axes"][axis]["share"]) == "heave"
+    gap = document["gap"]["axes"]
+    assert max(gap, key=lambda axis: gap[axis]["share"]) == "heave"
     cause = document["causes"][0]
     assert {"buoyancy_error", "tether_tension"} & set(cause["group"])  # a steady pull down, as a released vehicle shows it
     force = cause["parameters"].get("force") or cause["parameters"]["down"]
     assert abs(force["value"]) == pytest.approx(4.6, abs=1.5)
-    assert max(cause["shrinkage"]["axes"], key=lambda axis: cause["shrinkage"]["axes"][axis]) == "heave"
+    closed = cause["shrinkage"]["axes"]
+    assert closed["heave"] > 0.8
+    assert max(gap, key=lambda axis: gap[axis]["share"] * closed[axis]) == "heave"  # most of what is closed; of the little gap in roll as large a share is
 
 
 def changed(run: Run, **channels: np.ndarray) -> Run:
