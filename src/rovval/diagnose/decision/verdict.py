@@ -104,41 +104,62 @@ def decide(
 ) -> Decision:
     """The verdict on what a search met; ``residuals`` are the nominal vehicle's, ``faults`` of sensors those that parity residuals show, ``before`` what an
     earlier decision found beside models of the same log."""
-    evidence, alone = forces_beside(problem, selection.healthy)
-    file, met, nominal = file_evidence(problem, selection), list(selection.models), unlogged_forces(problem)
-    unexplained_gap = open_gap(problem, [selection.healthy, *(m.fit.posterior for m in met if m.fit)])
-    weighed, weigh, exchanged = dict[Names, Weighed](), _leading(problem, selection), {selection.best.names}
-    while True:  # the sets that lead are weighed, and then each that would be named, beside others in the place of each of its causes
-        weighed |= {m.names: _weighed(problem, m, m.fit, nominal, before or {}) for m in weigh if m.fit}
-        forces, varies = {names: one.forces for names, one in weighed.items()}, {names: one.varying for names, one in weighed.items()}
-        unlogged = {names: one.unlogged for names, one in weighed.items() if one.unlogged}
-        adding = frozenset(names for names, one in weighed.items() if adds_to_forces(alone, one.fine))
-        left = replace(gap_left(problem, met), unlogged=unlogged, adding=adding)
-        belief = probabilities(met, file, evidence, forces, varies, evidence_of_something_else(unexplained_gap), left)
-        best, without = _needed(problem, selection, met, _fitted(problem, selection, met, belief.best))
-        if best.fit is None or (best.names in weighed and best.names in exchanged):
-            break
-        met, weigh = [best, *(m for m in met if m.names != best.names)], [] if best.names in weighed else [best]
-        if best.names not in exchanged:
-            met += with_relatives(problem, selection.prior, selection.library, best, {m.names for m in met})
-            exchanged |= {best.names}
-    known = accounted(problem, selection.healthy)
-    over = best.evidence - selection.models[0].evidence
-    departure, instead_of_any = selection.healthy.largest_departure(), max(evidence, 0.0)
-    pushed = weighed[best.names].unlogged if best.names in weighed else None
-    found = Decision("no_gap", belief, (), None, {}, {}, {}, over, instead_of_any, 0.0, departure, known, weighed, unexplained_gap, pushed, None)
+    compared = _compared(problem, selection, before or {})
+    belief, best, known = compared.belief, compared.best, accounted(problem, selection.healthy)
+    beside_best = compared.weighed.get(best.names)
+    found = Decision(
+        "no_gap", belief, (), None, {}, {}, {},
+        evidence=best.evidence - selection.models[0].evidence, generic_instead=max(compared.forces, 0.0), generic_beside=0.0,
+        departure=selection.healthy.largest_departure(), accounted=known, weighed=compared.weighed, open_gap=compared.open_gap,
+        unlogged=beside_best.unlogged if beside_best else None, unexplained=None,
+    )  # fmt: skip
     contradicted = any(h.effect.place != "sensor" for h in best.causes) and _contradicted(problem, residuals)
-    if best.fit and belief.likelier_than_not == "causes" and not contradicted:
-        return _named(problem, found, best, best.fit, without, varies[best.names])
+    if best.fit and beside_best and belief.likelier_than_not == "causes" and not contradicted:
+        return _named(problem, found, best, best.fit, compared.without, beside_best.varying)
     found = replace(found, indications=indications(selection.steps[0] if selection.steps else (), known, faults))
     if belief.likelier_than_not == "healthy":
         return found
     inconstant = [h.name for h in best.causes] if belief.varying > 0.5 * belief.unexplained else []
-    goes_with = varies[best.names].goes_with if inconstant else None
+    goes_with = beside_best.varying.goes_with if inconstant and beside_best else None
     imitated = belief.file > NEGLIGIBLE  # what is at work looks like many numbers of the file, and so goes with the motion
-    if belief.unexplained > max(belief.healthy, belief.causes) and evidence <= 0.0 and not inconstant and not imitated:
+    if belief.unexplained > max(belief.healthy, belief.causes) and compared.forces <= 0.0 and not inconstant and not imitated:
         return replace(found, verdict="unknown", unexplained=unexplained_by_any(problem, known.share, residuals, selection.healthy))
     return replace(found, verdict="unknown", unexplained=unexplained(problem, nominal_forces(problem), selection.healthy, inconstant, goes_with))
+
+
+@dataclass(frozen=True, slots=True)
+class _Compared:
+    """Models that a search met and those that stand in for them, compared: their probabilities; the ``best`` set of causes and the models ``without`` each of
+    them; what was found beside the sets that were ``weighed``; evidence of generic ``forces`` on the healthy vehicle; and the gap that all leave open."""
+
+    belief: Probabilities
+    best: Model
+    without: Mapping[str, Model]
+    weighed: Mapping[Names, Weighed]
+    forces: float
+    open_gap: float
+
+
+def _compared(problem: Problem, selection: Selection, before: Mapping[Names, Weighed]) -> _Compared:
+    """The sets that lead are weighed, and then each that would be named, beside others in the place of each of its causes, until the one that is named has
+    been."""
+    forces, alone = forces_beside(problem, selection.healthy)
+    file, met, nominal = file_evidence(problem, selection), list(selection.models), unlogged_forces(problem)
+    gap = open_gap(problem, [selection.healthy, *(m.fit.posterior for m in met if m.fit)])
+    weighed, weigh, exchanged = dict[Names, Weighed](), _leading(problem, selection), {selection.best.names}
+    while True:
+        weighed |= {m.names: _weighed(problem, m, m.fit, nominal, before) for m in weigh if m.fit}
+        adding = frozenset(names for names, one in weighed.items() if adds_to_forces(alone, one.fine))
+        left = replace(gap_left(problem, met), unlogged={names: one.unlogged for names, one in weighed.items() if one.unlogged}, adding=adding)
+        beside, varying = {names: one.forces for names, one in weighed.items()}, {names: one.varying for names, one in weighed.items()}
+        belief = probabilities(met, file, forces, beside, varying, evidence_of_something_else(gap), left)
+        best, without = _needed(problem, selection, met, _fitted(problem, selection, met, belief.best))
+        if best.fit is None or (best.names in weighed and best.names in exchanged):
+            return _Compared(belief, best, without, weighed, forces, gap)
+        met, weigh = [best, *(m for m in met if m.names != best.names)], [] if best.names in weighed else [best]
+        if best.names not in exchanged:
+            met += with_relatives(problem, selection.prior, selection.library, best, {m.names for m in met})
+            exchanged |= {best.names}
 
 
 def _leading(problem: Problem, selection: Selection) -> list[Model]:
