@@ -9,7 +9,14 @@ import pytest
 from diagnose_case import merlin, posed
 from scipy import integrate
 
-from rovval.diagnose.criteria import CALIBRATED_SPREAD, FORCE_RIGHT, PRIOR_CAUSES, PRIOR_HEALTHY, PRIOR_SOMETHING_ELSE
+from rovval.diagnose.criteria import (
+    CALIBRATED_SPREAD,
+    FORCE_ALIKE,
+    FORCE_RIGHT,
+    PRIOR_CAUSES,
+    PRIOR_HEALTHY,
+    PRIOR_SOMETHING_ELSE,
+)
 from rovval.diagnose.decision.as_calibrated import odds_as_calibrated
 from rovval.diagnose.decision.open_gap import open_gap
 from rovval.diagnose.decision.posterior import probabilities
@@ -93,7 +100,7 @@ def test_an_unlogged_force_as_large_as_the_calibration_left_is_expected():
     nominal = dict.fromkeys(("surge", "sway", "heave", "roll", "pitch", "yaw"), 0.5)
     known = remembering(problem, {"u": 10.0})
     ahead, down = (unlogged_where_they_act(known, nominal | {axis: 0.1}, nominal, wanders=False) for axis in ("surge", "heave"))
-    assert ahead == pytest.approx((0.1, FORCE_RIGHT + 0.5)) and down == pytest.approx((0.1, FORCE_RIGHT))
+    assert ahead == pytest.approx((0.1, FORCE_RIGHT + 0.5, FORCE_ALIKE + 0.5)) and down == pytest.approx((0.1, FORCE_RIGHT, FORCE_ALIKE))
 
 
 def test_what_a_calibration_left_is_no_open_gap():

@@ -7,11 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from diagnose_case import posed
+from scipy import stats
 
 from rovval.diagnose.criteria import (
     CAUSES_LEAVE,
     FORCE_ALIKE,
     FORCE_RIGHT,
+    FORCE_SHAPE,
     FORM_ALIKE,
     FURTHER_CAUSE,
     HEALTHY_GAP,
@@ -81,28 +83,37 @@ def test_causes_that_add_to_the_forces_where_they_act_are_rather_something_else(
 def test_causes_that_leave_a_force_where_they_act_are_rather_something_else():
     """The odds are a ratio of two densities: over all forces that of something else, so found, integrates to one."""
 
-    def odds(size: float, mean: float = FORCE_RIGHT, wanders: bool = False) -> float:
-        none, _ = looks_only_alike(AB, replace(left(a_b=0.3), unlogged={AB: ForceLeft(size, mean)}), wanders=wanders)
+    def odds(size: float, median: float = FORCE_RIGHT, wanders: bool = False) -> float:
+        none, _ = looks_only_alike(AB, replace(left(a_b=0.3), unlogged={AB: ForceLeft(size, median, FORCE_ALIKE)}), wanders=wanders)
         return none / (1.0 - none)
 
-    at_rest = none_of_the_library(AB, left(a_b=0.3))
+    unknown = none_of_the_library(AB, left(a_b=0.3))
+    at_rest = unknown / (1.0 - unknown)
     size = np.arange(0.00005, 1.0, 0.0001)
-    alike = np.array([odds(s) for s in size]) / (at_rest / (1.0 - at_rest)) * np.exp(-size / FORCE_RIGHT) / FORCE_RIGHT
-    assert alike.sum() * 0.0001 == pytest.approx(1.0 / (1.0 + FORCE_ALIKE), rel=1e-3), "the rest of it is beyond the thrusters' own force"
-    assert odds(0.01) < at_rest / (1.0 - at_rest) < odds(0.2) < odds(0.4)
-    assert odds(0.2, 3.0 * FORCE_RIGHT) < 0.5 * odds(0.2), "of what a calibration left, or what wanders, more is expected"
+    right = stats.fisk(FORCE_SHAPE, scale=FORCE_RIGHT)  # log-logistic
+    alike = np.array([odds(s) for s in size]) / at_rest * right.pdf(size)
+    assert alike.sum() * 0.0001 == pytest.approx(stats.fisk(FORCE_SHAPE, scale=FORCE_ALIKE).cdf(1.0), rel=1e-3), "the rest of it is beyond the thrusters' own"
+    assert odds(0.01) < at_rest < odds(0.2) < odds(0.4)
+    assert odds(0.2, 3.0 * FORCE_RIGHT) < 0.5 * odds(0.2), "of what wanders more is expected"
     assert odds(0.4, wanders=True) > 10.0 * odds(0.01, wanders=True)
-    assert evidence_by_force(ForceLeft(0.2, 0.07)) == pytest.approx(2.0 * np.log(odds(0.2, 0.07) / at_rest * (1.0 - at_rest)))
-    beyond = replace(left(a_b=0.3), unlogged={AB: ForceLeft(1e5, FORCE_RIGHT)})
-    assert looks_only_alike(AB, beyond) == (1.0, 0.0), "however large"
+    assert evidence_by_force(ForceLeft(0.2, 0.07, FORCE_ALIKE)) == pytest.approx(2.0 * np.log(odds(0.2, 0.07) / at_rest))
+
+
+def test_no_force_by_itself_decides():
+    """Now and then right causes leave many times what is expected; and that there is none does not make any causes right."""
+    known = left(a_b=0.3)
+    none, most = (looks_only_alike(AB, replace(known, unlogged={AB: ForceLeft(size, FORCE_RIGHT, FORCE_ALIKE)}))[0] for size in (0.0, 1e5))
+    unknown, factor = none_of_the_library(AB, known), (FORCE_ALIKE / FORCE_RIGHT) ** FORCE_SHAPE
+    for p, by in ((none, 1.0 / factor), (most, factor)):
+        assert p / (1.0 - p) == pytest.approx(by * unknown / (1.0 - unknown), rel=1e-3)
 
 
 def test_what_a_calibration_left_and_what_wanders_is_expected_to_leave_a_force():
     problem, _ = posed(("inflow_loss:loss=0.3",))
     nominal = dict.fromkeys(("surge", "sway", "heave", "roll", "pitch", "yaw"), 0.5)
     beside = nominal | {"surge": 0.1}
-    assert unlogged_where_they_act(problem, beside, nominal, wanders=False) == pytest.approx((0.1, FORCE_RIGHT))
-    assert unlogged_where_they_act(problem, beside, nominal, wanders=True) == pytest.approx((0.1, FORCE_RIGHT + VARIATIONS[0] * 0.5))
+    assert unlogged_where_they_act(problem, beside, nominal, wanders=False) == pytest.approx((0.1, FORCE_RIGHT, FORCE_ALIKE))
+    assert unlogged_where_they_act(problem, beside, nominal, wanders=True) == pytest.approx((0.1, FORCE_RIGHT + VARIATIONS[0] * 0.5, FORCE_ALIKE))
 
 
 def test_both_distributions_are_distributions():

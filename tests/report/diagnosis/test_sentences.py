@@ -173,8 +173,8 @@ def test_an_open_gap_may_be_what_pushed_unlogged() -> None:
 
 @pytest.mark.parametrize(("evidence", "said"), [(4.0, True), (-2.0, False)])
 def test_a_force_that_nobody_logged_is_told_where_it_speaks_against_the_causes(evidence: float, said: bool) -> None:
-    force = {"unlogged_force": {"size": 0.2, "expected": 0.04, "evidence": evidence}}
-    text = "Where the cause acts, a force is left that nobody logged, 20 % of the thrusters' own; beside right causes it is 4 % on average."
+    force = {"unlogged_force": {"size": 0.2, "expected": 0.02, "alike": 0.1, "evidence": evidence}}
+    text = "Where the cause acts, a force is left that nobody logged, 20 % of the thrusters' own; the median is 2 % beside right causes, and 10 % beside what"
     assert (text in sentence(diagnosis(detection=detection(0.1, 0.1) | force))) is said
     assert ("what comes nearest acts" in sentence(null(0.1, 0.1, verdict="unknown", detection=detection(0.1, 0.1) | force))) is said
     assert "nobody logged" not in sentence(diagnosis(detection=detection(0.1, 0.1)))

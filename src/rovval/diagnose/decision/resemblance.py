@@ -18,7 +18,7 @@ another (`adds_to_forces`).
 
 Forces that nobody logged are a nuisance of every model, as large as the log shows them, so that the likelihood alone never calls them too large. Beside right
 causes they are what pilots and seas make, some per cent of the thrusters' own (`FORCE_RIGHT`); beside what only looks like them they take over the rest of what
-it really is (`FORCE_ALIKE`).
+it really is (`FORCE_ALIKE`). Both are log-logistic: now and then a pilot, a sea or a real vehicle leaves many times as much, and no force by itself decides.
 
 Shares are of the errors above the noise of the sensors. Whether causes are of the library is judged where they act: by what they leave of the gap on each
 axis, and of the parity residuals, which faults of sensors close, the mean of these weighted with how much of each they close or open; what they open speaks as
@@ -42,6 +42,7 @@ from rovval.diagnose.criteria import (
     CAUSES_LEAVE,
     FORCE_ALIKE,
     FORCE_RIGHT,
+    FORCE_SHAPE,
     FORM_ALIKE,
     FURTHER_CAUSE,
     HEALTHY_GAP,
@@ -180,12 +181,14 @@ def adds_to_forces(alone: Mapping[str, float], beside: Mapping[str, float]) -> b
 
 
 def unlogged_where_they_act(problem: Problem, left: Mapping[str, float], nominal: Mapping[str, float], wanders: bool) -> ForceLeft:
-    """The unlogged force that is ``left`` where causes act, by axis, of that beside the ``nominal`` vehicle, and its mean where causes are right: what pilots,
-    seas and equations leave (`FORCE_RIGHT`), what a calibration left, and, of a cause that ``wanders`` by nature, its variation (`VARIATIONS`)."""
+    """The unlogged force that is ``left`` where causes act, by axis, of that beside the ``nominal`` vehicle, and its median where they are right: what pilots,
+    seas and equations leave (`FORCE_RIGHT`), and, of a cause that ``wanders`` by nature, its variation (`VARIATIONS`); and where they only look so
+    (`FORCE_ALIKE`). What a calibration left is beside either."""
     gap = _Gap.of(problem)
     kept = {axis: nominal[axis] * min(gap.calibrated.get(axis, 0.0) / max(gap.errors[axis], TINY), 1.0) ** 0.5 for axis in left}
     calibrated, at_first = (where_causes_act(size, left, nominal) for size in (kept, nominal))
-    return ForceLeft(where_causes_act(left, left, nominal), FORCE_RIGHT + calibrated + (VARIATIONS[0] * at_first if wanders else 0.0))
+    right = FORCE_RIGHT + (VARIATIONS[0] * at_first if wanders else 0.0)
+    return ForceLeft(where_causes_act(left, left, nominal), right + calibrated, FORCE_ALIKE + calibrated)
 
 
 def evidence_by_force(left: ForceLeft) -> float:
@@ -231,9 +234,10 @@ def looks_like_form_error(name: str, names: Names, left: Left | None) -> float:
 
 
 def _log_densities_of_force(left: ForceLeft) -> tuple[float, float]:
-    """Log densities of an unlogged force: exponential about what is expected where right causes act, log-logistic of median `FORCE_ALIKE` where only what
-    looks like them does."""
-    return -left.size / left.expected - log(left.expected), log(FORCE_ALIKE) - 2.0 * log(FORCE_ALIKE + left.size)
+    """Log densities of an unlogged force where right causes act and where only what looks like them does, but for a factor that both have: log-logistic about
+    what is expected of either, of one shape, so that the odds are bounded, of no force at all, too."""
+    right, alike = (-FORCE_SHAPE * log(median) - 2.0 * log1p((left.size / median) ** FORCE_SHAPE) for median in (left.expected, left.alike))
+    return right, alike
 
 
 def _densities(left: float, healthy: float, density: Callable[[Array], Array]) -> tuple[float, float]:

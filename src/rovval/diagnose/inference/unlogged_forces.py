@@ -30,11 +30,13 @@ class ForceLeft(NamedTuple):
 
     Attributes:
         size: what it is beside them.
-        expected: its mean where they are right.
+        expected: its median where they are right.
+        alike: its median where something else only looks like them.
     """
 
     size: float
     expected: float
+    alike: float
 
 
 def unlogged_forces(problem: Problem, point: Posterior | None = None) -> dict[str, float]:

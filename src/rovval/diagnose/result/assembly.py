@@ -20,6 +20,7 @@ from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.hypotheses.change_points import change_points
 from rovval.diagnose.inference.gap import gap_by_axis, weighted_errors
 from rovval.diagnose.inference.shrinkage import shrinkage, worsened_axes
+from rovval.diagnose.inference.unlogged_forces import ForceLeft
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.result.attribution import slices, worst
 from rovval.diagnose.result.causes import causes, settings
@@ -173,9 +174,14 @@ def _detection(decision: Decision) -> Detection:
         generic_beside=decision.generic_beside,
         largest_departure=decision.departure,
         open_gap=decision.open_gap,
-        unlogged_force=UnloggedForce(size=left.size, expected=left.expected, evidence=evidence_by_force(left)) if (left := decision.unlogged) else None,
+        unlogged_force=_unlogged(decision.unlogged),
         calibration_left=decision.accounted.calibrated,
     )
+
+
+def _unlogged(left: ForceLeft | None) -> UnloggedForce | None:
+    """The force that nobody logged where causes act."""
+    return UnloggedForce(size=left.size, expected=left.expected, alike=left.alike, evidence=evidence_by_force(left)) if left else None
 
 
 def _disturbance(problem: Problem) -> dict[str, Disturbance]:

@@ -176,7 +176,8 @@ class UnloggedForce(Record):
     """The force that nobody logged, as large as is most likely for what a model leaves, where that acts: as a share of the rms force of all thrusters."""
 
     size: float = Field(description="its standard deviation, 1 is the thrusters' own")
-    expected: float = Field(description="its mean beside causes that are right, the same unit")
+    expected: float = Field(description="its median beside causes that are right, the same unit")
+    alike: float | None = Field(default=None, description="its median beside what only looks like causes, the same unit; null in older documents")
     evidence: float = Field(description="twice the log Bayes factor of something that only looks like the causes over these, by its size")
 
 

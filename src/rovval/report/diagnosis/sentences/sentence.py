@@ -110,10 +110,11 @@ def _unlogged(d: Diagnosis) -> str:
     force = d.detection.unlogged_force if d.detection else None
     if force is None or force.evidence <= 0.0 or d.verdict == "no_gap":
         return ""
+    alike = f", and {per_cent(force.alike)} beside what only looks like causes" if force.alike is not None else ""
     of = "the causes act" if len(d.causes) > 1 else "the cause acts" if d.causes else "what comes nearest acts"
     return (
-        f"Where {of}, a force is left that nobody logged, {per_cent(force.size)} of the thrusters' own; beside right causes it is {per_cent(force.expected)} "
-        "on average. Something that only looks like them leaves so much."
+        f"Where {of}, a force is left that nobody logged, {per_cent(force.size)} of the thrusters' own; the median is "
+        f"{per_cent(force.expected)} beside right causes{alike}."
     )
 
 
