@@ -19,15 +19,17 @@ from rovval.core.data import Run
 from rovval.core.errors import BadInput
 from rovval.diagnose import diagnose, pipeline
 from rovval.diagnose.decision.finding import Finding
+from rovval.diagnose.decision.verdict import decide
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import healthy_fit
-from rovval.diagnose.problem.problem import Problem, pose
+from rovval.diagnose.problem.problem import Problem, corrected_residuals, pose
 from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.residuals.ridge import Prior
-from rovval.diagnose.search.model import Part
+from rovval.diagnose.search.forward import Selection
+from rovval.diagnose.search.model import Model, ModelPrior, Part
 from rovval.diagnose.search.onset import Stretch, moved_onset, onset_cost, windows_from, with_onset
 from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.diagnose.windows.windows import Windows
@@ -169,6 +171,24 @@ def test_a_cause_from_some_moment_on_is_weighed_on_every_window(posed: tuple[Pro
     assert begun.fit is not None and never.fit is not None and throughout.fit is not None
     assert begun.fit.loss.sum() < throughout.fit.loss.sum() < never.fit.loss.sum() == pytest.approx(problem.gap.total.c.sum())
     assert begun.fit.posterior.dynamics_loss().sum() < always.posterior.dynamics_loss().sum()
+
+
+def test_a_set_that_is_named_of_a_larger_one_begins_when_that_does(posed: tuple[Problem, Windows, list[Hypothesis], Posterior]) -> None:
+    """The loss is in every set that was found from its beginning on, and none of what is beside it is likelier at work than not: the loss alone, which was
+    not fitted, is named from the same second on."""
+    problem, windows, library, alone = posed
+    there, prior = pose((windows_from(windows, BEGINS),), columns_of(library), 0.05), ModelPrior.of(library)
+    beside = (("added_mass[roll]",), ("inertia_error[roll]", "quadratic_drag[heave]"), ("inertia_error[roll]", "added_mass[heave]", "linear_drag[heave]"))
+    found = list[Model]()
+    for others, probability in zip(beside, (0.4, 0.3, 0.3), strict=True):
+        causes = tuple(named(library, name) for name in ("inflow_loss", *others))
+        fit = fit_hypothesis(there, there.origin, tuple(s for h in causes for s in h.slots))
+        begun = with_onset(problem, causes, prior.log_mass(causes), Part(BEGINS, there, fit), alone)
+        found.append(replace(begun, evidence=2.0 * (np.log(probability) + 100.0 - begun.log_prior)))
+    nothing = Model((), None, laplace_evidence(problem, alone), prior.log_mass(()))
+    selection = Selection((nothing, *found), found[0], alone, (), (), BEGINS, prior, tuple(library))
+    decision = decide(problem, selection, corrected_residuals(problem), ())
+    assert [h.name for h in decision.causes] == ["inflow_loss"] and decision.since == BEGINS
 
 
 def test_an_onset_is_moved_to_where_the_causes_begin(posed: tuple[Problem, Windows, list[Hypothesis], Posterior]) -> None:

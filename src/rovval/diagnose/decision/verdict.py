@@ -30,6 +30,7 @@ from rovval.diagnose.search.discrepancy import forces_beside, generic_forces, no
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.search.joint import joint_fit, refitted, with_relatives
 from rovval.diagnose.search.model import Model, Names, best_of_each_set
+from rovval.diagnose.search.onset import with_onset
 
 Verdict = Literal["no_gap", "explained", "partly_explained", "unknown"]
 
@@ -197,8 +198,12 @@ def _fitted(problem: Problem, selection: Selection, met: Sequence[Model], names:
     larger = refitted(problem, max((m for whole, m in sets.items() if names < whole), key=lambda m: m.log_posterior))
     assert larger.fit is not None
     causes = tuple(h for h in larger.causes if h.name in names)
-    fit = joint_fit(problem, larger.fit, causes)
-    return refitted(problem, Model(causes, fit.without_sensitivities(), fit.evidence, selection.prior.log_mass(causes)))
+    there, whole = _where_at_work(problem, larger, larger.fit)
+    fit, log_prior = joint_fit(there, whole, causes), selection.prior.log_mass(causes)
+    found = refitted(there, Model(causes, fit.without_sensitivities(), fit.evidence, log_prior))
+    if larger.part and found.fit:  # causes that begin in mid-log do so without the others, too
+        return with_onset(problem, causes, log_prior, replace(larger.part, fit=found.fit), selection.healthy)
+    return found
 
 
 def _needed(problem: Problem, selection: Selection, met: Sequence[Model], best: Model) -> tuple[Model, dict[str, Model]]:
