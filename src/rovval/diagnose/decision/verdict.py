@@ -116,7 +116,7 @@ def decide(
     )  # fmt: skip
     contradicted = any(h.effect.place != "sensor" for h in best.causes) and _contradicted(problem, residuals)
     if best.fit and beside_best and belief.likelier_than_not == "causes" and not contradicted:
-        return _named(problem, found, best, best.fit, compared.without, beside_best.varying)
+        return _named(problem, found, best, best.fit, compared.without)
     found = replace(found, indications=indications(selection.steps[0] if selection.steps else (), known, faults))
     if belief.likelier_than_not == "healthy":
         return found
@@ -228,18 +228,16 @@ def _without(problem: Problem, selection: Selection, best: Model, cause: Hypothe
     return known.get(rest, known[frozenset()])
 
 
-def _named(
-    problem: Problem, found: Decision, best: Model, fit: HypothesisFit, without: Mapping[str, Model], varying: Variation
-) -> Decision:
-    """The causes of the best set are named; they explain a part where generic forces beside them, or sizes ``varying`` along the log, are likelier than
-    not, or where they leave more of the gap than noise and tolerances make."""
-    belief, evidence, left = found.probabilities, found.weighed[best.names].forces, left_open(problem, fit)
+def _named(problem: Problem, found: Decision, best: Model, fit: HypothesisFit, without: Mapping[str, Model]) -> Decision:
+    """The causes of the best set, which was weighed, are named; they explain a part where generic forces beside them, or sizes that vary along the log, are
+    likelier than not, or where they leave more of the gap than noise and tolerances make."""
+    belief, beside, left = found.probabilities, found.weighed[best.names], left_open(problem, fit)
     problem, fit = _where_at_work(problem, best, fit)
     probability = {h.name: belief.of(h.name) for h in best.causes}
     added = {name: best.evidence - m.evidence for name, m in without.items()}
     rest = None
-    if something_beside(evidence, varying):
-        rest = unexplained(problem, generic_forces(problem, fit.posterior), fit.posterior, goes_with=varying.goes_with)
+    if something_beside(beside.forces, beside.varying):
+        rest = unexplained(problem, generic_forces(problem, fit.posterior), fit.posterior, goes_with=beside.varying.goes_with)
     elif left > 1.0:
         rest = unexplained_by_any(problem, 1.0 / left, corrected_residuals(problem, fit.beta), fit.posterior)
     return replace(
@@ -250,7 +248,7 @@ def _named(
         groups={h.name: belief.group(h.name) for h in best.causes},
         probability=probability,
         added=added,
-        generic_beside=max(evidence, 0.0),
+        generic_beside=max(beside.forces, 0.0),
         departure=fit.posterior.largest_departure(),
         open_gap=left,
         unexplained=rest,
