@@ -67,7 +67,6 @@ MOST_REFITTED = 2  # fits that are (chosen)
 REFITTED_EVIDENCE = 0.25  # share of the best's evidence that their tangent must promise (chosen: what gains little is found again beside the best)
 MOST_RELINEARISED = 4  # candidates that are fitted again with sensitivities made at their own point (chosen)
 SERIOUS_EVIDENCE = 0.5  # share of the best evidence from which a candidate's gain counts (chosen)
-MOST_ALTERNATIVES = 2  # candidates against which a cause is weighed again in the end (chosen)
 MOST_RELATIVES = 4  # hypotheses of the library that are fitted in the place of each of several causes (chosen)
 ONSETS_TRIED = 12  # first windows with it that are tried, evenly spread, before those about the best of them (chosen)
 

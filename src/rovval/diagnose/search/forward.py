@@ -24,7 +24,7 @@ from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.search.baseline import Candidate, baseline_of, healthy_baseline
 from rovval.diagnose.search.candidates import candidates
-from rovval.diagnose.search.joint import reconsidered, refitted, settled, with_relatives
+from rovval.diagnose.search.joint import refitted, settled, with_relatives, without_each
 from rovval.diagnose.search.model import Model, ModelPrior
 from rovval.diagnose.search.onset import suspected_onset
 from rovval.diagnose.search.plausible import plausible
@@ -77,15 +77,25 @@ def search(
         progress: called with what is being done and the share of the work that is done (0 to 1).
         most: causes at once that are sought.
     """
-    prior = ModelPrior.of(library)
-    nothing = Model((), None, laplace_evidence(problem, healthy), prior.log_mass(()))
-    first = met = _grown(_Met([nothing], [], None), problem, prior, initialised, nothing, healthy, progress, most)
+    over = _Space(problem, ModelPrior.of(library), initialised, healthy)
+    nothing = Model((), None, laplace_evidence(problem, healthy), over.prior.log_mass(()))
+    first = met = _grown(over, _Met([nothing], [], None), nothing, most, progress)
     if rival := _rival(first):
-        met = _grown(first, problem, prior, initialised, refitted(problem, rival), healthy, progress, most)
+        met = _grown(over, first, refitted(problem, rival), most, progress)
     progress("weighing the causes beside each other", 0.7)
-    healthy, models, best = _reconsidered(problem, prior, initialised, healthy, met)
+    healthy, models, best = _exchanged(over, met)
     rows = tuple(tuple((c.hypothesis.name, c.evidence, c.gain) for c in step) for step in first.tried)
-    return Selection(tuple(models), best, healthy, _ranking(problem, library, best, rows), rows, first.onset, prior, tuple(initialised))
+    return Selection(tuple(models), best, healthy, _ranking(problem, library, best, rows), rows, first.onset, over.prior, tuple(initialised))
+
+
+@dataclass(frozen=True, slots=True)
+class _Space:
+    """What is searched: sets of the hypotheses of a ``library``, with their ``prior`` mass, beside a ``healthy`` vehicle."""
+
+    problem: Problem
+    prior: ModelPrior
+    library: list[Hypothesis]
+    healthy: Posterior
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,24 +112,21 @@ class _Met:
         return max(self.models, key=lambda m: m.log_posterior)
 
 
-def _grown(
-    met: _Met, problem: Problem, prior: ModelPrior, library: list[Hypothesis], front: Model, healthy: Posterior, progress: Callable[[str, float], None],
-    most: int,
-) -> _Met:
-    """What was met and what is met on the way from ``front`` on, to which one cause after the other is added."""
+def _grown(over: _Space, met: _Met, front: Model, most: int, progress: Callable[[str, float], None]) -> _Met:
+    """What was met and what is met on the way from ``front`` on, to which one cause after the other is added, up to ``most``."""
     models, tried, onset, doubted, best = list(met.models), list(met.tried), met.onset, False, met.best
     for number in range(len(front.causes), most):
-        progress(f"adding each of {len(library)} hypotheses to {number} causes", 0.7 - 0.4 * 0.7**number)
-        found, suspected = _extended(problem, prior, library, front, healthy, best.log_posterior + log(NEGLIGIBLE))
+        progress(f"adding each of {len(over.library)} hypotheses to {number} causes", 0.7 - 0.4 * 0.7**number)
+        found, suspected = _extended(over, front, best.log_posterior + log(NEGLIGIBLE))
         onset = suspected if front.fit is None else onset
         if not found:
             break
         tried.append(found)
-        added = settled(problem, [_model(prior, front, c) for c in found], 1)
+        added = settled(over.problem, [_model(over.prior, front, c) for c in found], 1)
         models += added
         before, front = front, max(added, key=lambda m: m.log_posterior)
         best = max(best, front, key=lambda m: m.log_posterior)
-        before_doubted, doubted = doubted, _looks_like_form_error(problem, before, front)
+        before_doubted, doubted = doubted, _looks_like_form_error(over.problem, before, front)
         if front.log_posterior < best.log_posterior + log(NEGLIGIBLE) or len(front.causes) > len(best.causes) + 1 or (doubted and before_doubted):
             break
     return _Met(models, tried, onset)
@@ -137,17 +144,15 @@ def _rival(met: _Met) -> Model | None:
     return rival if rival.log_posterior > near else None
 
 
-def _extended(
-    problem: Problem, prior: ModelPrior, library: list[Hypothesis], front: Model, healthy: Posterior, least: float
-) -> tuple[list[Candidate], float | None]:
+def _extended(over: _Space, front: Model, least: float) -> tuple[list[Candidate], float | None]:
     """Candidates for one cause more than ``front`` has, none where none promises a log posterior of ``least``; and the onset that the log suggests."""
-    baseline = baseline_of(front.fit) if front.fit else healthy_baseline(problem, healthy)
-    chosen = front.fit.slots if front.fit else ()
-    data = linearised(problem, library, baseline.posterior)
-    open_now = [h for h in library if h.name not in front.names]
+    problem, chosen = over.problem, front.fit.slots if front.fit else ()
+    baseline = baseline_of(front.fit) if front.fit else healthy_baseline(problem, over.healthy)
+    data = linearised(problem, over.library, baseline.posterior)
+    open_now = [h for h in over.library if h.name not in front.names]
     promised = screened(problem, data, open_now, chosen)
     onset = None if front.fit else suspected_onset(problem, data, open_now)
-    needed = {h.label: 2.0 * (least - prior.log_mass((*front.causes, h))) - baseline.evidence for h in open_now}
+    needed = {h.label: 2.0 * (least - over.prior.log_mass((*front.causes, h))) - baseline.evidence for h in open_now}
     if not any(h.evident or promised[h.label] > needed[h.label] for h in open_now):
         return [], onset
     return [c for c in candidates(problem, data, open_now, promised, needed, baseline, chosen) if plausible(problem, c)], onset
@@ -168,18 +173,17 @@ def _model(prior: ModelPrior, front: Model, one: Candidate) -> Model:
     return Model(causes, one.fit, one.fit.evidence, prior.log_mass(causes), careful=bool(one.fit.posterior.whitened))
 
 
-def _reconsidered(
-    problem: Problem, prior: ModelPrior, library: list[Hypothesis], healthy: Posterior, met: _Met
-) -> tuple[Posterior, list[Model], Model]:
-    """The healthy fit, tried from where it is beside the causes, too; the models with those that came of exchanging causes; and the best of them."""
-    models, best = met.models, met.best
+def _exchanged(over: _Space, met: _Met) -> tuple[Posterior, list[Model], Model]:
+    """The healthy fit, tried from where it is beside the causes, too; the models with those that came of taking causes out and of exchanging them; and the best
+    of them."""
+    problem, models, best = over.problem, met.models, met.best
     if best.fit is None:
-        return healthy, models, best
-    healthy = refit_healthy(problem, healthy, best.fit.posterior, best.fit.slots)
+        return over.healthy, models, best
+    healthy = refit_healthy(problem, over.healthy, best.fit.posterior, best.fit.slots)
     models = [Model((), None, laplace_evidence(problem, healthy), models[0].log_prior), *models[1:]]
     known = {m.names for m in models}
     while len(best.causes) > 1:
-        exchanged = [*reconsidered(problem, prior, best, met.tried, known), *with_relatives(problem, prior, library, best, known)]
+        exchanged = [*without_each(problem, over.prior, best, known), *with_relatives(problem, over.prior, over.library, best, known)]
         models = settled(problem, [*models, *exchanged], 1)
         better = max(models, key=lambda m: m.log_posterior)
         if better.fit is None or better.log_posterior <= best.log_posterior:

@@ -15,53 +15,29 @@ from math import log
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.effort import MOST_ALTERNATIVES, MOST_RELATIVES, NEGLIGIBLE
+from rovval.diagnose.effort import MOST_RELATIVES, NEGLIGIBLE
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of, wide_prior
-from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, fit_hypothesis, fit_quickly, only_places
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, fit_hypothesis, fit_quickly
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.residuals.ridge import ridge_step
-from rovval.diagnose.search.baseline import Candidate
 from rovval.diagnose.search.candidates import start_of
 from rovval.diagnose.search.model import Model, ModelPrior, Names, best_of_each_set
 from rovval.diagnose.search.screening import linearised, screened
 
 
-def reconsidered(problem: Problem, prior: ModelPrior, best: Model, tried: Sequence[Sequence[Candidate]], known: set[frozenset[str]]) -> list[Model]:
-    """Models of the set ``best`` without each of its causes, and with each exchanged for the candidates that came nearest to it.
-
-    Args:
-        problem: what they are fitted to.
-        prior: prior mass of sets of causes.
-        best: a model of two causes or more, its fit with sensitivities.
-        tried: candidates of each step of the search, best evidence first; a cause is exchanged for those of the step in which it was found.
-        known: names of the sets that were fitted already.
-    """
-    assert best.fit is not None
+def without_each(problem: Problem, prior: ModelPrior, whole: Model, known: set[Names]) -> list[Model]:
+    """Models of a set of two causes or more, its fit with sensitivities, without each of them: the others from where they are in it. ``known`` are names of the
+    sets that were fitted already; those that are fitted here are added to it."""
+    assert whole.fit is not None
     found = list[Model]()
-    for cause in best.causes:
-        rest = [h for h in best.causes if h is not cause]
-        step = next((one for one in tried if cause.name in {c.hypothesis.name for c in one}), ())
-        others = [c for c in step if c.hypothesis.name not in best.names][:MOST_ALTERNATIVES]
-        without = joint_fit(problem, best.fit, rest)
-        for other in (None, *others):
-            causes = (*rest, other.hypothesis) if other else tuple(rest)
-            if frozenset(h.name for h in causes) not in known:
-                fit = (_exchanged(problem, best.fit, rest, other, without) if other else without).without_sensitivities()
-                found.append(Model(causes, fit, fit.evidence, prior.log_mass(causes)))
-                known.add(found[-1].names)
+    for cause in whole.causes:
+        rest = tuple(h for h in whole.causes if h is not cause)
+        if (names := whole.names - {cause.name}) not in known:
+            fit = joint_fit(problem, whole.fit, rest).without_sensitivities()
+            found.append(Model(rest, fit, fit.evidence, prior.log_mass(rest)))
+            known.add(names)
     return found
-
-
-def _exchanged(problem: Problem, whole: HypothesisFit, rest: Sequence[Hypothesis], other: Candidate, without: HypothesisFit) -> HypothesisFit:
-    """The fit of ``rest`` and another cause; of one that ends worse than ``without`` that cause, again from there, with no more of it than its place."""
-    fit = joint_fit(problem, whole, rest, other)
-    if fit.posterior.predicted_cost() <= without.posterior.predicted_cost():
-        return fit
-    start, placed = without.posterior.beta.copy(), [s for s in other.hypothesis.slots if only_places(problem, s)]
-    start[placed] = other.fit.beta[placed]
-    again = fit_quickly(problem, start, fit.slots, without.posterior.whitened)
-    return max(fit, again, key=lambda one: one.evidence)
 
 
 def with_relatives(problem: Problem, prior: ModelPrior, library: Sequence[Hypothesis], whole: Model, known: set[Names]) -> list[Model]:
@@ -133,12 +109,9 @@ def refitted(problem: Problem, model: Model) -> Model:
     return replace(model, fit=fit, evidence=fit.evidence, careful=True)
 
 
-def joint_fit(problem: Problem, whole: HypothesisFit, kept: Sequence[Hypothesis], other: Candidate | None = None) -> HypothesisFit:
-    """The causes ``kept`` fitted from where they are in ``whole``, with another one from where it was as a candidate."""
-    start, slots = whole.posterior.beta.copy(), [s for h in kept for s in h.slots]
+def joint_fit(problem: Problem, whole: HypothesisFit, kept: Sequence[Hypothesis]) -> HypothesisFit:
+    """The causes ``kept`` fitted from where they are in ``whole``."""
+    start, slots = whole.posterior.beta.copy(), tuple(dict.fromkeys(s for h in kept for s in h.slots))
     gone = [s for s in whole.slots if s not in slots]
     start[gone] = problem.origin[gone]
-    if other:
-        new = list(other.hypothesis.slots)
-        start[new], slots = other.fit.beta[new], [*slots, *new]
-    return fit_quickly(problem, start, tuple(dict.fromkeys(slots)), whole.posterior.whitened)
+    return fit_quickly(problem, start, slots, whole.posterior.whitened)
