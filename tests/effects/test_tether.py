@@ -7,6 +7,7 @@ import plant_cases as cases
 import pytest
 
 from rovval.core.data import Array
+from rovval.effects.library import tether_drag
 from rovval.plant import Inputs, Plant, parse_settings
 
 
@@ -34,3 +35,26 @@ def test_the_pull_of_a_tether_that_is_dragged_is_a_steady_pull_at_its_attachment
     at_rest = begun(f"tether_drag:{pull}", (3.0, 4.0, 30.0))
     np.testing.assert_allclose(at_rest, begun(f"tether_tension:{pull}", (3.0, 4.0, 30.0)), rtol=0, atol=1e-9)
     assert begun(f"tether_drag:coefficient=800,{pull}", (3.0, 4.0, 30.0))[0] == pytest.approx(at_rest[0], rel=0.02)
+
+
+def drag_of(v: Array, pull: Array, across: float = 1.0) -> Array:
+    """Force (3,) of a tether of 100 N s2/m2 on a level vehicle that moves with ``v`` (3,), without its steady ``pull`` (3,)."""
+    level = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+    return np.array(tether_drag.wrench(100.0, 0.0, *pull, across, 0.0, 0.0, 0.0, *v, 0.0, 0.0, 0.0, *level)[:3]) - pull
+
+
+def test_a_tether_of_known_direction_drags_across_it_and_hardly_along_it():
+    """Morison: |F| = c |v'|^2 against v', the velocity across the line; along a line that pulls with 60 N next to nothing."""
+    pull, along = np.array([36.0, 0.0, -48.0]), np.array([0.6, 0.0, -0.8])
+    assert np.abs(drag_of(along, pull)).max() < 1e-3
+    sideways = np.array([0.8, 0.0, 0.6])
+    np.testing.assert_allclose(drag_of(0.5 * sideways, pull), -25.0 * sideways, rtol=1e-9)
+    np.testing.assert_allclose(drag_of(0.5 * sideways + 2.0 * along, pull), -25.0 * sideways, rtol=2e-3, atol=1e-2)
+
+
+def test_a_tether_of_no_direction_drags_alike_whichever_way_it_moves():
+    rng = np.random.default_rng(47)
+    for v in rng.normal(size=(20, 3)):
+        like = -100.0 * np.linalg.norm(v) * v
+        np.testing.assert_allclose(drag_of(v, np.zeros(3)), like, rtol=1e-12)
+        np.testing.assert_allclose(drag_of(v, np.array([40.0, 20.0, 10.0]), across=0.0), like, rtol=1e-9)

@@ -262,10 +262,10 @@ def test_a_tether_damps_a_turn_by_its_arm_and_never_gives_power():
     nu, (ax, az) = rng.normal(size=(200, 6)), rng.uniform(-2, 2, size=(2, 200))
     u, v, w, p, q, r = nu.T
     level = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-    given = np.stack(tether_drag.wrench(30.0, 2.0, 0.0, 0.0, 0.0, ax, az, 10.0, u, v, w, p, q, r, *level), axis=-1)
+    given = np.stack(tether_drag.wrench(30.0, 2.0, 0.0, 0.0, 0.0, 1.0, ax, az, 10.0, u, v, w, p, q, r, *level), axis=-1)
     speed = np.linalg.norm(nu[:, :3] + np.cross(nu[:, 3:], np.stack([ax, 0 * ax, az], axis=-1)), axis=1)
     assert np.allclose((given * nu).sum(axis=1), -50.0 * speed**3, rtol=1e-12, atol=0)
-    assert tether_drag.wrench(30.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5, *level)[5] == pytest.approx(-30.0 * 0.25)
+    assert tether_drag.wrench(30.0, 0.0, 0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5, *level)[5] == pytest.approx(-30.0 * 0.25)
     plant = Plant(cases.merlin())
     turns = []
     for setting in ("x=0", "x=-1"):

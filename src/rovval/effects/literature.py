@@ -70,6 +70,8 @@ REFERENCES = MappingProxyType(
         "Nienhuis 1992": "Nienhuis, U. (1992). Analysis of Thruster Effectivity for Dynamic Positioning and Low Speed Manoeuvring. PhD thesis, TU Delft.",
         "Omerdic and Roberts 2004": "Omerdic, E. and Roberts, G. (2004). Thruster fault diagnosis and accommodation for open-frame underwater vehicles. "
         "Control Engineering Practice 12(12).",
+        "Pugh and Woodworth 2014": "Pugh, D. and Woodworth, P. (2014). Sea-Level Science: Understanding Tides, Surges, Tsunamis and Mean Sea-Level Changes. "
+        "Cambridge University Press.",
         "Saunders and Nahon 2002": "Saunders, A. and Nahon, M. (2002). The effect of forward vehicle velocity on through-body AUV tunnel thruster performance. "
         "OCEANS 2002 MTS/IEEE.",
         "Soule and Miller 1933": "Soule, H. A. and Miller, M. P. (1933). The Experimental Determination of the Moments of Inertia of Airplanes. NACA "

@@ -1,4 +1,4 @@
-"""The tether that the vehicle drags along: a force against its velocity through the water, the same whichever way it points."""
+"""The tether that the vehicle drags along: a force against its velocity through the water, more of it across the line than along it."""
 
 from __future__ import annotations
 
@@ -9,21 +9,26 @@ from rovval.effects.effect import Effect, Parameter
 from rovval.effects.lanes import Array, Lanes
 
 PULL = "as of `tether_tension`"
+SLACK = 1.0  # N: a pull of less tells no direction (chosen; some per cent of what such lines pull)
 
 EFFECT = Effect(
     name="tether_drag",
     title="Drag of the tether",
     place="wrench",
-    equation="F = -(coefficient + per_length L) |v| v + R^T (north, east, down) at the attachment (x, 0, z); coefficient ~ 1/2 rho C_n d L, of which the "
-    "vehicle carries about half; north, east, down: the tether's own weight and pull, which come with its drag.",
+    equation="F = -(coefficient + per_length L) |v'| v' + T at the attachment (x, 0, z), v' = v - across (v . T) T / (|T|^2 + s^2): next to nothing drags "
+    "along a line of which the pull tells the direction (Morison); coefficient ~ 1/2 rho C_n d L, of which the vehicle carries about half; "
+    "T = R^T (north, east, down): the tether's own weight and pull, which come with its drag.",
     symbols={
         "F": "force, body axes; N",
         "v": "velocity of the attachment relative to the water, the vehicle's turning included, body axes; m/s",
         "L": "logged length of tether paid out; m",
         "rho": "density of the water; kg/m3",
         "C_n, d": "coefficient of normal drag (1) and diameter (m) of the tether",
+        "T": "steady pull of the same tether, body axes; N",
+        "s": "1 N: a pull of less tells no direction",
         "R": "rotation from body axes to the north-east-down frame",
-        "north, east, down": "steady pull of the same tether; N",
+        "north, east, down": "the same pull; N",
+        "across": "1 where the line keeps that direction, less where it turns along the log",
         "x, z": "attachment ahead of and below the origin, body axes; m",
     },
     parameters=(
@@ -34,38 +39,42 @@ EFFECT = Effect(
         Parameter("north", "N", -100.0, 100.0, 0.0, 6.0, PULL, "weight"),
         Parameter("east", "N", -100.0, 100.0, 0.0, 6.0, PULL, "weight"),
         Parameter("down", "N", -100.0, 100.0, 0.0, 4.0, PULL, "weight"),
+        Parameter("across", "1", 0.0, 1.0, 1.0, 0.5, "Driscoll 2000: along a line 0.02 of what is across it", role="extent"),
         Parameter("x", "m", -2.0, 2.0, 0.0, 0.3, "attachment, ahead of the origin", role="lever"),
         Parameter("z", "m", -2.0, 2.0, 0.0, 0.2, "attachment, below the origin", role="lever"),
     ),
-    signature="opposes the velocity through the water alike in every body direction; grows with tether paid out",
+    signature="opposes the velocity through the water, of all body directions alike, but for those along the line; grows with tether paid out",
     confused_with=("quadratic_drag", "linear_drag", "current_constant", "inflow_loss"),
     separates="the same speed ahead and sideways: a hull's drag differs, a tether's does not; the log of tether length",
     literature=(
         "Hoerner 1965: normal drag of a cylinder, C_n 1.2",
-        "Driscoll 2000: dynamics of an ROV's tether",
+        "Driscoll 2000: lumped-mass model of a tether, its drag along and across",
         "Feng and Allen 2004: a cable's drag on an underwater vehicle",
     ),
     includes="tether_tension",
     needs_one_of=("u", "v", "x", "y"),  # of a vehicle that only turns, as far as the log shows, it is drag in yaw
     refines=("north", "east", "down"),
 )
-ROWS = ("coefficient", "per_length", "north", "east", "down", "ax", "az")
+ROWS = ("coefficient", "per_length", "north", "east", "down", "across", "ax", "az")
 
 
 def rows(lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
     """Coefficients, pull and attachment."""
-    return {name: p[name] for name in ROWS[:5]} | {"ax": p["x"], "az": p["z"]}
+    return {name: p[name] for name in ROWS[:6]} | {"ax": p["x"], "az": p["z"]}
 
 
 def wrench(
-    coefficient: Number, per_length: Number, north: Number, east: Number, down: Number, ax: Number, az: Number, tether_length: Number,
+    coefficient: Number, per_length: Number, north: Number, east: Number, down: Number, across: Number, ax: Number, az: Number, tether_length: Number,
     ur: Number, vr: Number, wr: Number, p: Number, q: Number, r: Number,
     r11: Number, r12: Number, r13: Number, r21: Number, r22: Number, r23: Number, r31: Number, r32: Number, r33: Number,
 ) -> tuple[Number, ...]:  # fmt: skip
-    """Force against the attachment's velocity relative to the water (its length is the same in both frames), the pull in the body frame, and their moment."""
+    """Force against the part of the attachment's velocity relative to the water that is across the line, the pull in the body frame, and their moment."""
     ua, va, wa = ur + q * az, vr + r * ax - p * az, wr - q * ax
-    pull = -(coefficient + per_length * tether_length) * sqrt(ua * ua + va * va + wa * wa)
-    fx = pull * ua + r11 * north + r21 * east + r31 * down
-    fy = pull * va + r12 * north + r22 * east + r32 * down
-    fz = pull * wa + r13 * north + r23 * east + r33 * down
+    tx, ty, tz = r11 * north + r21 * east + r31 * down, r12 * north + r22 * east + r32 * down, r13 * north + r23 * east + r33 * down
+    along = across * (ua * tx + va * ty + wa * tz) / (north * north + east * east + down * down + SLACK * SLACK)
+    un, vn, wn = ua - along * tx, va - along * ty, wa - along * tz
+    pull = -(coefficient + per_length * tether_length) * sqrt(un * un + vn * vn + wn * wn)
+    fx = pull * un + tx
+    fy = pull * vn + ty
+    fz = pull * wn + tz
     return fx, fy, fz, -az * fy, az * fx - ax * fz, ax * fy
