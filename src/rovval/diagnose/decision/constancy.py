@@ -15,6 +15,7 @@ import numpy as np
 
 from rovval.diagnose.criteria import VARIATIONS
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
+from rovval.diagnose.inference.hypothesis_fit import only_places
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.search.dependence import dependence
@@ -78,7 +79,7 @@ def _varies(problem: Problem, point: Posterior, h: Hypothesis, share: float) -> 
 
     The factor is a nuisance of each window, integrated out (Woodbury identity).
     """
-    at = [i for i, slot in enumerate(point.columns) if slot in h.slots]
+    at = [i for i, slot in enumerate(point.columns) if slot in h.slots and not only_places(problem, slot)]
     step = point.solve(point.curvature, point.descent)
     size = np.zeros(len(point.columns))
     size[at] = point.departure[at] + step[at]
