@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -27,6 +28,21 @@ def fitted(problem: Problem, library: list[Hypothesis], name: str) -> Variation:
 def test_a_cause_that_is_there_holds_still(planted: str, name: str):
     found = fitted(*posed((planted,)), name)
     assert max(found.form, *found.alike.values()) < 0.0 and found.goes_with is None
+
+
+def test_from_where_the_place_of_a_cause_is_counted_is_no_part_of_its_size():
+    """The depth of a stratification, counted from 20 m higher up, at the same fit."""
+    problem, library = posed(("density_gradient:gradient=8,depth=3,layer=2",))
+    h = next(h for h in library if h.name == "density_gradient")
+    start = problem.origin.copy()
+    start[[slot for slot, _ in h.at]] = [value for _, value in h.at]
+    point = map_fit(problem, start, h.slots)
+    at = [problem.plant.slots[slot].key for slot in point.columns].index("density_gradient.depth")
+    moved, b = point.departure.copy(), point.total.b.copy()
+    moved[at] += 20.0
+    b[0, at] += 20.0 * point.precision[at]  # the prior pulls no more than before
+    elsewhere = replace(point, departure=moved, total=replace(point.total, b=b))
+    assert variation(problem, elsewhere, [h]).form == pytest.approx(variation(problem, point, [h]).form, abs=1e-9)
 
 
 def test_a_loss_that_begins_in_mid_log_varies_as_one_that_was_always_there():
