@@ -39,8 +39,8 @@ def test_the_pull_of_a_tether_that_is_dragged_is_a_steady_pull_at_its_attachment
 
 def drag_of(v: Array, pull: Array, across: float = 1.0) -> Array:
     """Force (3,) of a tether of 100 N s2/m2 on a level vehicle that moves with ``v`` (3,), without its steady ``pull`` (3,)."""
-    level = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-    return np.array(tether_drag.wrench(100.0, 0.0, *pull, across, 0.0, 0.0, 0.0, *v, 0.0, 0.0, 0.0, *level)[:3]) - pull
+    asked = (100.0, 0.0, *pull, across, 0.0, 0.0, 0.0, *v, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+    return np.array(tether_drag.wrench(*asked)[:3]) - pull
 
 
 def test_a_tether_of_known_direction_drags_across_it_and_hardly_along_it():
