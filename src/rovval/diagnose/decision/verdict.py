@@ -28,7 +28,7 @@ from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.residuals.sensor_faults import FittedFault
 from rovval.diagnose.search.discrepancy import forces_beside, generic_forces, nominal_forces
 from rovval.diagnose.search.forward import Selection
-from rovval.diagnose.search.joint import joint_fit, refitted, with_relatives
+from rovval.diagnose.search.joint import refitted, some_of, with_relatives, without_each
 from rovval.diagnose.search.model import Model, Names, best_of_each_set
 from rovval.diagnose.search.onset import with_onset
 
@@ -199,33 +199,24 @@ def _fitted(problem: Problem, selection: Selection, met: Sequence[Model], names:
     assert larger.fit is not None
     causes = tuple(h for h in larger.causes if h.name in names)
     there, whole = _where_at_work(problem, larger, larger.fit)
-    fit, log_prior = joint_fit(there, whole, causes), selection.prior.log_mass(causes)
-    found = refitted(there, Model(causes, fit.without_sensitivities(), fit.evidence, log_prior))
+    found = refitted(there, some_of(there, selection.prior, whole, causes))
     if larger.part and found.fit:  # causes that begin in mid-log do so without the others, too
-        return with_onset(problem, causes, log_prior, replace(larger.part, fit=found.fit), selection.healthy)
+        return with_onset(problem, causes, found.log_prior, replace(larger.part, fit=found.fit), selection.healthy)
     return found
 
 
 def _needed(problem: Problem, selection: Selection, met: Sequence[Model], best: Model) -> tuple[Model, dict[str, Model]]:
-    """A model without causes without which it is as probable, since others of it stand in for them; and the models without each of those that are left."""
+    """A model without causes without which it is as probable, since others of it stand in for them; and the models without each of those that are left, which
+    is the healthy vehicle for causes that begin together in mid-log where no other was fitted."""
     known = best_of_each_set(met)
     while True:
-        without = {h.name: _without(problem, selection, best, h, known) for h in best.causes}
+        if best.fit and best.part is None:
+            known |= {m.names: m for m in without_each(problem, selection.prior, best, set(known))}
+        without = {h.name: known.get(best.names - {h.name}, known[frozenset()]) for h in best.causes}
         if len(without) < 2 or max(m.log_posterior for m in without.values()) < best.log_posterior:
             return best, without
         idle = max(without, key=lambda name: without[name].log_posterior)
         best = _fitted(problem, selection, [best, *met], best.names - {idle})
-
-
-def _without(problem: Problem, selection: Selection, best: Model, cause: Hypothesis, known: dict[Names, Model]) -> Model:
-    """A model without one of its causes: as ``known``, where it was fitted, else the others from where they are in the model, kept there; the healthy vehicle
-    for causes that begin together in mid-log."""
-    rest = best.names - {cause.name}
-    if rest not in known and best.fit and best.part is None:
-        others = tuple(h for h in best.causes if h is not cause)
-        fit = joint_fit(problem, best.fit, others).without_sensitivities()
-        known[rest] = Model(others, fit, fit.evidence, selection.prior.log_mass(others))
-    return known.get(rest, known[frozenset()])
 
 
 def _named(problem: Problem, found: Decision, best: Model, fit: HypothesisFit, without: Mapping[str, Model]) -> Decision:

@@ -27,15 +27,13 @@ from rovval.diagnose.search.screening import linearised, screened
 
 
 def without_each(problem: Problem, prior: ModelPrior, whole: Model, known: set[Names]) -> list[Model]:
-    """Models of a set of two causes or more, its fit with sensitivities, without each of them: the others from where they are in it. ``known`` are names of the
-    sets that were fitted already; those that are fitted here are added to it."""
+    """Models of a set of causes, its fit with sensitivities, without each of them (`some_of`). ``known`` are names of the sets that were fitted already; those
+    that are fitted here are added to it."""
     assert whole.fit is not None
     found = list[Model]()
     for cause in whole.causes:
-        rest = tuple(h for h in whole.causes if h is not cause)
         if (names := whole.names - {cause.name}) not in known:
-            fit = joint_fit(problem, whole.fit, rest).without_sensitivities()
-            found.append(Model(rest, fit, fit.evidence, prior.log_mass(rest)))
+            found.append(some_of(problem, prior, whole.fit, tuple(h for h in whole.causes if h is not cause)))
             known.add(names)
     return found
 
@@ -109,9 +107,10 @@ def refitted(problem: Problem, model: Model) -> Model:
     return replace(model, fit=fit, evidence=fit.evidence, careful=True)
 
 
-def joint_fit(problem: Problem, whole: HypothesisFit, kept: Sequence[Hypothesis]) -> HypothesisFit:
-    """The causes ``kept`` fitted from where they are in ``whole``."""
-    start, slots = whole.posterior.beta.copy(), tuple(dict.fromkeys(s for h in kept for s in h.slots))
+def some_of(problem: Problem, prior: ModelPrior, whole: HypothesisFit, causes: tuple[Hypothesis, ...]) -> Model:
+    """The model of some of the causes of the fit ``whole``, fitted from where they are in it."""
+    start, slots = whole.posterior.beta.copy(), tuple(dict.fromkeys(s for h in causes for s in h.slots))
     gone = [s for s in whole.slots if s not in slots]
     start[gone] = problem.origin[gone]
-    return fit_quickly(problem, start, slots, whole.posterior.whitened)
+    fit = fit_quickly(problem, start, slots, whole.posterior.whitened).without_sensitivities()
+    return Model(causes, fit, fit.evidence, prior.log_mass(causes))
