@@ -10,6 +10,8 @@ import pytest
 
 from rovval.diagnose.criteria import (
     BETWEEN_CAUSES,
+    FORCE_ALIKE,
+    FORCE_RIGHT,
     GROUP_PROBABILITY,
     LIBRARY_ALIKE,
     NOT_FOUND,
@@ -20,8 +22,9 @@ from rovval.diagnose.criteria import (
 from rovval.diagnose.decision.constancy import Variation
 from rovval.diagnose.decision.open_gap import evidence_of_something_else
 from rovval.diagnose.decision.posterior import Probabilities, probabilities, something_beside
-from rovval.diagnose.decision.resemblance import Left, none_of_the_library
+from rovval.diagnose.decision.resemblance import Left, what_is_left
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
+from rovval.diagnose.inference.unlogged_forces import ForceLeft
 from rovval.diagnose.search.model import Model, ModelPrior
 
 SURE = 0.9  # nothing is surer by much: see `test_no_cause_is_certain`
@@ -142,7 +145,29 @@ def test_something_beside_the_causes_leaves_them_at_work():
     assert something_beside(30.0, NONE) and not something_beside(-inf, NONE)
     assert alone.of("inflow_loss") > SURE and alone.of("inflow_loss") > found.of("inflow_loss") > 0.8
     known = Left({frozenset({"inflow_loss"}): np.full(2, 0.05)}, {frozenset({"inflow_loss"}): (0.05, SMALL)})
-    assert found.of("inflow_loss") == pytest.approx(1.0 - none_of_the_library(frozenset({"inflow_loss"}), known, beside=True), abs=1e-4)
+    assert found.of("inflow_loss") == pytest.approx(1.0 - what_is_left(frozenset({"inflow_loss"}), known, beside=True).alike, abs=1e-4)
+
+
+@pytest.mark.parametrize("forces", [76.0, 80.0, 84.0])
+def test_generic_forces_imitate_causes_that_close_the_gap(forces: float):
+    """Which of two explanations it is that fit as well, what the causes leave says; where it is not known, the priors do."""
+    evidence: dict[tuple[str, ...], float] = {("inflow_loss",): 80.0}
+    leaves: list[dict[tuple[str, ...], float] | None] = [{("inflow_loss",): 0.01}, {("inflow_loss",): 0.6}, None]
+    closed, halved, unknown = (belief(evidence, forces=forces, left=share) for share in leaves)
+    assert closed.of("inflow_loss") > unknown.of("inflow_loss") > halved.of("inflow_loss")
+    assert closed.unexplained < unknown.unexplained < halved.unexplained
+
+
+@pytest.mark.parametrize(("size", "likelier"), [(0.0, "less"), (1.0, "more")])
+def test_a_force_that_nobody_logged_tells_something_else_from_causes_and_from_a_healthy_vehicle_alike(size: float, likelier: str):
+    loss, prior = frozenset({"inflow_loss"}), ModelPrior.of([Hypothesis(n, n, (), (), ()) for n in NAMES])
+    cause = (Hypothesis("inflow_loss", "inflow_loss", (), (), ()),)
+    models = [Model((), None, 0.0, prior.log_mass(())), Model(cause, None, 10.0, prior.log_mass(cause))]
+    known = Left({loss: np.full(2, 0.1)}, {loss: (0.1, SMALL)})
+    here = Left(known.shares, known.acting, unlogged={loss: ForceLeft(size, FORCE_RIGHT, FORCE_ALIKE)})
+    asked, before = (probabilities(models, {frozenset[str](): -100.0}, 6.0, {}, {}, left=left) for left in (here, known))
+    assert asked.causes / asked.healthy == pytest.approx(before.causes / before.healthy)
+    assert (asked.unexplained > before.unexplained) == (likelier == "more")
 
 
 def test_where_one_of_two_causes_is_something_else_the_other_is_still_at_work():
@@ -170,8 +195,9 @@ def test_how_a_cause_that_wanders_goes_on_says_nothing_against_it(leaves: float)
 def test_a_cause_that_varies_is_another_form_of_it_or_something_else(form: float, alike: float):
     """Which of the two, the evidence of a little and of much variation says."""
     found, varies = belief({("inflow_loss",): 80.0}, varying=Variation(form, {"inflow_loss": alike})), Variation(form, {"inflow_loss": alike})
-    share = 1.0 / (1.0 + np.exp(BETWEEN_CAUSES * 0.5 * (form - alike)))
-    looks_alike = none_of_the_library(frozenset({"inflow_loss"}), None)
+    further = what_is_left(frozenset({"inflow_loss"}), None).evidence  # by the priors: what looks like its other form and is none
+    share = 1.0 / (1.0 + np.exp(BETWEEN_CAUSES * (0.5 * (form - alike) + further)))
+    looks_alike = what_is_left(frozenset({"inflow_loss"}), None).alike
     assert found.varying == pytest.approx(share, abs=1e-4)
     assert [found.of("inflow_loss"), found.causes] == pytest.approx([(1.0 - share) * (1.0 - looks_alike)] * 2, abs=1e-4)
     assert something_beside(-inf, varies) and found.best == {"inflow_loss"}

@@ -31,9 +31,8 @@ from rovval.diagnose.decision.resemblance import (
     evidence_by_force,
     gap_left,
     looks_like_form_error,
-    looks_only_alike,
-    none_of_the_library,
     unlogged_where_they_act,
+    what_is_left,
 )
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.gap import explainable_gap, tolerated_gap, weighted_errors
@@ -47,6 +46,11 @@ def left(healthy: float = 1e-6, **shares: float | tuple[float, float]) -> Left:
     """What sets of causes leave, of the dynamics and with parity: ``a_b=0.3`` is that of a and b together."""
     found = {frozenset(names.split("_")): np.broadcast_to(share, (2,)).astype(float) for names, share in shares.items()}
     return Left(found, {names: (float(share.min()), healthy) for names, share in found.items()})
+
+
+def none_of_the_library(names: frozenset[str], known: Left | None, beside: bool = False) -> float:
+    """Probability that what looks like causes is none of the library."""
+    return what_is_left(names, known, beside).alike
 
 
 AB = frozenset("ab")
@@ -84,7 +88,7 @@ def test_causes_that_leave_a_force_where_they_act_are_rather_something_else():
     """The odds are a ratio of two densities: over all forces that of something else, so found, integrates to one."""
 
     def odds(size: float, median: float = FORCE_RIGHT, wanders: bool = False) -> float:
-        none, _ = looks_only_alike(AB, replace(left(a_b=0.3), unlogged={AB: ForceLeft(size, median, FORCE_ALIKE)}), wanders=wanders)
+        none = what_is_left(AB, replace(left(a_b=0.3), unlogged={AB: ForceLeft(size, median, FORCE_ALIKE)}), wanders=wanders).alike
         return none / (1.0 - none)
 
     unknown = none_of_the_library(AB, left(a_b=0.3))
@@ -102,7 +106,7 @@ def test_causes_that_leave_a_force_where_they_act_are_rather_something_else():
 def test_no_force_by_itself_decides():
     """Now and then right causes leave many times what is expected; and that there is none does not make any causes right."""
     known = left(a_b=0.3)
-    none, most = (looks_only_alike(AB, replace(known, unlogged={AB: ForceLeft(size, FORCE_RIGHT, FORCE_ALIKE)}))[0] for size in (0.0, 1e5))
+    none, most = (none_of_the_library(AB, replace(known, unlogged={AB: ForceLeft(size, FORCE_RIGHT, FORCE_ALIKE)})) for size in (0.0, 1e5))
     unknown, factor = none_of_the_library(AB, known), (FORCE_ALIKE / FORCE_RIGHT) ** FORCE_SHAPE
     for p, by in ((none, 1.0 / factor), (most, factor)):
         assert p / (1.0 - p) == pytest.approx(by * unknown / (1.0 - unknown), rel=1e-3)
@@ -137,6 +141,15 @@ def test_what_a_healthy_vehicle_shows_is_integrated_over(expected: float, share:
     near = [np.mean(np.abs(healthy + (1.0 - healthy) * part - share) < 0.01) for part in (causes, others)]
     odds = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / PRIOR_CAUSES * near[1] / near[0] if near[0] else np.inf
     assert none_of_the_library(AB, left(expected, a_b=share)) == pytest.approx(1.0 / (1.0 + 1.0 / odds), rel=0.05, abs=1e-3)
+
+
+def test_what_is_left_is_evidence_for_causes_that_close_the_gap_and_against_those_that_do_not():
+    """Over all shares that may be left it says nothing in the mean, but for what the priors say: the densities are densities."""
+    share = (np.arange(2000) + 0.5) / 2000.0
+    odds = np.exp([what_is_left(AB, left(a=s)).evidence for s in share])
+    assert np.mean(odds) == pytest.approx(1.0 + LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / PRIOR_CAUSES, abs=1e-3)
+    assert odds[0] > 5.0 > 1.0 > odds[1000] > odds[-1] == pytest.approx(LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / PRIOR_CAUSES, abs=1e-3)
+    assert what_is_left(AB, left(0.5, a=0.6)).evidence > what_is_left(AB, left(a=0.6)).evidence, "what tolerances may make speaks against none"
 
 
 def test_a_weak_effect_is_not_something_else_for_what_a_healthy_vehicle_shows():

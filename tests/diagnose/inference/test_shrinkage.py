@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from diagnose_case import merlin, own
 
+from rovval.diagnose.criteria import FORM_ALIKE, FURTHER_CAUSE
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.inference.gap import squared_errors
@@ -62,7 +63,19 @@ def test_nothing_fitted_shrinks_nothing_and_a_worse_axis_is_named():
     assert worsened_axes(GapReduction(axes={"surge": 0.4, "yaw": -0.051, "roll": -0.049})) == {"yaw": 0.051}
 
 
+def likely_form_error(beyond: float, healthy: float = 1e-9) -> float:
+    return form_error(np.full(2, beyond), np.full(2, healthy))
+
+
 def test_a_cause_that_closes_a_fifth_of_what_others_leave_may_as_well_be_their_form_error():
-    likely = [form_error(beyond) for beyond in (0.1, 0.5, 0.787, 0.95, 1.0, 2.0)]
+    likely = [likely_form_error(beyond) for beyond in (0.1, 0.5, 0.787, 0.95, 1.0, 2.0)]
     assert likely == sorted(likely) and likely[0] < 0.01 and likely[2] == pytest.approx(0.5, abs=0.01)
     assert likely[-2:] == [1.0, 1.0]
+    assert form_error(np.array([0.95, 0.1]), np.full(2, 1e-9)) == pytest.approx(likely[0]), "a fault of a sensor closes what parity shows"
+
+
+def test_what_a_healthy_vehicle_shows_does_not_speak_against_a_further_cause():
+    """Little is left for it to close where others leave no more than tolerances make; there the priors say more."""
+    likely = [likely_form_error(0.85, healthy) for healthy in (1e-9, 0.3, 1.0, 100.0)]
+    assert likely == sorted(likely, reverse=True)
+    assert likely[0] > 0.6 and likely[-1] == pytest.approx(FORM_ALIKE / (FORM_ALIKE + FURTHER_CAUSE), abs=0.15)

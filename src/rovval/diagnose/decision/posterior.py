@@ -5,13 +5,14 @@ Miller and Dunson 2019; `problem.Problem.tempering`). Something else is what no 
 beside causes (model discrepancy: Kennedy and O'Hagan 2001), or forces that go with nothing that was logged; either leaves an open gap (`open_gap`). A log
 that no set of causes explains may be of one all the same: the search may not come near it, or its equations may be others here (`NOT_FOUND`).
 
-No log tells two explanations apart that predict the same; they share its probability by their priors, and by how much of the gap is left where windows are
-held out (`resemblance`). So something else has a part of the mass of every set of causes, and no cause is ever certain; a larger part where a force that goes
-with the motion shows beside them. What causes that wander by nature leave is their own: how they are in some windows does not tell how they go on in others.
-And the set without the cause that adds least has another part, since that cause may be what the equations of the others are off by. A cause of which the size
-varies is that cause in another form, or something else that comes near it (`constancy`). Of a calibrated vehicle either may be what the calibration left
-(`as_calibrated`). Which of several sets of as many causes it is, is less sure than how
-well they fit: each is only nearly right in its form (`BETWEEN_CAUSES`).
+No log tells two explanations apart that predict the same; they share its probability by their priors. So something else has a part of the mass of every set
+of causes (`LIBRARY_ALIKE`), and no cause is ever certain; a larger part where a force that goes with the motion shows beside them. How much of the gap causes
+leave where windows are held out, and which force that nobody logged, is evidence as their fit is (`resemblance`): over each other, over generic forces, which
+imitate causes that close all of the gap, and over a healthy vehicle. What causes that wander by nature leave is their own: how they are in some windows does
+not tell how they go on in others. The set without the cause that adds least has another part, since that cause may be what the equations of the others are off
+by. A cause of which the size varies is that cause in another form, or something else that comes near it (`constancy`). Of a calibrated vehicle either may be
+what the calibration left (`as_calibrated`). Which of several sets of as many causes it is, is less sure than how well they fit: each is only nearly right in
+its form (`BETWEEN_CAUSES`).
 
 The set that is named has as many causes as is most probable, and of such sets it is the one that the true one is expected to share the most causes with
 (centroid estimator: Carvalho and Lawrence 2008). The most probable single set may hold a cause that most of the others do without. A further cause is named
@@ -31,6 +32,7 @@ from rovval.diagnose.criteria import (
     BETWEEN_CAUSES,
     EVEN_ODDS,
     GROUP_PROBABILITY,
+    LIBRARY_ALIKE,
     NOT_FOUND,
     PRIOR_CAUSES,
     PRIOR_FILE,
@@ -39,7 +41,14 @@ from rovval.diagnose.criteria import (
 )
 from rovval.diagnose.decision.as_calibrated import odds_as_calibrated
 from rovval.diagnose.decision.constancy import Variation
-from rovval.diagnose.decision.resemblance import Left, looks_like_form_error, looks_only_alike, looks_only_like_a_file
+from rovval.diagnose.decision.resemblance import (
+    Explained,
+    Left,
+    little_force,
+    looks_like_form_error,
+    looks_only_like_a_file,
+    what_is_left,
+)
 from rovval.diagnose.effort import NEGLIGIBLE
 from rovval.diagnose.search.model import Model, Names, best_of_each_set
 
@@ -47,6 +56,7 @@ Key = TypeVar("Key")
 CAUSES = ("sets", "beside", "filed")  # kinds of models with causes: these alone, with something else, and with a file that is off in further numbers
 VARYING = "varying "  # what only comes near to one cause of a set, its name behind it
 HEALTHY: tuple[str, Names] = ("sets", frozenset())
+FILE: tuple[str, Names] = ("filed", frozenset())
 FORM = "form"  # and those in another form, which are told as causes with something else beside them
 
 
@@ -174,22 +184,24 @@ def probabilities(
     known |= {("beside", names): m.log_posterior + doubt + _something_else(beside.get(names, -inf), open_gap) for names, m in best.items() if names}
     filed = log(PRIOR_FILE / PRIOR_HEALTHY)
     known |= {("filed", names): best[names].log_prior + filed + 0.5 * evidence for names, evidence in file.items()}
-    known["else", frozenset()] = nothing.log_posterior + doubt + _something_else(forces, open_gap)
+    known["else", frozenset()] = nothing.log_posterior + doubt + log(1.0 - LIBRARY_ALIKE) + _something_else(forces, open_gap)
     for names, more in varying.items():  # what only comes near a cause, or that cause in another form
         known[FORM, names], alike = _log_varying(best[names], more)
         known |= {(VARYING + name, names): value for name, value in alike.items()}
+    wandering = {h.name for m in models for h in m.causes if h.effect.wanders}
+    sets = {names for _, names in known} | {names - {name} for names, more in varying.items() for name in more.alike}
+    explained = {names: _explained(names, left, beside.get(names, -inf), names <= wandering) for names in sets if names}
+    _weigh_what_is_left(known, explained, left)
     top = max(known.values())
     weight = {key: exp(value - top) for key, value in known.items()}
     total = sum(weight.values())
     believed = {key: value / total for key, value in weight.items()}
     for names, more in varying.items():
         _leave_what_varies(believed, names, more)
-    share, causes = dict(believed), {h.name: h for m in models for h in m.causes}
+    share = dict(believed)
     for kind, names in believed:
         if names and kind in (*CAUSES, FORM):
-            wanders = all(causes[name].effect.wanders for name in names)
-            shows = beside.get(names, -inf) > -inf and not wanders
-            none, as_it_was = looks_only_alike(names, left, shows, _as_calibrated(left, names, PRIOR_CAUSES), wanders)
+            none, as_it_was = explained[names].alike, explained[names].as_calibrated
         elif kind == "filed":
             none, as_it_was = looks_only_like_a_file(), 0.0
         elif kind == "else" or kind.startswith(VARYING):
@@ -213,6 +225,24 @@ def probabilities(
         file=share.get(("filed", frozenset()), 0.0), varying=inconstant,
         something_else=(1.0 - missed) * unexplained, not_found=missed * unexplained,
     )  # fmt: skip
+
+
+def _explained(names: Names, left: Left | None, forces: float, wanders: bool) -> Explained:
+    """What a set of causes leaves, as evidence; generic ``forces`` beside causes that all wander are their own."""
+    return what_is_left(names, left, forces > -inf and not wanders, _as_calibrated(left, names, PRIOR_CAUSES), wanders)
+
+
+def _weigh_what_is_left(known: dict[tuple[str, Names], float], explained: Mapping[Names, Explained], left: Left | None) -> None:
+    """Add to the log posteriors ``known`` the evidence of what sets of causes leave. Of a vehicle without causes the force that nobody logged is judged where
+    those act that are the most probable."""
+    for kind, names in known:
+        if names and kind in (*CAUSES, FORM):
+            known[kind, names] += explained[names].evidence
+    asked = [(value, names) for (kind, names), value in known.items() if left is not None and kind in (*CAUSES, FORM) and names in left.unlogged]
+    force = little_force(max(asked, key=lambda one: one[0])[1], left) if asked else 0.0
+    for key in (HEALTHY, FILE):
+        if key in known:
+            known[key] += force
 
 
 def _as_calibrated(left: Left | None, names: Names, other: float) -> float:

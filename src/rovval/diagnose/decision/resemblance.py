@@ -7,9 +7,10 @@ are off by may look like one more cause (`FORM_ALIKE`). It closes next to nothin
 of its own closes any part of it: here the share that is left is beta distributed about `FORM_LEAVES` and densest at all of it, or uniform.
 
 A healthy vehicle has a gap, too: coefficients and sensors are off within their tolerances. No cause closes that part, and what is left of it says nothing of
-whether the library lacks something. How large it is in a log is unknown; it is exponential about the share of what tolerances could make that healthy
-vehicles show (`HEALTHY_GAP`), and what a calibrated vehicle left of its own logs, and integrated over. So a weak effect is not taken for something else
-because it leaves what many a healthy vehicle shows.
+whether the library lacks something, or of whether a further cause is one. How large it is in a log is unknown; it is exponential about the share of what
+tolerances could make that healthy vehicles show (`HEALTHY_GAP`), and integrated over. So a weak effect is not taken for something else because it leaves what
+many a healthy vehicle shows. What a calibrated vehicle left of its own logs no cause closes either; but a further one may, as the form error of
+the others, since it goes with the motion.
 
 Beside what only looks like a cause generic forces often show that go with the motion: the rest of what it really is. Beside causes they hardly ever do
 (`SHOWS_BESIDE`). In the fine metric (`problem.problem`) they show on a vehicle without causes already. Right causes take more or less of them away where they
@@ -19,6 +20,7 @@ another (`adds_to_forces`).
 Forces that nobody logged are a nuisance of every model, as large as the log shows them, so that the likelihood alone never calls them too large. Beside right
 causes they are what pilots and seas make, some per cent of the thrusters' own (`FORCE_RIGHT`); beside what only looks like them they take over the rest of what
 it really is (`FORCE_ALIKE`). Both are log-logistic: now and then a pilot, a sea or a real vehicle leaves many times as much, and no force by itself decides.
+About a healthy vehicle there is as little as beside right causes, so that it tells these two from something else and not from each other.
 
 Shares are of the errors above the noise of the sensors. Whether causes are of the library is judged where they act: by what they leave of the gap on each
 axis, and of the parity residuals, which faults of sensors close, the mean of these weighted with how much of each they close or open; what they open speaks as
@@ -30,11 +32,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from itertools import pairwise
 from math import exp, log, log1p
 
 import numpy as np
-from scipy.integrate import fixed_quad
 
 from rovval.core.data import Array
 from rovval.diagnose.criteria import (
@@ -63,14 +63,12 @@ from rovval.diagnose.inference.gap import (
     noise_by_part,
     spread_as_calibrated,
     tolerated_by_part,
+    tolerated_share,
 )
-from rovval.diagnose.inference.shrinkage import NOTHING_LEFT, explainable_left, form_error
+from rovval.diagnose.inference.shrinkage import NOTHING_LEFT, explainable_left, form_error, odds_of_left
 from rovval.diagnose.inference.unlogged_forces import ForceLeft, where_causes_act
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.search.model import Model, Names
-
-FALLS = np.array([1.0, 3.0, 10.0, 30.0])  # means of an exponential: where its integral is cut into parts
-NODES = 40  # of the integral over each part
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +84,7 @@ class Left:
         spread: by how much a vehicle that is as it was calibrated may show so (`gap.spread_as_calibrated`).
         unlogged: of each set that was asked the force that nobody logged where it acts (`unlogged_where_they_act`).
         adding: the sets that add to generic forces where they act (`adds_to_forces`), of those that were asked.
+        tolerated: shares (2,) of the gap that a healthy vehicle is expected to show by its tolerances, as ``shares``.
     """
 
     shares: Mapping[Names, Array]
@@ -95,6 +94,7 @@ class Left:
     spread: float = CALIBRATED_SPREAD
     unlogged: Mapping[Names, ForceLeft] = field(default_factory=dict)
     adding: frozenset[Names] = frozenset()
+    tolerated: Array = field(default_factory=lambda: np.full(2, TINY))
 
     def least(self, which: Callable[[Names], bool]) -> Array:
         """The least (2,) that is left by the sets ``which``; all of the gap where there is none."""
@@ -116,9 +116,13 @@ class Left:
         """The part of ``names`` that leaves least; none where none was fitted."""
         return min((part for part in self.shares if part <= names), key=lambda part: float(self.shares[part].min()), default=frozenset())
 
+    def without(self, name: str, names: Names) -> Array:
+        """Shares (2,) that the causes of ``names`` but for the cause ``name`` leave."""
+        return self.least(lambda part: name not in part and part <= names)
+
     def beyond(self, name: str, names: Names) -> Array:
         """Shares (2,) that the cause ``name`` of ``names`` leaves of what the others leave; above 1 where it adds to it."""
-        return self.least(lambda part: name in part and part <= names) / self.least(lambda part: name not in part and part <= names)
+        return self.least(lambda part: name in part and part <= names) / self.without(name, names)
 
 
 def gap_left(problem: Problem, models: Iterable[Model]) -> Left:
@@ -133,7 +137,7 @@ def gap_left(problem: Problem, models: Iterable[Model]) -> Left:
             if gap.calibrated:
                 grown[names] = gap.grown(fit.parts)
         shares[names] = np.minimum(share, shares.get(names, np.inf))
-    return Left(shares, acting, grown, axes, spread_as_calibrated(problem.plant.vehicle))
+    return Left(shares, acting, grown, axes, spread_as_calibrated(problem.plant.vehicle), tolerated=tolerated_share(problem))
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,9 +154,9 @@ class _Gap:
     def of(cls, problem: Problem) -> _Gap:
         nominal, noise = errors_by_part(problem, corrected_residuals(problem), problem.origin), noise_by_part(problem)
         calibrated = calibrated_by_part(problem)
-        expected = {part: HEALTHY_GAP * size + calibrated.get(part, 0.0) for part, size in tolerated_by_part(problem).items()}
         known = calibrated if any(calibrated.values()) else {}
-        return cls({part: size - noise[part] for part, size in nominal.items()}, noise, expected, known)
+        healthy = {part: HEALTHY_GAP * size + calibrated.get(part, 0.0) for part, size in tolerated_by_part(problem).items()}
+        return cls({part: size - noise[part] for part, size in nominal.items()}, noise, healthy, known)
 
     def grown(self, errors: Mapping[str, float]) -> float:
         """How many times the gap is what the calibration left, the parts weighted with how much each changes with the ``errors`` of causes."""
@@ -192,31 +196,45 @@ def unlogged_where_they_act(problem: Problem, left: Mapping[str, float], nominal
 
 
 def evidence_by_force(left: ForceLeft) -> float:
-    """Twice the log Bayes factor of what only looks like causes over these, by the unlogged force that is left where they act."""
-    right, alike = _log_densities_of_force(left)
+    """Twice the log Bayes factor of what only looks like causes over these, by the unlogged force that is left where they act: log-logistic about what is
+    expected of either, of one shape, so that the odds are bounded, of no force at all, too."""
+    right, alike = (-FORCE_SHAPE * log(median) - 2.0 * log1p((left.size / median) ** FORCE_SHAPE) for median in (left.expected, left.alike))
     return 2.0 * (alike - right)
 
 
-def none_of_the_library(names: Names, left: Left | None, beside: bool = False) -> float:
-    """Probability that what looks like the causes ``names`` is none of the library; by the priors alone where nothing is known of what they leave. That
-    generic forces show ``beside`` them is evidence (`SHOWS_BESIDE`); that none do says little of a small gap, and is not counted."""
-    return looks_only_alike(names, left, beside)[0]
+@dataclass(frozen=True, slots=True)
+class Explained:
+    """What causes leave, as evidence: the log Bayes factor ``evidence`` of all that would look like them over something else that does not, by what is left
+    alone, and the parts of it (1) that are something else which looks ``alike``, and what the calibration of the vehicle left (``as_calibrated``)."""
+
+    evidence: float
+    alike: float
+    as_calibrated: float
 
 
-def looks_only_alike(names: Names, left: Left | None, beside: bool = False, as_calibrated: float = 0.0, wanders: bool = False) -> tuple[float, float]:
-    """The same, and the probability that what looks like causes was left by the calibration of the vehicle, by the odds ``as_calibrated`` of it over causes: it
-    closes any part of the gap, too. How much of the gap causes close that all go on otherwise from window to window (``wanders``) says nothing."""
-    none = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / PRIOR_CAUSES * (SHOWS_BESIDE[1] / SHOWS_BESIDE[0] if beside else 1.0)
-    right, alike = 1.0, 1.0
+def what_is_left(names: Names, left: Left | None, beside: bool = False, as_calibrated: float = 0.0, wanders: bool = False) -> Explained:
+    """What the causes ``names`` leave, as evidence; the priors alone where nothing is known of it.
+
+    That generic forces show ``beside`` them is evidence (`SHOWS_BESIDE`); that none do says little of a small gap, and is not counted. What a calibration left,
+    by the odds ``as_calibrated`` of it over causes, closes any part of the gap as something else does, and leaves as little of a force that nobody logged as
+    causes do. How much of the gap causes close that all go on otherwise from window to window (``wanders``) says nothing.
+    """
+    alike = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / PRIOR_CAUSES * (SHOWS_BESIDE[1] / SHOWS_BESIDE[0] if beside else 1.0)
+    right, force = 1.0, exp(little_force(names, left))
     if left is not None and not wanders:
         freedom = 1.0 / CAUSES_LEAVE - 1.0  # Beta(1, b), of mean 1 / (1 + b)
-        right, alike = _densities(*left.where_they_act(names), lambda share: freedom * (1.0 - share) ** (freedom - 1.0))
-        none *= SHOWS_BESIDE[1] / NOT_FOUND if names in left.adding else 1.0
-    if left is not None and names in left.unlogged:
-        by_right, by_alike = (exp(density) for density in _log_densities_of_force(left.unlogged[names]))
-        right, as_calibrated, none = right * by_right, as_calibrated * by_right, none * by_alike
-    total = right + (none + as_calibrated) * alike
-    return none * alike / total, as_calibrated * alike / total
+        right = odds_of_left(*left.where_they_act(names), lambda share: freedom * (1.0 - share) ** (freedom - 1.0))
+        alike *= SHOWS_BESIDE[1] / NOT_FOUND if names in left.adding else 1.0
+    total = (right + as_calibrated) * force + alike
+    return Explained(log(total), alike / total, as_calibrated * force / total)
+
+
+def little_force(names: Names, left: Left | None) -> float:
+    """Log Bayes factor of a vehicle about which nothing else is at work over something else, by the force that nobody logged where the causes ``names`` act; 0
+    where it is not known."""
+    if left is None or names not in left.unlogged:
+        return 0.0
+    return -0.5 * evidence_by_force(left.unlogged[names])
 
 
 def looks_only_like_a_file() -> float:
@@ -230,32 +248,4 @@ def looks_like_form_error(name: str, names: Names, left: Left | None) -> float:
     """Probability that the cause ``name`` of ``names`` is the form error of the others; by the priors alone where nothing is known of what they leave."""
     if left is None:
         return FORM_ALIKE / (FORM_ALIKE + FURTHER_CAUSE)
-    return form_error(float(np.min(left.beyond(name, names))))
-
-
-def _log_densities_of_force(left: ForceLeft) -> tuple[float, float]:
-    """Log densities of an unlogged force where right causes act and where only what looks like them does, but for a factor that both have: log-logistic about
-    what is expected of either, of one shape, so that the odds are bounded, of no force at all, too."""
-    right, alike = (-FORCE_SHAPE * log(median) - 2.0 * log1p((left.size / median) ** FORCE_SHAPE) for median in (left.expected, left.alike))
-    return right, alike
-
-
-def _densities(left: float, healthy: float, density: Callable[[Array], Array]) -> tuple[float, float]:
-    """Density of the share ``left`` of a gap where of what is at work a share of that ``density`` is left, and where any share is, alike; but for a factor
-    that both have. The limit of both where all is left.
-
-    A part h of the gap, exponential of mean ``healthy``, is no effect's; of the rest, 1 - h, a share (left - h) / (1 - h) is left. It is integrated over the
-    logarithm of the rest, from all of the gap to what is not left (Gauss and Legendre's rule, in parts over which the exponential falls alike).
-    """
-    if left >= 1.0:
-        return 0.0, 1.0
-    end = log1p(-left)
-    parts = [0.0, *(float(fall) / -end for fall in healthy * FALLS if fall < -end), 1.0]  # as shares of the way to the end
-
-    def both(way: Array) -> Array:
-        part = -np.expm1(end * way)
-        likely = np.exp(-part / healthy)
-        return np.stack([likely * density(np.maximum(left - part, 0.0) / (1.0 - part)), likely])
-
-    found, alike = sum(fixed_quad(both, low, high, n=NODES)[0] for low, high in pairwise(parts))
-    return float(found), float(alike)
+    return form_error(left.beyond(name, names), left.tolerated / left.without(name, names))

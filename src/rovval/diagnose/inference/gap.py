@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.data import Array, Flags
-from rovval.diagnose.criteria import CALIBRATED_SPREAD
+from rovval.diagnose.criteria import CALIBRATED_SPREAD, HEALTHY_GAP
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.windows.windows import axis_channels
@@ -137,6 +137,17 @@ def tolerated_by_part(problem: Problem) -> dict[str, float]:
     share = tolerated_gap(problem) / max(float(explainable_gap(problem)[0]), TINY)
     axes = {axis: share * (value - noise[axis]) for axis, value in nominal.items()}
     return axes | _of_parity([check.tolerated(problem.tolerance.sd, problem.design_effect) for check in problem.parity])
+
+
+def tolerated_share(problem: Problem) -> Array:
+    """Share (2,) of the explainable gap that a healthy vehicle is expected to show by its tolerances: of the dynamics, and of these with the parity residuals.
+
+    Next to none of a calibrated vehicle: its coefficients were fitted, and what that left goes with the motion, as the form error of whatever is found does."""
+    if any(calibrated_by_part(problem).values()):
+        return np.full(2, TINY)
+    parts = tolerated_by_part(problem)
+    dynamics = sum(size for part, size in parts.items() if not part.startswith(PARITY))
+    return np.asarray(np.maximum(HEALTHY_GAP * np.array([dynamics, sum(parts.values())]) / np.maximum(explainable_gap(problem), TINY), TINY))
 
 
 def calibrated_by_part(problem: Problem) -> dict[str, float]:

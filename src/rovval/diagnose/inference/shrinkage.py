@@ -6,11 +6,14 @@ losses of `fit_hypothesis` are; intervals are 90 % block bootstraps over windows
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from math import log1p
 from typing import TypeVar
 
 import numpy as np
+from scipy.integrate import fixed_quad
 
 from rovval.core.data import Array
 from rovval.core.large_arrays import taken
@@ -27,6 +30,8 @@ from rovval.diagnose.residuals.sensitivities import linearise
 
 T = TypeVar("T")
 NOTHING_LEFT = 1e-3  # share of the gap: rounding of a ratio to what is left
+FALLS = np.array([1.0, 3.0, 10.0, 30.0])  # means of an exponential: where its integral is cut into parts
+NODES = 40  # of the integral over each part
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,14 +97,37 @@ def explainable_left(problem: Problem, losses: Sequence[Array]) -> list[Array]:
     return [np.maximum(np.divide(loss - floor, before, out=np.ones(2), where=before > 0.0), NOTHING_LEFT) for loss in losses]
 
 
-def form_error(beyond: float) -> float:
-    """Probability that one more cause is the form error of others, by the share (1) that it leaves ``beyond`` them of what they leave of held-out windows: beta
-    distributed about `FORM_LEAVES` and densest at all of it, where a cause of its own leaves any share alike."""
-    if beyond >= 1.0:
+def form_error(beyond: Array, tolerated: Array) -> float:
+    """Probability that one more cause is the form error of others, by the shares (2,) that it leaves ``beyond`` them of what they leave of held-out windows,
+    the less of both: beta distributed about `FORM_LEAVES` and densest at all of it, where a cause of its own leaves any share alike. Either leaves
+    what a healthy vehicle shows by its tolerances, expected shares (2,) ``tolerated`` of what the others leave."""
+    which = int(np.argmin(beyond))
+    if beyond[which] >= 1.0:
         return 1.0
     freedom = FORM_LEAVES / (1.0 - FORM_LEAVES)  # Beta(a, 1), of mean a / (a + 1)
-    odds = FORM_ALIKE / FURTHER_CAUSE * freedom * beyond ** (freedom - 1.0)
-    return float(odds / (odds + 1.0))
+    odds = FORM_ALIKE / FURTHER_CAUSE * odds_of_left(float(beyond[which]), float(tolerated[which]), lambda share: freedom * share ** (freedom - 1.0))
+    return odds / (odds + 1.0)
+
+
+def odds_of_left(left: float, healthy: float, density: Callable[[Array], Array]) -> float:
+    """Density of the share ``left`` of a gap where of what is at work a share of that ``density`` is left, over that where any share is, alike. The limit of
+    it where all is left.
+
+    A part h of the gap, exponential of mean ``healthy``, is no effect's; of the rest, 1 - h, a share (left - h) / (1 - h) is left. It is integrated over the
+    logarithm of the rest, from all of the gap to what is not left (Gauss and Legendre's rule, in parts over which the exponential falls alike).
+    """
+    if left >= 1.0:
+        return 0.0
+    end = log1p(-left)
+    parts = [0.0, *(float(fall) / -end for fall in healthy * FALLS if fall < -end), 1.0]  # as shares of the way to the end
+
+    def both(way: Array) -> Array:
+        part = -np.expm1(end * way)
+        likely = np.exp(-part / healthy)
+        return np.stack([likely * density(np.maximum(left - part, 0.0) / (1.0 - part)), likely])
+
+    found, alike = sum(fixed_quad(both, low, high, n=NODES)[0] for low, high in pairwise(parts))
+    return float(found / alike)
 
 
 def worsened_axes(reduction: GapReduction) -> dict[str, float]:

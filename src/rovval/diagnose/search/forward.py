@@ -16,6 +16,7 @@ import numpy as np
 from rovval.diagnose.criteria import BETWEEN_CAUSES, EVEN_ODDS
 from rovval.diagnose.effort import MOST_CAUSES, NEGLIGIBLE, SETS_WEIGHED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of
+from rovval.diagnose.inference.gap import tolerated_share
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import refit_healthy
 from rovval.diagnose.inference.shrinkage import explainable_left, form_error
@@ -163,8 +164,8 @@ def _looks_like_form_error(problem: Problem, before: Model, after: Model) -> boo
     left = [np.array([fit.dynamics_loss.sum(), fit.loss.sum()]) for fit in (before.fit, after.fit) if fit]
     if len(left) < 2:
         return False
-    without, beside = (float(share.min()) for share in explainable_left(problem, left))
-    return form_error(beside / without) > EVEN_ODDS
+    without, beside = explainable_left(problem, left)
+    return form_error(beside / without, tolerated_share(problem) / without) > EVEN_ODDS
 
 
 def _model(prior: ModelPrior, front: Model, one: Candidate) -> Model:
