@@ -53,10 +53,12 @@ from rovval.diagnose.effort import NEGLIGIBLE
 from rovval.diagnose.search.model import Model, Names, best_of_each_set
 
 Key = TypeVar("Key")
+Entry = tuple[str, Names]  # of a model: its kind, and its causes
 CAUSES = ("sets", "beside", "filed")  # kinds of models with causes: these alone, with something else, and with a file that is off in further numbers
 VARYING = "varying "  # what only comes near to one cause of a set, its name behind it
-HEALTHY: tuple[str, Names] = ("sets", frozenset())
-FILE: tuple[str, Names] = ("filed", frozenset())
+HEALTHY: Entry = ("sets", frozenset())
+FILE: Entry = ("filed", frozenset())
+ELSE: Entry = ("else", frozenset())
 FORM = "form"  # and those in another form, which are told as causes with something else beside them
 
 
@@ -178,53 +180,47 @@ def probabilities(
         left: of the explainable gap, what sets of causes leave on held-out windows (`resemblance.gap_left`); without it, priors alone judge.
     """
     best = best_of_each_set(models)
-    doubt = log(PRIOR_SOMETHING_ELSE / PRIOR_HEALTHY)
-    nothing = best[frozenset()]
-    known = {("sets", names): m.log_posterior for names, m in best.items()}
-    known |= {("beside", names): m.log_posterior + doubt + _something_else(beside.get(names, -inf), open_gap) for names, m in best.items() if names}
-    filed = log(PRIOR_FILE / PRIOR_HEALTHY)
-    known |= {("filed", names): best[names].log_prior + filed + 0.5 * evidence for names, evidence in file.items()}
-    known["else", frozenset()] = nothing.log_posterior + doubt + log(1.0 - LIBRARY_ALIKE) + _something_else(forces, open_gap)
-    for names, more in varying.items():  # what only comes near a cause, or that cause in another form
-        known[FORM, names], alike = _log_varying(best[names], more)
-        known |= {(VARYING + name, names): value for name, value in alike.items()}
+    known = _log_posteriors(best, file, forces, beside, varying, open_gap)
     wandering = {h.name for m in models for h in m.causes if h.effect.wanders}
     sets = {names for _, names in known} | {names - {name} for names, more in varying.items() for name in more.alike}
     explained = {names: _explained(names, left, beside.get(names, -inf), names <= wandering) for names in sets if names}
     _weigh_what_is_left(known, explained, left)
     top = max(known.values())
-    weight = {key: exp(value - top) for key, value in known.items()}
-    total = sum(weight.values())
-    believed = {key: value / total for key, value in weight.items()}
+    whole = sum(exp(value - top) for value in known.values())
+    believed = {key: exp(value - top) / whole for key, value in known.items()}
     for names, more in varying.items():
         _leave_what_varies(believed, names, more)
-    share = dict(believed)
-    for kind, names in believed:
-        if names and kind in (*CAUSES, FORM):
-            none, as_it_was = explained[names].alike, explained[names].as_calibrated
-        elif kind == "filed":
-            none, as_it_was = looks_only_like_a_file(), 0.0
-        elif kind == "else" or kind.startswith(VARYING):
-            odds = _as_calibrated(left, names, PRIOR_SOMETHING_ELSE)
-            none, as_it_was = 0.0, odds / (1.0 + odds)
-        else:
-            continue
-        share[kind, names] -= (none + as_it_was) * believed[kind, names]
-        share[HEALTHY] += as_it_was * believed[kind, names]
+    share = _without_what_looks_alike(believed, explained, left)
     for names in varying:
         share["beside", names] = share.get(("beside", names), 0.0) + share.pop((FORM, names))
     _move_form_errors(share, best, left)
     _coarsen(share)
     inconstant = sum(p for (kind, _), p in share.items() if kind.startswith(VARYING))
-    unexplained = share["else", frozenset()] + inconstant + sum(believed.values()) - sum(share.values())
+    unexplained = share[ELSE] + inconstant + sum(believed.values()) - sum(share.values())
     missed = NOT_FOUND * PRIOR_CAUSES / (NOT_FOUND * PRIOR_CAUSES + PRIOR_SOMETHING_ELSE)
     return Probabilities(
         sets={names: p for (kind, names), p in share.items() if kind == "sets"},
         beside={names: p for (kind, names), p in share.items() if kind == "beside"},
         filed={names: p for (kind, names), p in share.items() if kind == "filed" and names},
-        file=share.get(("filed", frozenset()), 0.0), varying=inconstant,
+        file=share.get(FILE, 0.0), varying=inconstant,
         something_else=(1.0 - missed) * unexplained, not_found=missed * unexplained,
     )  # fmt: skip
+
+
+def _log_posteriors(
+    best: Mapping[Names, Model], file: Mapping[Names, float], forces: float, beside: Mapping[Names, float], varying: Mapping[Names, Variation], open_gap: float
+) -> dict[Entry, float]:
+    """Log posterior, by prior and fit, of every model: of sets of causes, the healthy vehicle among them, alone and with something else beside them; of a file
+    that is off in many numbers; of something else alone that looks like nothing of the library; and of causes whose size varies."""
+    doubt, filed = log(PRIOR_SOMETHING_ELSE / PRIOR_HEALTHY), log(PRIOR_FILE / PRIOR_HEALTHY)
+    known = {("sets", names): m.log_posterior for names, m in best.items()}
+    known |= {("beside", names): m.log_posterior + doubt + _something_else(beside.get(names, -inf), open_gap) for names, m in best.items() if names}
+    known |= {("filed", names): best[names].log_prior + filed + 0.5 * evidence for names, evidence in file.items()}
+    known[ELSE] = known[HEALTHY] + doubt + log(1.0 - LIBRARY_ALIKE) + _something_else(forces, open_gap)
+    for names, more in varying.items():  # what only comes near a cause, or that cause in another form
+        known[FORM, names], alike = _log_varying(best[names], more)
+        known |= {(VARYING + name, names): value for name, value in alike.items()}
+    return known
 
 
 def _explained(names: Names, left: Left | None, forces: float, wanders: bool) -> Explained:
@@ -232,7 +228,7 @@ def _explained(names: Names, left: Left | None, forces: float, wanders: bool) ->
     return what_is_left(names, left, forces > -inf and not wanders, _as_calibrated(left, names, PRIOR_CAUSES), wanders)
 
 
-def _weigh_what_is_left(known: dict[tuple[str, Names], float], explained: Mapping[Names, Explained], left: Left | None) -> None:
+def _weigh_what_is_left(known: dict[Entry, float], explained: Mapping[Names, Explained], left: Left | None) -> None:
     """Add to the log posteriors ``known`` the evidence of what sets of causes leave. Of a vehicle without causes the force that nobody logged is judged where
     those act that are the most probable."""
     for kind, names in known:
@@ -243,6 +239,25 @@ def _weigh_what_is_left(known: dict[tuple[str, Names], float], explained: Mappin
     for key in (HEALTHY, FILE):
         if key in known:
             known[key] += force
+
+
+def _without_what_looks_alike(believed: Mapping[Entry, float], explained: Mapping[Names, Explained], left: Left | None) -> dict[Entry, float]:
+    """Of what is believed of each model the part that is that model: without what only looks like it, and what the calibration left, which is the healthy
+    vehicle's."""
+    share = dict(believed)
+    for key, whole in believed.items():
+        kind, names = key
+        alike, as_it_was = 0.0, 0.0
+        if names and kind in (*CAUSES, FORM):
+            alike, as_it_was = explained[names].alike, explained[names].as_calibrated
+        elif key == FILE:
+            alike = looks_only_like_a_file()
+        elif key == ELSE or kind.startswith(VARYING):
+            odds = _as_calibrated(left, names, PRIOR_SOMETHING_ELSE)
+            as_it_was = odds / (1.0 + odds)
+        share[key] -= (alike + as_it_was) * whole
+        share[HEALTHY] += as_it_was * whole
+    return share
 
 
 def _as_calibrated(left: Left | None, names: Names, other: float) -> float:
@@ -269,7 +284,7 @@ def _something_else(forces: float, open_gap: float) -> float:
     return float(np.logaddexp(0.5 * forces, 0.0)) - log(2.0) + 0.5 * open_gap
 
 
-def _leave_what_varies(believed: dict[tuple[str, Names], float], names: Names, varying: Variation) -> None:
+def _leave_what_varies(believed: dict[Entry, float], names: Names, varying: Variation) -> None:
     """Divide the mass of causes of which a size varies between another form of them and something else that comes near to one, which leaves the others at work
     beside it. The odds are a power (`BETWEEN_CAUSES`) of what each has: which of them it is is no surer than which of several causes."""
     keys = [(FORM, names), *((VARYING + name, names) for name in varying.alike)]
@@ -279,7 +294,7 @@ def _leave_what_varies(believed: dict[tuple[str, Names], float], names: Names, v
             believed["beside", others] = believed.get(("beside", others), 0.0) + believed.pop((VARYING + name, names))
 
 
-def _move_form_errors(share: dict[tuple[str, Names], float], best: Mapping[Names, Model], left: Left | None) -> None:
+def _move_form_errors(share: dict[Entry, float], best: Mapping[Names, Model], left: Left | None) -> None:
     """Move that part of the mass of each set of two causes or more, of whatever kind, to the set without the cause that adds least, which says that this cause
     is the form error of the others."""
     for size in range(_most(share), 1, -1):
@@ -292,7 +307,7 @@ def _move_form_errors(share: dict[tuple[str, Names], float], best: Mapping[Names
                 share[fewer] = share.get(fewer, 0.0) + moved
 
 
-def _coarsen(share: dict[tuple[str, Names], float]) -> None:
+def _coarsen(share: dict[Entry, float]) -> None:
     """Divide the mass of all sets of as many causes, whatever is beside them, among these sets by a power of what each has.
 
     How well two causes of a kind fit differs by the form of their equations as much as by which of them is at work, and none of these forms is exact: the
