@@ -6,13 +6,13 @@ beside causes (model discrepancy: Kennedy and O'Hagan 2001), or forces that go w
 that no set of causes explains may be of one all the same: the search may not come near it, or its equations may be others here (`NOT_FOUND`).
 
 No log tells two explanations apart that predict the same; they share its probability by their priors. So something else has a part of the mass of every set
-of causes (`LIBRARY_ALIKE`), and no cause is ever certain; a larger part where a force that goes with the motion shows beside them. How much of the gap causes
-leave where windows are held out, and which force that nobody logged, is evidence as their fit is (`resemblance`): over each other, over generic forces, which
-imitate causes that close all of the gap, and over a healthy vehicle. What causes that wander by nature leave is their own: how they are in some windows does
-not tell how they go on in others. The set without the cause that adds least has another part, since that cause may be what the equations of the others are off
-by. A cause of which the size varies is that cause in another form, or something else that comes near it (`constancy`). Of a calibrated vehicle either may be
-what the calibration left (`as_calibrated`). Which of several sets of as many causes it is, is less sure than how well they fit: each is only nearly right in
-its form (`BETWEEN_CAUSES`).
+of causes, and no cause is ever certain; a larger part where a force that goes with the motion shows beside them. How much of the gap causes leave where windows
+are held out, and which force that nobody logged, is evidence as their fit is (`resemblance`): over each other, over generic forces, which imitate causes that
+close all of the gap, and over a healthy vehicle. What causes that wander by nature leave is their own: how they are in some windows does not tell how they go
+on in others. The set without the cause that adds least has another part, since that cause may be what the equations of the others are off by. A cause of which
+the size varies is that cause in another form, or something else that comes near it (`constancy`). Of a calibrated vehicle either may be what the calibration
+left (`as_calibrated`). Which of several sets of as many causes it is, is less sure than how well they fit: each is only nearly right in its form
+(`BETWEEN_CAUSES`).
 
 The set that is named has as many causes as is most probable, and of such sets it is the one that the true one is expected to share the most causes with
 (centroid estimator: Carvalho and Lawrence 2008). The most probable single set may hold a cause that most of the others do without. A further cause is named
@@ -32,7 +32,6 @@ from rovval.diagnose.criteria import (
     BETWEEN_CAUSES,
     EVEN_ODDS,
     GROUP_PROBABILITY,
-    LIBRARY_ALIKE,
     NOT_FOUND,
     PRIOR_CAUSES,
     PRIOR_FILE,
@@ -216,7 +215,7 @@ def _log_posteriors(
     known = {("sets", names): m.log_posterior for names, m in best.items()}
     known |= {("beside", names): m.log_posterior + doubt + _something_else(beside.get(names, -inf), open_gap) for names, m in best.items() if names}
     known |= {("filed", names): best[names].log_prior + filed + 0.5 * evidence for names, evidence in file.items()}
-    known[ELSE] = known[HEALTHY] + doubt + log(1.0 - LIBRARY_ALIKE) + _something_else(forces, open_gap)
+    known[ELSE] = known[HEALTHY] + doubt + _something_else(forces, open_gap)
     for names, more in varying.items():  # what only comes near a cause, or that cause in another form
         known[FORM, names], alike = _log_varying(best[names], more)
         known |= {(VARYING + name, names): value for name, value in alike.items()}

@@ -231,8 +231,8 @@ def what_is_left(names: Names, left: Left | None, beside: bool = False, as_calib
 
 def little_force(names: Names, left: Left | None) -> float:
     """Log Bayes factor of a vehicle about which nothing else is at work over something else, by the force that nobody logged where the causes ``names`` act; 0
-    where it is not known."""
-    if left is None or names not in left.unlogged:
+    where it is not known, or they close nothing and so act nowhere."""
+    if left is None or names not in left.unlogged or left.where_they_act(names)[0] >= 1.0:
         return 0.0
     return -0.5 * evidence_by_force(left.unlogged[names])
 
