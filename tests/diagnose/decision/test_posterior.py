@@ -195,11 +195,10 @@ def test_how_a_cause_that_wanders_goes_on_says_nothing_against_it(leaves: float)
 def test_a_cause_that_varies_is_another_form_of_it_or_something_else(form: float, alike: float):
     """Which of the two, the evidence of a little and of much variation says."""
     found, varies = belief({("inflow_loss",): 80.0}, varying=Variation(form, {"inflow_loss": alike})), Variation(form, {"inflow_loss": alike})
-    further = what_is_left(frozenset({"inflow_loss"}), None).evidence  # by the priors: what looks like its other form and is none
-    share = 1.0 / (1.0 + np.exp(BETWEEN_CAUSES * (0.5 * (form - alike) + further)))
-    looks_alike = what_is_left(frozenset({"inflow_loss"}), None).alike
+    priors = what_is_left(frozenset({"inflow_loss"}), None)
+    share = 1.0 / (1.0 + np.exp(BETWEEN_CAUSES * (0.5 * (form - alike) + priors.evidence)))
     assert found.varying == pytest.approx(share, abs=1e-4)
-    assert [found.of("inflow_loss"), found.causes] == pytest.approx([(1.0 - share) * (1.0 - looks_alike)] * 2, abs=1e-4)
+    assert [found.of("inflow_loss"), found.causes] == pytest.approx([(1.0 - share) * (1.0 - priors.alike)] * 2, abs=1e-4)
     assert something_beside(-inf, varies) and found.best == {"inflow_loss"}
 
 
