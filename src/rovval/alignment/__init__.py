@@ -3,7 +3,8 @@
 A log that is on such a grid already (within 20 ms at 10 Hz) comes through bit for bit. Else: a channel with ``mean`` that is
 faster than the grid is averaged over the bin around each grid point, a slower one is interpolated linearly between neighbours;
 ``circular`` does the same on the unit circle, and an attitude that tumbles is one rotation; ``linear`` interpolates; ``hold`` keeps the previous
-value, since a command acts until the next one. Nothing is bridged beyond a channel's longest gap (`rovval.alignment.series.longest_bridge`) and
+value, since a command acts until the next one, and ``hold_mean`` is its mean until the next grid point: the plant holds its inputs from one to the next, and
+a command that comes between two would act half a step late. Nothing is bridged beyond a channel's longest gap (`rovval.alignment.series.longest_bridge`) and
 nothing extrapolated.
 """
 

@@ -1,4 +1,4 @@
-"""One channel from its own stamps to the grid's: unchanged, mean, linear, circular or hold, and why a value is missing."""
+"""One channel from its own stamps to the grid's: unchanged, mean, linear, circular, hold or its mean, and why a value is missing."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ def on_grid(t: Array, start: float, dt: float) -> NDArray[np.int64] | None:
 def resample(
     series: Series, bad: Codes, start: float, n: int, dt: float, gap_s: float, method: Resampling, held_s: float | None = None
 ) -> tuple[Array, Codes, str]:
-    """Values (n,) with NaN where missing, their `Reason` codes, and the method really used. ``held_s`` (s): how long `hold` keeps the last
-    sample of all; None: at most one and a half median periods.
+    """Values (n,) with NaN where missing, their `Reason` codes, and the method really used. ``held_s`` (s): how long a command is held after the
+    last sample of all; None: at most one and a half median periods.
 
     ``bad`` (len(series),) holds the reason of samples that must not be used: nothing is interpolated across one.
     """
@@ -37,8 +37,11 @@ def resample(
     t, v = series.t[good], series.values[good]
     if len(t) == 0:
         return np.full(n, np.nan), _at(series.t, bad, grid), "none"
-    values, codes = _hold(series, bad, grid, gap_s, held_s) if method == "hold" else _linear(series, bad, grid, gap_s, method == "circular")
+    held = method in ("hold", "hold_mean")
+    values, codes = _hold(series, bad, grid, gap_s, held_s) if held else _linear(series, bad, grid, gap_s, method == "circular")
     k = on_grid(series.t, start, dt)
+    if k is None and method == "hold_mean":
+        values = _mean_until_next(t, v, grid, dt, values, codes)
     if k is not None:
         said, at, exact = "unchanged" if len(k) < 2 or np.median(np.diff(k)) == 1 else _name(method), k[good], v
     elif method in ("mean", "circular") and len(t) > 2 and float(np.median(np.diff(t))) * FASTER_THAN_GRID < dt:
@@ -112,6 +115,17 @@ def _hold(series: Series, bad: Codes, grid: Array, gap_s: float, held_s: float |
     skipped = (codes == Reason.OK) & (bad[last] != Reason.OK)
     codes[skipped] = bad[last][skipped]
     return np.array(v[i]), codes
+
+
+def _mean_until_next(t: Array, v: Array, grid: Array, dt: float, held: Array, codes: Codes) -> Array:
+    """Mean of what is held between each grid point and the next, so that a command which comes between them acts for as long as it did and not half a step
+    late; the value ``held`` at the grid point alone where none is held at the next."""
+    edges = np.append(grid, grid[-1] + dt)
+    i = np.clip(np.searchsorted(t, edges + EPS_S, "right") - 1, 0, len(t) - 1)
+    until = np.concatenate([[0.0], np.cumsum(v[:-1] * np.diff(t))])[i] + v[i] * (edges - t[i])
+    whole = (codes == Reason.OK) & (np.append(codes[1:], Reason.AFTER_LAST) == Reason.OK)
+    steady = i[1:] == i[:-1]  # and there the value itself, to the last bit
+    return np.where(whole & ~steady, np.diff(until) / dt, held)
 
 
 def _outside(every: Array, bad: Codes, t: Array, grid: Array, tail_s: float) -> Codes:

@@ -13,7 +13,7 @@ from typing import Literal
 
 from rovval.core.errors import UsageProblem
 
-Resampling = Literal["mean", "hold", "circular", "linear"]
+Resampling = Literal["mean", "hold", "hold_mean", "circular", "linear"]
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 VELOCITIES = ("u", "v", "w", "p", "q", "r")
 POSE = ("x", "y", "z", "phi", "theta", "psi")
@@ -58,11 +58,11 @@ def _table() -> Mapping[str, Channel]:
         Channel("wall_distance", "m", "distance to the nearest wall", "linear", 1.0, 0.0, 12000.0),
         Channel("voltage", "V", "supply voltage at the thrusters", "mean", 5.0, 0.0, 10000.0),
         Channel("tether_length", "m", "tether paid out", "linear", 5.0, 0.0, 20000.0),
-        # a shaft turns continuously: holding its last sample would make the log half a sample late
+        # a shaft turns continuously: holding its last sample would make the log half a sample late; so would a command that comes between grid points
         Channel("n", "rev/s", "measured thruster speed", "mean", 0.5, -500.0, 500.0),
-        Channel("n_cmd", "rev/s", "thruster speed set-point", "hold", 1.0, -500.0, 500.0),
-        Channel("pwm", "us", "thruster pulse width", "hold", 1.0, 500.0, 2500.0),
-        Channel("stick", "1", "pilot's command on an axis, -1 to 1", "hold", 1.0, -2.0, 2.0),
+        Channel("n_cmd", "rev/s", "thruster speed set-point", "hold_mean", 1.0, -500.0, 500.0),
+        Channel("pwm", "us", "thruster pulse width", "hold_mean", 1.0, 500.0, 2500.0),
+        Channel("stick", "1", "pilot's command on an axis, -1 to 1", "hold_mean", 1.0, -2.0, 2.0),
     ]
     return MappingProxyType({row.name: row for row in rows})
 

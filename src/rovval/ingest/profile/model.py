@@ -62,7 +62,8 @@ class Source(BaseModel):
     world: WorldFrame | None = None
     """World axes of this channel (x, y, z, psi, attitude, and u, v, w along the world) where they are not the profile's `world`."""
     resampling: Resampling | None = None
-    """How it comes to 10 Hz, where the channel's own way (below) is wrong."""
+    """How it comes to 10 Hz, where the channel's own way (below) is wrong: `mean` over the time about each grid point, or linear where it is slower than
+    that, `circular` the same of an angle, `linear` between neighbours, `hold` the last value, `hold_mean` its mean until the next grid point."""
     longest_gap_s: float | None = Field(default=None, gt=0.0)
     """How far a gap is bridged, s, where the channel's own limit is wrong; a command that is held also acts so long after its last message."""
     stuck_s: float | None = Field(default=None, gt=0.0)
