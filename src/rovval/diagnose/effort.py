@@ -69,7 +69,3 @@ MOST_RELINEARISED = 4  # candidates that are fitted again with sensitivities mad
 SERIOUS_EVIDENCE = 0.5  # share of the best evidence from which a candidate's gain counts (chosen)
 MOST_RELATIVES = 4  # hypotheses of the library that are fitted in the place of each of several causes (chosen)
 ONSETS_TRIED = 12  # first windows with it that are tried, evenly spread, before those about the best of them (chosen)
-
-# -- result: attribution, next experiment, recalibration ----------------------------------------------------------------------------
-
-RECALIBRATION_ROUNDS = 6  # of setting coefficients free that depart, which may make others depart

@@ -24,18 +24,22 @@ from rovval.diagnose.search.model import Names
 def file_evidence(problem: Problem, selection: Selection) -> dict[Names, float]:
     """Twice the log Bayes factor, over the file as it is, of one that is off (`FILE_WIDTH`) in more numbers than causes are sought, those of the causes
     beside it counted, or in a few that no effect which competes is about: beside no cause, and beside each of the most probable sets of causes."""
-    plant = problem.plant
-    compete = {s for name, _ in selection.ranking for s in plant.hypotheses[name]}
     causes = sorted((m for m in selection.models if m.fit and not m.part), key=lambda m: -m.log_posterior)[:SETS_WEIGHED]
     found = dict[Names, float]()
     for model in (selection.models[0], *causes):
         point = model.fit.posterior if model.fit else selection.healthy
-        others = [s for s in problem.tolerance.sd if s not in point.columns[: point.effect_count]]
-        many = departures(problem, point, others)[MOST_CAUSES - len(model.causes) :]
-        few = departures(problem, point, [s for s in others if s not in compete])
-        if both := [*many, *few]:
-            found[model.names] = _fitted(problem, point, max(both, key=lambda one: one.evidence))
+        if file := numbers_off(problem, selection, point, len(model.causes)):
+            found[model.names] = _fitted(problem, point, file)
     return found
+
+
+def numbers_off(problem: Problem, selection: Selection, point: Posterior, causes: int) -> Departures | None:
+    """The numbers of the file that are off beside a fit, the ``point``, of so many ``causes``: those that explain most; None where none explain anything."""
+    compete = {s for name, _ in selection.ranking for s in problem.plant.hypotheses[name]}
+    others = [s for s in problem.tolerance.sd if s not in point.columns[: point.effect_count]]
+    many = departures(problem, point, others)[MOST_CAUSES - causes :]
+    few = departures(problem, point, [s for s in others if s not in compete])
+    return max((*many, *few), key=lambda one: one.evidence, default=None)
 
 
 def _fitted(problem: Problem, point: Posterior, file: Departures) -> float:

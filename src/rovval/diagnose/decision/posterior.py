@@ -68,8 +68,8 @@ class Probabilities:
     Attributes:
         sets: of each set of causes on a healthy vehicle, by their names; the empty set is the healthy vehicle.
         beside: of sets of causes with something else beside them.
-        filed: of sets of causes with a file that is off in further numbers beside them.
-        file: of a file that is off in many numbers, and of no cause.
+        filed: of sets of causes with a file that is off in further numbers beside them, and whatever else.
+        file: of a file that is off in many numbers, whatever else is beside it, and of no cause.
         something_else: of something else alone, of what looks like a set of causes and is none, or of what comes near to a set of causes whose sizes would have
             to vary along the log.
         not_found: the part of that which is of the library all the same: the search did not come near it, or its equations are others here.
@@ -210,11 +210,12 @@ def _log_posteriors(
     best: Mapping[Names, Model], file: Mapping[Names, float], forces: float, beside: Mapping[Names, float], varying: Mapping[Names, Variation], open_gap: float
 ) -> dict[Entry, float]:
     """Log posterior, by prior and fit, of every model: of sets of causes, the healthy vehicle among them, alone and with something else beside them; of a file
-    that is off in many numbers; of something else alone that looks like nothing of the library; and of causes whose size varies."""
+    that is off in many numbers, alone or not; of something else alone that looks like nothing of the library; and of causes whose size varies."""
     doubt, filed = log(PRIOR_SOMETHING_ELSE / PRIOR_HEALTHY), log(PRIOR_FILE / PRIOR_HEALTHY)
     known = {("sets", names): m.log_posterior for names, m in best.items()}
     known |= {("beside", names): m.log_posterior + doubt + _something_else(beside.get(names, -inf), open_gap) for names, m in best.items() if names}
-    known |= {("filed", names): best[names].log_prior + filed + 0.5 * evidence for names, evidence in file.items()}
+    alone = float(np.logaddexp(0.0, doubt + _something_else(-inf, open_gap)))  # and with something else beside it
+    known |= {("filed", names): best[names].log_prior + filed + 0.5 * evidence + alone for names, evidence in file.items()}
     known[ELSE] = known[HEALTHY] + doubt + _something_else(forces, open_gap)
     for names, more in varying.items():  # what only comes near a cause, or that cause in another form
         known[FORM, names], alike = _log_varying(best[names], more)

@@ -1,7 +1,7 @@
 """A joint recalibration: a vehicle's file that is off in many coefficients at once, tuned together with the causes that are named.
 
-Asked only where the search ends without an explanation and healthy coefficients depart well beyond their tolerance. It is never a cause: an
-effect that the library lacks, which many coefficients imitate, looks the same.
+Asked only where the causes are not all of the answer. The numbers are those that a file that is off has in the comparison of models
+(`decision.miscalibration`). It is never a cause: an effect that the library lacks, which many coefficients imitate, looks the same.
 """
 
 from __future__ import annotations
@@ -15,21 +15,18 @@ from rovval import effects
 from rovval.core.data import Array
 from rovval.diagnose.criteria import (
     FEW_WINDOWS,
-    OUT_OF_TOLERANCE,
     PARAMETER_FORM_ERROR,
     RECALIBRATION_LEAST,
 )
+from rovval.diagnose.decision.miscalibration import numbers_off
 from rovval.diagnose.decision.verdict import Decision
-from rovval.diagnose.effort import RECALIBRATION_ROUNDS
 from rovval.diagnose.inference.hypothesis_fit import (
     HypothesisFit,
     confidence_interval,
     fit_hypothesis,
-    fit_quickly,
     standard_errors,
 )
-from rovval.diagnose.inference.identifiability import fit_identifiable, identifiable
-from rovval.diagnose.inference.laplace import Posterior
+from rovval.diagnose.inference.identifiability import fit_identifiable
 from rovval.diagnose.inference.shrinkage import refitted_shrinkage, shrinkage, worsened_axes
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.result.diagnosis import AxisHarm, Coefficient, Recalibration, Shrinkage
@@ -52,7 +49,7 @@ def recalibration(
     residuals, ``tolerance`` is relative.
     """
     causes = decision.fit.slots if decision.fit else ()
-    if not _asked(problem, selection, decision):
+    if not _asked(problem, decision):
         return None
     progress("tuning the vehicle's departing coefficients jointly", 0.9)
     fitted = _fitted(problem, selection, decision)
@@ -80,38 +77,27 @@ def recalibration(
     )
 
 
-def departing(problem: Problem, point: Posterior) -> list[int]:
-    """Slots of the vehicle's own coefficients that are out of tolerance at ``point`` (`OUT_OF_TOLERANCE`)."""
-    off = zip(point.columns[point.effect_count :], point.standardised_departures(), strict=True)
-    return [slot for slot, z in off if abs(z) > OUT_OF_TOLERANCE and _effect(problem, slot).place != "sensor"]
-
-
-def _asked(problem: Problem, selection: Selection, decision: Decision) -> bool:
-    """Whether something is surely at work that the causes leave unexplained, or the file is off beside them, and enough coefficients depart."""
-    rest, point = decision.unexplained, decision.fit.posterior if decision.fit else selection.healthy
-    left = rest is not None and rest.accounted is None
-    off = decision.probabilities.off_beside(frozenset(h.name for h in decision.causes))
-    if not (left or off) or problem.window_count < FEW_WINDOWS:
+def _asked(problem: Problem, decision: Decision) -> bool:
+    """Whether something is at work that no cause which is named explains: the verdict is unknown, or causes leave something, or the file is likelier off
+    beside them than not."""
+    if problem.window_count < FEW_WINDOWS or decision.verdict == "no_gap":
         return False
-    return len(departing(problem, point)) >= RECALIBRATION_LEAST
+    off = decision.probabilities.off_beside(frozenset(h.name for h in decision.causes))
+    return not decision.causes or decision.unexplained is not None or off
 
 
 def _fitted(problem: Problem, selection: Selection, decision: Decision) -> HypothesisFit | None:
-    """The joint fit of the named causes and of the coefficients beyond tolerance, until no other that these logs determine is."""
+    """The joint fit of the named causes and of the numbers of the file that are off beside them, those that these logs determine; None without."""
     final = decision.fit
     causes = final.slots if final else ()
-    point, beta = final.posterior if final else selection.healthy, selection.healthy.beta.copy()
+    point = final.posterior if final else selection.healthy
+    off = numbers_off(problem, selection, point, len(decision.causes))
+    slots = [s for s in off.slots if _effect(problem, s).place != "sensor" and not _effect(problem, s).searched] if off else []
+    if len(slots) < RECALIBRATION_LEAST:
+        return None
+    beta = selection.healthy.beta.copy()
     beta[list(causes)] = point.beta[list(causes)]
-    near, free, refused = replace(selection.healthy, beta=beta), tuple[int, ...](), set[int]()
-    for _ in range(RECALIBRATION_ROUNDS):
-        more = [s for s in departing(problem, point) if s not in refused and not _effect(problem, s).searched]
-        able, out = identifiable(problem, (*free, *more))
-        refused |= out.keys()
-        if set(able) == set(free):
-            break
-        free = able
-        point = fit_quickly(problem, near.beta, (*causes, *free), near.whitened).posterior
-    rough = fit_identifiable(problem, (*causes, *free), near, causes).fit
+    rough = fit_identifiable(problem, (*causes, *slots), replace(selection.healthy, beta=beta), causes).fit
     return fit_hypothesis(problem, rough.posterior.beta, rough.slots) if rough else None
 
 
