@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -13,13 +13,17 @@ from real_answers import Answer, Question, ask
 from real_data import real
 
 from rovval import vehicle
+from rovval.core.data import Run
+from rovval.effects.lanes import reference_speed
 from rovval.fit.calibration import calibrate
+from rovval.simulation import simulate
 from rovval.storage.archive import open_run
-from rovval.vehicle.model import as_matrix
+from rovval.vehicle.model import Vehicle, as_matrix
 from rovval.vehicle.write import to_toml
 
 WITH_BALLAST, POWERED = ("ff_b1", "ff_b2"), tuple(f"exp1_{i}" for i in range(1, 6))
 YAW, YAW_DRAG = ("yaw_1", "yaw_2", "yaw_3"), ("linear_drag[yaw]", "quadratic_drag[yaw]")
+INFLOW = "thrust.flow[inflow_loss.loss]"
 YAW_WINDOW_S = 4.0  # the shortest of the logs has thruster inputs for some 15 s
 SAME = {  # families of the outside plant, and what the library calls the same by its README: its effects act on all thrusters and axes concerned
     "added_mass": ("added_mass[surge]", "added_mass[sway]", "added_mass[heave]"),
@@ -54,15 +58,24 @@ def yaw_drag() -> tuple[Answer, ...]:
 
 
 def yaw_drag_over_thrust(logs: tuple[str, ...]) -> float:
-    """Linear drag of yaw (N m s) that takes as much power out of these runs as the calibrated vehicle's linear and quadratic drag do, over the factor that the
-    calibration puts on the thrust table: without a measured force nothing but this ratio is seen."""
+    """Linear drag of yaw (N m s) that takes as much power out of these runs as the calibrated vehicle's linear and quadratic drag do, and its loss of thrust by
+    inflow, over the factor that the calibration puts on the thrust table: without a measured force nothing but this ratio is seen."""
     runs = [open_run(real(f"bluerov_2016/{name}.bag")) for name in logs]
     found = calibrate(runs, vehicle.load("bluerov_2016"), window_s=YAW_WINDOW_S)
     rate = np.concatenate([run.get("r")[run.ok("r")] for run in runs])
     linear, quadratic = (as_matrix(m)[5, 5] for m in (found.vehicle.body.linear_drag, found.vehicle.body.quadratic_drag))
-    drag = linear + quadratic * (np.abs(rate) ** 3).mean() / (rate**2).mean()
     factor = {row.unknown.key: row.value for row in found.rows}
+    drag = linear + quadratic * (np.abs(rate) ** 3).mean() / (rate**2).mean() + _lost_to_inflow(runs, found.vehicle, factor.get(INFLOW, 0.0))
     return float(drag / (factor["thrust.gain"] * np.sqrt(factor["thrust.astern"])))  # one of the two that turn it is always astern
+
+
+def _lost_to_inflow(runs: Sequence[Run], of: Vehicle, loss: float) -> float:
+    """Moment about z (N m s) that thrusters lose per rate of turn, which moves them through the water: loss k n_ref |n| of each (`effects`: inflow_loss) times
+    the square of its lever."""
+    lever = np.array([np.cross(one.position, one.direction)[2] for one in of.thruster])
+    gain = 0.5 * 60.0**2 * np.array([one.k_pos + one.k_neg for one in of.thruster])
+    speed = np.concatenate([np.abs(simulate(run, of).thruster_speed) for run in runs])
+    return float(loss * reference_speed(of) * (np.nanmean(speed, axis=0) * gain * lever**2).sum())
 
 
 @cache
