@@ -10,7 +10,7 @@ import pytest
 
 from rovval.diagnose.criteria import FURTHER_CAUSE, PRIOR_CAUSES, PRIOR_FILE, PRIOR_HEALTHY, PRIOR_SOMETHING_ELSE
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
-from rovval.diagnose.search.model import Model, ModelPrior
+from rovval.diagnose.search.model import Model, ModelPrior, better_fits
 
 NAMES = ("waves", "dvl_scale", "linear_drag[surge]", "linear_drag[sway]", "thruster_degraded[T1]", "thruster_degraded[T2]", "thruster_degraded[T3]")
 
@@ -52,3 +52,12 @@ def test_evidence_and_prior_are_on_one_scale():
     """Twice the log Bayes factor: evidence of 2 is a factor of e."""
     more, less = (Model((), None, evidence, -1.0) for evidence in (12.0, 10.0))
     assert more.log_posterior - less.log_posterior == pytest.approx(1.0)
+
+
+def test_sets_of_as_many_causes_that_fit_better_are_told_best_first():
+    def model(names: str, evidence: float) -> Model:
+        return Model(tuple(Hypothesis(n, n, (), (), ()) for n in names), None, evidence, -1.0)
+
+    met = [model("", 0.0), model("a", 10.0), model("b", 14.0), model("b", 30.0), model("c", 20.0), model("d", 4.0), model("ab", 50.0), model("ba", 60.0)]
+    assert [(sorted(m.names), m.evidence) for m in better_fits(met, met[1])] == [(["b"], 30.0), (["c"], 20.0)]
+    assert better_fits(met, met[3]) == [] and better_fits(met, met[0]) == []

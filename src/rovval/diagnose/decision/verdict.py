@@ -29,7 +29,7 @@ from rovval.diagnose.residuals.sensor_faults import FittedFault
 from rovval.diagnose.search.discrepancy import forces_beside, generic_forces, nominal_forces
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.search.joint import refitted, some_of, with_relatives, without_each
-from rovval.diagnose.search.model import Model, Names, best_of_each_set
+from rovval.diagnose.search.model import Model, Names, best_of_each_set, better_fits
 from rovval.diagnose.search.onset import with_onset
 
 Verdict = Literal["no_gap", "explained", "partly_explained", "unknown"]
@@ -143,7 +143,7 @@ class _Compared:
 
 def _compared(problem: Problem, selection: Selection, before: Mapping[Names, Weighed]) -> _Compared:
     """The sets that lead are weighed, and then each that would be named, beside others in the place of each of its causes, until the one that is named has
-    been."""
+    been, and those of as many causes that fit better."""
     forces, alone = forces_beside(problem, selection.healthy)
     file, met, nominal = file_evidence(problem, selection), list(selection.models), unlogged_forces(problem)
     gap = open_gap(problem, [selection.healthy, *(m.fit.posterior for m in met if m.fit)])
@@ -155,9 +155,11 @@ def _compared(problem: Problem, selection: Selection, before: Mapping[Names, Wei
         beside, varying = {names: one.forces for names, one in weighed.items()}, {names: one.varying for names, one in weighed.items()}
         belief = probabilities(met, file, forces, beside, varying, evidence_of_something_else(gap), left)
         best, without = _needed(problem, selection, met, _fitted(problem, selection, met, belief.best))
-        if best.fit is None or (best.names in weighed and best.names in exchanged):
+        settled = best.fit is None or (best.names in weighed and best.names in exchanged)
+        rivals = _rivals(problem, met, best, weighed) if settled else []
+        if settled and not rivals:
             return _Compared(belief, best, without, weighed, forces, gap)
-        met, weigh = [best, *(m for m in met if m.names != best.names)], [] if best.names in weighed else [best]
+        met, weigh = [best, *(m for m in met if m.names != best.names)], rivals if settled else [] if best.names in weighed else [best]
         if best.names not in exchanged:
             met += with_relatives(problem, selection.prior, selection.library, best, {m.names for m in met})
             exchanged |= {best.names}
@@ -167,6 +169,13 @@ def _leading(problem: Problem, selection: Selection) -> list[Model]:
     """The most probable sets of causes, `SETS_WEIGHED` at most, with their sensitivities; none where they are not worth a thought (`NEGLIGIBLE`)."""
     found = sorted((m for m in best_of_each_set(selection.models).values() if m.fit), key=lambda m: -m.log_posterior)[:SETS_WEIGHED]
     return [refitted(problem, m) for m in found if m.log_posterior > selection.log_posterior + log(NEGLIGIBLE)]
+
+
+def _rivals(problem: Problem, met: Sequence[Model], best: Model, weighed: Mapping[Names, Weighed]) -> list[Model]:
+    """The sets of as many causes as the one that would be named that fit better, and of which it is not known what is found beside them: that of one of them
+    alone would decide between them."""
+    unasked = [m for m in better_fits(met, best) if m.names not in weighed]
+    return [refitted(problem, m) for m in unasked[:SETS_WEIGHED]]
 
 
 def _where_at_work(problem: Problem, model: Model, fit: HypothesisFit) -> tuple[Problem, HypothesisFit]:

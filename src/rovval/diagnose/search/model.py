@@ -78,6 +78,12 @@ def best_of_each_set(models: Iterable[Model]) -> dict[Names, Model]:
     return found
 
 
+def better_fits(models: Iterable[Model], best: Model) -> list[Model]:
+    """The sets of as many causes as ``best`` that are more probable by prior and fit, the most probable first."""
+    alike = [m for m in best_of_each_set(models).values() if len(m.names) == len(best.names)]
+    return sorted((m for m in alike if m.log_posterior > best.log_posterior), key=lambda m: -m.log_posterior)
+
+
 @dataclass(frozen=True, slots=True)
 class ModelPrior:
     """Prior mass of sets of causes: ``effects`` compete, each of ``targets`` axes or thruster by name (1 where it has none)."""
