@@ -88,7 +88,7 @@ def _calibration(d: Diagnosis) -> list[str]:
     widths = [max(len(row[i]) for row in rows) for i in range(4)]
     said = ["  ".join([r[0].ljust(widths[0]), *(c.rjust(w) for c, w in zip(r[1:4], widths[1:], strict=True)), r[4]]).rstrip() for r in rows]
     axes = ", ".join(f"{axis} {left_of(v)}" for axis, v in found.shrinkage.axes.items())
-    return [*said, recalibration.far(found), f"what is left of the error by axis: {axes}", "to write that vehicle:", f"  {found.command}"]
+    return [*said, recalibration.far(found), f"what is left of the error by axis: {axes}", "to calibrate the file:", f"  {found.command}"]
 
 
 def _weighed(candidates: Sequence[Candidate]) -> list[str]:

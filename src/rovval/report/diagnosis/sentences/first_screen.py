@@ -74,7 +74,7 @@ def next_step(d: Diagnosis) -> str:
     if plan := d.next_experiment:
         return f"Fly {d.manoeuvre.name if d.manoeuvre else plan.manoeuvre.rstrip('.')}: it tells them apart."
     if d.calibration:
-        return "Write the vehicle with its numbers tuned (the command stands below) and diagnose again with it."
+        return "Calibrate the vehicle's file (the command stands below) and diagnose again with it."
     if d.causes and all(c.kind == "file" for c in d.causes):
         these, them = ("these numbers", "them") if len(d.causes) > 1 else ("this number", "it")
         return f"Correct {these} in the vehicle's file: `--write-vehicle FILE.toml` writes {them}."

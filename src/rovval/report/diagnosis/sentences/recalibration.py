@@ -9,7 +9,7 @@ from rovval.report.diagnosis.sentences.words import parameter
 
 TITLE = "Many coefficients off at once"
 LEAD = "Not a cause: a badly calibrated vehicle file, or an effect that the library lacks and that many coefficients imitate."
-WRITE = "Write that vehicle and diagnose again with it; the shrinkage that `rovval fit` tells is a little larger, as it is of one fit to everything:"
+WRITE = "Calibrate the file, these numbers or, where the log does not determine each of them, all of it, and diagnose again with the vehicle that is written:"
 MOST = 3  # coefficients that fit a sentence
 
 
@@ -25,7 +25,7 @@ def sentence(d: Diagnosis) -> str:
     return (
         f"No one effect{' is shown to explain the rest' if beside else ''}: {len(found.beyond)} coefficients of the vehicle's file are off at once, "
         f"most of all {most}. With {tuned} the error {falls_to(found.shrinkage)} {held_out(found)}{f' (worse: {worse})' if worse else ''}. "
-        "This may be a badly calibrated file, or an effect that the library lacks and that many coefficients imitate: write that vehicle with "
+        "This may be a badly calibrated file, or an effect that the library lacks and that many coefficients imitate: calibrate the file with "
         "`rovval fit` (the command stands in the report) and diagnose again."
     )
 
