@@ -10,7 +10,7 @@ from rovval.alignment.attitude_unit import attitude_in_radians
 from rovval.alignment.kinematics import level_pose_against_velocities, pose_against_velocities
 from rovval.alignment.series import bad_samples, longest_bridge, still_runs
 from rovval.alignment.thruster_commands import against_commands
-from rovval.core.channels import channel
+from rovval.core.channels import HELD, channel
 from rovval.core.data import RawLog, Series
 from rovval.core.errors import Finding, merged
 
@@ -64,7 +64,7 @@ def _commands_absent(raw: RawLog, name: str, series: Series) -> list[Finding]:
         return []
     first, last = min(float(s.t[0]) for s in raw.channels.values()), max(float(s.t[-1]) for s in raw.channels.values())
     rule, table = raw.rules.get(name), channel(name)
-    held = rule.longest_gap_s if rule and rule.longest_gap_s and (rule.resampling or table.resampling) in ("hold", "hold_mean") else 0.0
+    held = rule.longest_gap_s if rule and rule.longest_gap_s and (rule.resampling or table.resampling) in HELD else 0.0
     late, early = float(series.t[0]) - first, last - float(series.t[-1])
     said = [f"begins {late:.1f} s after the log"] if late > table.longest_gap_s else []
     if early > table.longest_gap_s:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from rovval.core.channels import Resampling
+from rovval.core.channels import HELD, Resampling
 from rovval.core.data import Array, Codes, Reason, Series
 from rovval.core.frames import wrap
 
@@ -37,8 +37,7 @@ def resample(
     t, v = series.t[good], series.values[good]
     if len(t) == 0:
         return np.full(n, np.nan), _at(series.t, bad, grid), "none"
-    held = method in ("hold", "hold_mean")
-    values, codes = _hold(series, bad, grid, gap_s, held_s) if held else _linear(series, bad, grid, gap_s, method == "circular")
+    values, codes = _hold(series, bad, grid, gap_s, held_s) if method in HELD else _linear(series, bad, grid, gap_s, method == "circular")
     k = on_grid(series.t, start, dt)
     if k is None and method == "hold_mean":
         values = _mean_until_next(t, v, grid, dt, values, codes)

@@ -14,6 +14,7 @@ from typing import Literal
 from rovval.core.errors import UsageProblem
 
 Resampling = Literal["mean", "hold", "hold_mean", "circular", "linear"]
+HELD: tuple[Resampling, ...] = ("hold", "hold_mean")  # of commands, which act until the next one
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 VELOCITIES = ("u", "v", "w", "p", "q", "r")
 POSE = ("x", "y", "z", "phi", "theta", "psi")

@@ -79,8 +79,8 @@ def test_a_file_off_in_many_coefficients_is_said_to_be_and_is_no_cause(folder: P
     assert d["verdict"] == "unknown" and d["causes"] == [] and d["probabilities"]["miscalibrated_file"] > 0.3
     for key, right in (("linear_drag[pitch].scale", 2.0), ("linear_drag[roll].scale", -0.7)):
         assert key in found["beyond"] and found["parameters"][key]["low"] < right < found["parameters"][key]["high"]
-    off = [abs(found["parameters"][name]["tolerances"]) for name in found["beyond"]]
-    assert off == sorted(off, reverse=True) and min(off) > 1.0
+    departures = [abs(found["parameters"][name]["tolerances"]) for name in found["beyond"]]
+    assert departures == sorted(departures, reverse=True) and min(departures) > 1.0
     assert found["held_out"] == "windows" and found["shrinkage"]["low"] > 0.8
     said = recalibration.sentence(Diagnosis.read(d))
     assert said in d["sentence"]

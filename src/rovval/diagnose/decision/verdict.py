@@ -155,11 +155,12 @@ def _compared(problem: Problem, selection: Selection, before: Mapping[Names, Wei
         beside, varying = {names: one.forces for names, one in weighed.items()}, {names: one.varying for names, one in weighed.items()}
         belief = probabilities(met, file, forces, beside, varying, evidence_of_something_else(gap), left)
         best, without = _needed(problem, selection, met, _fitted(problem, selection, met, belief.best))
-        settled = best.fit is None or (best.names in weighed and best.names in exchanged)
-        rivals = _rivals(problem, met, best, weighed) if settled else []
-        if settled and not rivals:
+        weigh = [best] if best.names not in weighed else []
+        if best.names in exchanged:
+            weigh = weigh or _rivals(problem, met, best, weighed)
+        if best.fit is None or (best.names in exchanged and not weigh):
             return _Compared(belief, best, without, weighed, forces, gap)
-        met, weigh = [best, *(m for m in met if m.names != best.names)], rivals if settled else [] if best.names in weighed else [best]
+        met = [best, *(m for m in met if m.names != best.names)]
         if best.names not in exchanged:
             met += with_relatives(problem, selection.prior, selection.library, best, {m.names for m in met})
             exchanged |= {best.names}

@@ -51,7 +51,7 @@ def recalibration(
     causes = decision.fit.slots if decision.fit else ()
     if not _asked(problem, decision):
         return None
-    progress("tuning the vehicle's departing coefficients jointly", 0.9)
+    progress("tuning the numbers of the file that are off jointly", 0.9)
     fitted = _fitted(problem, selection, decision)
     if fitted is None:
         return None
