@@ -15,7 +15,7 @@ from rovval.core.version import __version__
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
-from rovval.diagnose.inference.identifiability import IdentifiableFit, Unidentified, fit_identifiable, identifiable
+from rovval.diagnose.inference.identifiability import IdentifiableFit, Unidentified, fit_identifiable
 from rovval.diagnose.inference.shrinkage import GapReduction, refitted_shrinkage, worsened_axes
 from rovval.diagnose.problem.problem import Problem, corrected_residuals, pose
 from rovval.diagnose.windows.multiple_shooting import cut
@@ -69,8 +69,6 @@ def fit(
     names = {plant.slots[s].hypothesis for s in able}
     kept = [h for h in library if not h.displaced and (h.name in names or effects.load(h.name.partition("[")[0]).place == "sensor")]
     problem = pose(windows, columns_of(kept), calibration_slop)
-    able, blind = identifiable(problem, able)
-    out |= blind
     say(f"tuning {len(able)} parameters by re-simulation", 0.4)
     found = fit_identifiable(problem, able)
     out |= found.unidentified

@@ -21,7 +21,7 @@ from rovval.comparison import compare
 from rovval.core.data import Run
 from rovval.diagnose import diagnose
 from rovval.diagnose.result.diagnosis import Diagnosis
-from rovval.fit.calibration import calibrate
+from rovval.fit import fit
 from rovval.report.diagnosis.json import document as written
 from rovval.report.diagnosis.sentences import recalibration
 from rovval.simulation import simulate
@@ -47,7 +47,6 @@ LIFT = 1.004
 DRAG, ADDED, LINEAR = (0.4, 1.8, 0.5, 0.5, 1.8, 1.7), (1.7, 0.55, 1.6, 2.0, 0.5, 0.5), (3.0, 0.3, 3.0, 0.3, 3.0, 0.3)
 OFF = {
     "many": off(DRAG, (0.4, 0.9, 0.7, 0.5, 0.9, 0.65, 0.45), ADDED, LINEAR),
-    "many, thrusters alike": off(DRAG, (0.5,) * 7, ADDED, LINEAR),
     "some": off((0.5, 0.6, 1.6, 1.0, 1.0, 1.5), (0.6, 0.6, 0.7, 0.7, 0.7, 0.65, 0.7)),
 }
 
@@ -64,6 +63,12 @@ def flown(folder: Path, seed: int, off_in: str = "many") -> Run:
 @functools.cache
 def answered(folder: Path, off_in: str = "many") -> dict[str, Any]:
     return written(diagnose([flown(folder, 11, off_in)], merlin()))
+
+
+def written_by(command: Sequence[str], run: Run, nominal: Vehicle) -> Vehicle:
+    """The vehicle that the command beside a recalibration writes."""
+    names = command[command.index("--parameters") + 1].split(",")
+    return vehicle.parse(fit([run], nominal, names).vehicle, "tuned")
 
 
 @pytest.fixture(scope="module")
@@ -89,14 +94,12 @@ def test_a_file_off_in_many_coefficients_is_said_to_be_and_is_no_cause(folder: P
 
 @pytest.mark.slow
 def test_the_command_writes_a_vehicle_that_is_nearer_on_another_dive(folder: Path):
-    """One dive does not tell thrusters one by one; where they are alike it shows all that matters."""
-    alike = "many, thrusters alike"
-    words = shlex.split(answered(folder, alike)["calibration"]["command"])
-    assert words == ["rovval", "fit", flown(folder, 11, alike).id, "--vehicle", "merlin", "--out", "calibrated.toml"]
-    tuned, run = calibrate([flown(folder, 11, alike)], merlin()).vehicle, flown(folder, 12, alike)
+    words = shlex.split(answered(folder)["calibration"]["command"])
+    assert words[:5] == ["rovval", "fit", flown(folder, 11).id, "--vehicle", "merlin"]
+    tuned, run = written_by(words, flown(folder, 11), merlin()), flown(folder, 12)
     before, after = (compare(run, simulate(run, v)).windowed for v in (merlin(), tuned))
     for axis in ("surge", "sway", "heave", "yaw"):
-        assert after[axis].rmse < 0.2 * before[axis].rmse, axis
+        assert after[axis].rmse < 0.5 * before[axis].rmse, axis
 
 
 @pytest.mark.slow
@@ -112,12 +115,16 @@ def test_numbers_that_can_be_named_one_by_one_are(folder: Path):
 @pytest.mark.slow
 def test_a_real_vehicle_whose_file_is_off_in_everything_is_said_to_be():
     """Yaw drag of a BlueROV of 2016 is several times that of its file, by least squares on yaw alone; so are other numbers."""
-    d = written(diagnose([open_run(real("bluerov_2016/yaw_2.bag"))], vehicle.load("bluerov_2016")))
-    found = Diagnosis.read(d).calibration
+    run, nominal = open_run(real("bluerov_2016/yaw_2.bag")), vehicle.load("bluerov_2016")
+    found = Diagnosis.read(written(diagnose([run], nominal))).calibration
     assert found is not None and found.beyond[0] == "linear_drag[yaw].scale"
-    assert "--parameters" not in found.command  # a typical size of yaw drag would show with 2.5 standard errors: a fit of these numbers alone leaves it out
     drag = found.parameters["linear_drag[yaw].scale"]
     assert 0.5 < drag.low < drag.high < 4.0 and found.shrinkage.low > 0.0
+    tuned = written_by(shlex.split(found.command), run, nominal)
+    assert drag.low < tuned.effects["linear_drag[yaw]"]["scale"] < drag.high  # a typical size of it would show with 2.5 standard errors; it is several
+    before, after = (compare(run, simulate(run, v)).windowed for v in (nominal, tuned))
+    for axis in ("roll", "pitch", "yaw"):
+        assert after[axis].rmse < 0.7 * before[axis].rmse, axis
 
 
 @pytest.mark.parametrize("planted", [(), ("inflow_loss:loss=0.3",), ("quadratic_drag[surge]:scale=0.6",)])

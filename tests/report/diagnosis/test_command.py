@@ -28,13 +28,6 @@ def test_fit_is_asked_for_the_parameters_by_run_and_vehicle():
     ]  # fmt: skip
 
 
-def test_fit_is_asked_for_all_of_the_file_where_a_log_does_not_determine_the_parameters():
-    diagnosis = found()
-    assert diagnosis.calibration is not None
-    everything = diagnosis.model_copy(update={"calibration": diagnosis.calibration.model_copy(update={"fitted": ()})})
-    assert shlex.split(recalibrate(everything)) == ["rovval", "fit", "dive-1", "a dive", "--vehicle", "merlin", "--out", "calibrated.toml"]
-
-
 def test_what_only_a_diagnosis_finds_is_written_first():
     first, then = recalibrate(found(("tether_snag",), "uuv")).split(" && ")
     assert shlex.split(first)[1:] == [

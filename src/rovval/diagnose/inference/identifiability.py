@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import IDENTIFIABLE_JOINTLY, OBSERVABLE_SIGMA, PRIOR_WIDTH, WIDEST_INTERVAL
+from rovval.diagnose.criteria import WIDEST_INTERVAL
 from rovval.diagnose.inference.hypothesis_fit import (
     HypothesisFit,
     confidence_interval,
@@ -50,35 +50,6 @@ class IdentifiableFit:
     unidentified: dict[int, Unidentified]
 
 
-def identifiable(problem: Problem, wanted: Sequence[int]) -> tuple[tuple[int, ...], dict[int, Unidentified]]:
-    """Which of the slots ``wanted`` these logs can determine, and why not the others.
-
-    First each by itself (`OBSERVABLE_SIGMA`), then jointly with coefficients within tolerance, by the covariance of the linearised fit; the least
-    determined is left out until all that are left are determined (`IDENTIFIABLE_JOINTLY`).
-    """
-    out, left = dict[int, Unidentified](), list(wanted)
-    information = problem.likelihood.total.A.sum(axis=0) / problem.design_effect
-    typical = {s: problem.plant.slots[s].parameter.typical for s in (*wanted, *problem.tolerance.sd)}
-    for slot in wanted:
-        at = int(problem.likelihood.total.place((slot,))[0])
-        if (errors := float(np.sqrt(information[at, at])) * typical[slot]) < OBSERVABLE_SIGMA:
-            left.remove(slot)
-            why = f"not excited: a typical size would show with {errors:.1f} standard errors in these logs, {OBSERVABLE_SIGMA:g} are needed"
-            out[slot] = Unidentified(why)
-    while left:
-        tolerated = [c for c in problem.tolerance.sd if c not in left]
-        free = problem.likelihood.total.place((*left, *tolerated))
-        prior = [PRIOR_WIDTH * typical[s] for s in left] + [problem.tolerance.sd[c] for c in tolerated]
-        covariance = np.linalg.inv(information[np.ix_(free, free)] + np.diag(1.0 / np.array(prior) ** 2))
-        errors_of = np.array([typical[s] for s in left]) / np.sqrt(np.diag(covariance)[: len(left)])
-        if errors_of.min() >= IDENTIFIABLE_JOINTLY:
-            break
-        worst = left.pop(int(errors_of.argmin()))
-        why = f"not told apart: a typical size shows with {errors_of.min():.1f} standard errors while the others move"
-        out[worst] = confused_with(problem, worst, (*left, *tolerated), why)
-    return tuple(left), out
-
-
 def confused_with(problem: Problem, slot: int, others: Sequence[int], why: str) -> Unidentified:
     """A slot with the two of ``others`` whose sensitivities are most coherent with its own; parameters that have no sensitivity at the nominal vehicle (an
     onset, a period of an effect of no size) are passed over."""
@@ -91,8 +62,8 @@ def confused_with(problem: Problem, slot: int, others: Sequence[int], why: str) 
 def fit_identifiable(
     problem: Problem, slots: tuple[int, ...], near: Posterior | None = None, kept: Sequence[int] = ()
 ) -> IdentifiableFit:
-    """The joint fit of ``slots``; one whose interval at the fitted point is too wide (`WIDEST_INTERVAL`) is put back to the file's value and the rest fitted
-    again.
+    """The joint fit of ``slots``. One that these logs do not determine, its interval at the fitted point wider than `WIDEST_INTERVAL` and about the file's
+    value, is put back to that, and the rest is fitted again.
 
     With ``near`` a quick fit that begins there and keeps its sensitivities to coefficients within tolerance; slots ``kept`` are fitted whatever
     their interval.
@@ -100,15 +71,28 @@ def fit_identifiable(
     out = dict[int, Unidentified]()
     while slots:
         fitted = fit_hypothesis(problem, problem.origin, slots) if near is None else fit_quickly(problem, near.beta, slots, near.whitened)
-        errors = standard_errors(problem, fitted)
-        bounds = [confidence_interval(float(fitted.beta[s]), float(e), problem.window_count) for s, e in zip(slots, errors, strict=True)]
-        low, high = np.array(bounds).T
-        half = 0.5 * (high - low) / [problem.plant.slots[s].parameter.typical for s in slots]
-        half[[s in kept for s in slots]] = 0.0
-        if half.max() <= WIDEST_INTERVAL:
-            return IdentifiableFit(fitted, low, high, out)
-        worst = slots[int(half.argmax())]
-        why = f"not told apart: its 90 % interval with tolerance of the others is +-{half.max():.1f} typical sizes"
-        out[worst] = confused_with(problem, worst, tuple(dict.fromkeys((*slots, *problem.tolerance.sd))), why)
+        at, half = fitted.beta[list(slots)], _half_intervals(problem, fitted)
+        differs = np.abs(at - problem.origin[list(slots)]) > half
+        size = half / [problem.plant.slots[s].parameter.typical for s in slots]
+        size[differs | np.isin(slots, kept)] = 0.0
+        if size.max() <= WIDEST_INTERVAL:
+            return IdentifiableFit(fitted, at - half, at + half, out)
+        worst = slots[int(size.argmax())]
+        out[worst] = _why(problem, fitted, worst, float(size.max()))
         slots = tuple(s for s in slots if s != worst)
     return IdentifiableFit(None, np.zeros(0), np.zeros(0), out)
+
+
+def _why(problem: Problem, fitted: HypothesisFit, slot: int, size: float) -> Unidentified:
+    """Why a slot is not determined whose interval is +- ``size`` typical sizes: not even with all others held, or while they move."""
+    others = [s for s in fitted.slots if s != slot]
+    alone = float(_half_intervals(problem, fitted, others)[fitted.slots.index(slot)]) / problem.plant.slots[slot].parameter.typical
+    if alone > WIDEST_INTERVAL:
+        return Unidentified(f"not excited: its 90 % interval by itself is +-{alone:.1f} typical sizes")
+    said = f"not told apart: its 90 % interval while the others move is +-{size:.1f} typical sizes"
+    return confused_with(problem, slot, (*others, *(s for s in problem.tolerance.sd if s not in others)), said)
+
+
+def _half_intervals(problem: Problem, fitted: HypothesisFit, fixed: Sequence[int] = ()) -> Array:
+    """Half of the 90 % interval (k,) of each fitted slot, in its unit, where slots ``fixed`` are as they are."""
+    return np.array([confidence_interval(0.0, float(e), problem.window_count)[1] for e in standard_errors(problem, fitted, fixed)])

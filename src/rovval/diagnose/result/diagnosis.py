@@ -306,9 +306,7 @@ class Recalibration(Record):
     shrinkage: Shrinkage = Field(description="of the squared gap with all of them, on data left out of the fit")
     held_out: Literal["runs", "windows"] = Field(description="what was left out of the fit")
     harm: tuple[AxisHarm, ...] = Field(description="axes that get worse")
-    fitted: tuple[str, ...] = Field(
-        default=(), description="parameters that `rovval fit` tunes; none where these logs do not determine each of them, and it tunes all of the file"
-    )
+    fitted: tuple[str, ...] = Field(default=(), description="parameters that `rovval fit` tunes")
     diagnosed: tuple[str, ...] = Field(
         default=(), description="causes whose place or time only `rovval diagnose` finds: it writes the vehicle that is then fitted"
     )

@@ -26,7 +26,7 @@ from rovval.diagnose.inference.hypothesis_fit import (
     fit_hypothesis,
     standard_errors,
 )
-from rovval.diagnose.inference.identifiability import fit_identifiable, identifiable
+from rovval.diagnose.inference.identifiability import fit_identifiable
 from rovval.diagnose.inference.shrinkage import refitted_shrinkage, shrinkage, worsened_axes
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.result.diagnosis import AxisHarm, Coefficient, Recalibration, Shrinkage
@@ -66,14 +66,13 @@ def recalibration(
         return None
     searched = {problem.plant.slots[s].hypothesis for s in fitted.slots if _effect(problem, s).searched}
     tuned = [s for s in fitted.slots if problem.plant.slots[s].hypothesis not in searched]
-    undetermined = identifiable(problem, tuned)[1]
     return Recalibration(
         parameters=rows,
         beyond=beyond,
         shrinkage=Shrinkage(**asdict(shrunk)),
         held_out="runs" if len(problem.runs) > 1 and len(problem.folds) == len(problem.runs) else "windows",
         harm=tuple(AxisHarm(axis=axis, change=change) for axis, change in worsened_axes(shrunk).items()),
-        fitted=() if undetermined else tuple(problem.plant.slots[s].key for s in tuned),
+        fitted=tuple(problem.plant.slots[s].key for s in tuned),
         diagnosed=tuple(sorted(searched)),
     )
 

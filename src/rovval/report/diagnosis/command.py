@@ -27,8 +27,7 @@ class Typed:
 
 
 def recalibrate(diagnosis: Diagnosis, typed: Typed | None = None) -> str:
-    """The `rovval fit` of the numbers that are off, or, where these logs do not determine each of them, of all that the file may have wrong. What fit cannot
-    search for is written by `rovval diagnose` before. Empty where nothing was recalibrated."""
+    """The `rovval fit` of the numbers that are off; what fit cannot search for is written by `rovval diagnose` before. Empty where nothing was recalibrated."""
     found, typed = diagnosis.calibration, typed or Typed()
     if found is None:
         return ""
@@ -41,5 +40,4 @@ def recalibrate(diagnosis: Diagnosis, typed: Typed | None = None) -> str:
     nominal = typed.vehicle or diagnosis.vehicle
     first = line("diagnose", nominal, "--write-vehicle", "mended.toml") + " && " if found.diagnosed else ""
     start = "mended.toml" if found.diagnosed else nominal
-    these = ["--parameters", ",".join(found.fitted)] if found.fitted else []
-    return first + line("fit", start, *these, "--out", "calibrated.toml")
+    return first + line("fit", start, "--parameters", ",".join(found.fitted), "--out", "calibrated.toml")

@@ -9,7 +9,7 @@ from rovval.report.diagnosis.sentences.words import parameter
 
 TITLE = "Many coefficients off at once"
 LEAD = "Not a cause: a badly calibrated vehicle file, or an effect that the library lacks and that many coefficients imitate."
-WRITE = "Calibrate the file, these numbers or, where the log does not determine each of them, all of it, and diagnose again with the vehicle that is written:"
+WRITE = "Calibrate these numbers, or all of the file (`rovval fit` without `--parameters`), and diagnose again with the vehicle that is written:"
 MOST = 3  # coefficients that fit a sentence
 
 
