@@ -72,6 +72,14 @@ def test_the_first_screen_says_what_where_which_how_far_and_what_to_do_next() ->
     assert said.next == "Fly surge staircase with a coast-down: it tells them apart."
 
 
+@pytest.mark.parametrize("verdict_", ["explained", "partly_explained"])
+def test_causes_explain_no_gap_that_does_not_shrink_with_them(verdict_: str) -> None:
+    """A bias of attitude that the kinematics of a calibrated vehicle's log showed, and with which its gap grew to 102 %."""
+    no_less = {"total": -0.04, "low": -0.14, "high": 0.04}
+    found = diagnosis(verdict=verdict_, shrinkage=make_diagnosis()["shrinkage"] | no_less)
+    assert first_screen(found).what == "One effect is found, but the gap is not shown to shrink with it: Axial inflow loss."
+
+
 @pytest.mark.parametrize(
     ("name", "said"),
     [

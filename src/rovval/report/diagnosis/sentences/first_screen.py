@@ -8,7 +8,7 @@ from rovval.diagnose.result.diagnosis import Cause, Diagnosis
 from rovval.report.common.numbers import listed, per_cent, probability, quantity
 from rovval.report.diagnosis.sentences import no_cause
 from rovval.report.diagnosis.sentences.plain import falls, falls_to, of_what, regime
-from rovval.report.diagnosis.sentences.words import alone, group, moved, parameter, unmoved
+from rovval.report.diagnosis.sentences.words import alone, group, moved, parameter, shown_to_shrink, unmoved
 
 MOST_VALUES = 2  # parameters of a cause that fit the first screen
 COUNTED = {1: "One effect", 2: "Two effects", 3: "Three effects"}
@@ -37,7 +37,9 @@ def what(d: Diagnosis) -> str:
         return no_cause.unknown(d)
     names = listed(of_what(c.effect) for c in d.causes)
     some = COUNTED.get(len(d.causes), f"{len(d.causes)} effects")
-    verb = "explain" if len(d.causes) > 1 else "explains"
+    verb, is_found, it = ("explain", "are found", "them") if len(d.causes) > 1 else ("explains", "is found", "it")
+    if not shown_to_shrink(d):
+        return f"{some} {is_found}, but the gap is not shown to shrink with {it}: {names}."
     if d.verdict == "explained":
         return f"{some} {verb} the gap: {names}."
     rest = f"acts in {d.left.axes[0]}" if d.left and d.left.axes else "is at work"

@@ -56,6 +56,11 @@ def unmoved(shrinkage: Shrinkage) -> bool:
     return abs(shrinkage.total) < UNMOVED
 
 
+def shown_to_shrink(d: Diagnosis) -> bool:
+    """Whether the gap surely shrinks with the causes, by themselves or with all coefficients fitted within their tolerance as well."""
+    return any(reduction is not None and reduction.low > 0 for reduction in (d.shrinkage, d.within_tolerance))
+
+
 def alone(cause: Cause) -> str:
     """What a cause does by itself to a gap that it hardly changes; empty where it changes it."""
     if not unmoved(cause.shrinkage):
