@@ -28,7 +28,7 @@ from rovval.vehicle.model import Vehicle
 from rovval.vehicle.write import to_toml, with_effects
 
 KEPT = Path(__file__).parents[2] / ".pytest_cache"
-UNUSED = ("cli", "report", "pipeline", "blind", "fly", "demo", "comparison", "diagnose")  # rooms: a calibration takes of `diagnose` the noise alone
+UNUSED = ("cli", "report", "pipeline", "blind", "fly", "demo", "comparison")  # rooms that a calibration takes nothing of
 RUNS = ("a", "b", "c")
 LEFT = 0.05  # of a drag that is taken out
 WEAK = 0.6  # of a thruster's thrust; a thruster that is left at 1/WEAK is the same mistake the other way round

@@ -21,12 +21,14 @@ from rovval.diagnose.criteria import HELD_OUT_RUNS
 from rovval.diagnose.effort import PROGRESSIVE_S
 from rovval.diagnose.windows.noise import clean_channels
 from rovval.fit.estimate import Estimate, Problem, held_out_gain, maximum
+from rovval.fit.random_effects import tolerances
 from rovval.fit.record import Record, begun, record, residual, rms
 from rovval.fit.unknowns import Unknown, applied, bounds, unknowns
 from rovval.plant import Plant, parse_settings
 from rovval.simulation import carried_effects, simulate
 from rovval.simulation.fitted_commands import Excess, excesses, fitted, largest
 from rovval.simulation.fitted_errors import kept
+from rovval.simulation.fitted_tolerances import with_tolerances
 from rovval.simulation.step import steps_a_sample
 from rovval.vehicle.model import Vehicle
 
@@ -154,7 +156,9 @@ def calibrate(runs: Sequence[Run], vehicle: Vehicle, *, model: str = "fossen", w
                 estimate, chosen, predicted, others = _estimate(records, vehicle, wider, model, (start,)), wider, better, found
     say("simulating the logs with the calibrated vehicle", 0.8)
     left = _left(records, vehicle, chosen, model, others or (estimate,) * len(records))
-    calibrated = _remembering(applied(vehicle, chosen, estimate.values), records, left)
+    by = [applied(vehicle, chosen, e.values) for e in others or (estimate,) * len(records)]
+    known = tolerances([one.run for one in records], by, model, window_s)
+    calibrated = with_tolerances(_remembering(applied(vehicle, chosen, estimate.values), records, left), known)
     errors = _errors(records, vehicle, calibrated, chosen, model, others)
     accepted = tuple(name for name, by_run in gains.items() if min(by_run) > 0)
     rows = tuple(_row(vehicle, one, estimate, i) for i, one in enumerate(chosen))

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from diagnose_case import merlin, posed
-from scipy import integrate
+from scipy import stats
 
 from rovval.diagnose.criteria import (
     CALIBRATED_SPREAD,
@@ -46,16 +46,17 @@ def test_without_a_calibration_nothing_is_as_it_was():
     assert not any(calibrated_by_part(problem).values()) and gap_left(problem, []).grown == {}
 
 
-def test_the_odds_are_a_ratio_of_two_distributions():
-    """Over sizes from what there was on, both densities integrate to what lies there: half of a log-normal, all of a log-logistic."""
-    prior = PRIOR_HEALTHY / PRIOR_CAUSES
-    found, _ = integrate.quad(lambda size: odds_as_calibrated((size,), PRIOR_CAUSES, 0.7) / prior / size**2, 1.0, 60.0)
-    assert found == pytest.approx(0.5, abs=1e-6)
+@pytest.mark.parametrize("spread", [0.2, 0.7, 1.7])
+def test_the_odds_are_a_ratio_of_two_distributions(spread: float):
+    """Of the logarithm of the gap: normal, over that and an exponential one together."""
+    for size in (-2.0, -0.3, 0.0, 1.0, 3.0):
+        found = odds_as_calibrated((float(np.exp(size)),), PRIOR_CAUSES, spread) * PRIOR_CAUSES / PRIOR_HEALTHY
+        assert found == pytest.approx(stats.norm.pdf(size, scale=spread) / stats.exponnorm.pdf(size, 1.0 / spread, scale=spread), rel=1e-6, abs=2e-9)
 
 
 def test_a_gap_as_large_as_it_was_is_the_vehicle_and_a_larger_one_is_not():
     odds = [odds_as_calibrated((grown,), PRIOR_CAUSES, 0.7) for grown in (0.3, 1.0, 2.0, 8.0, 30.0)]
-    assert odds[0] == odds[1] > 0.5 > odds[3] > odds[4] and odds[3] < 0.2 and odds[4] < 1e-3
+    assert odds[0] > odds[1] > 1.0 > odds[3] > odds[4] and odds[3] < 0.2 and odds[4] < 1e-3
     assert odds_as_calibrated((1.0,), PRIOR_SOMETHING_ELSE, 0.7) > 5.0 * odds[1]  # of which there was less beforehand
 
 

@@ -2,13 +2,15 @@
 
 What is left goes with the motion, so that causes of the library explain a part of it, surely and on every log. A cause that came since then makes the gap
 larger than it was where the cause acts. How much larger it is, of squared errors above noise, is log-normal about 1 where nothing came, as wide as the
-runs of the calibration differ among themselves, and else log-logistic of median 1 beyond it: as much as there was, or any.
+runs of the calibration differ among themselves; where something came it is 1 + x times that, and x log-logistic of median 1: as much as there was, or any.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from math import exp, log, pi, sqrt
+
+from scipy.special import log_ndtr
 
 from rovval.diagnose.criteria import PRIOR_HEALTHY
 from rovval.diagnose.inference.gap import TINY
@@ -22,6 +24,8 @@ def odds_as_calibrated(grown: Sequence[float], other: float, spread: float) -> f
 
 
 def _as_it_was(grown: float, spread: float) -> float:
-    """Ratio of both densities of a gap that is ``grown`` times what it was (1); of one that became smaller as of one that is as it was."""
-    size = max(grown, 1.0)
-    return size * exp(-0.5 * (log(size) / spread) ** 2) / (spread * sqrt(2.0 * pi))
+    """Ratio of both densities of a gap that is ``grown`` times what it was (1): log-normal, over that times 1 + x. The logarithm of 1 + x is exponential of
+    mean 1, so that the other is an exponentially modified Gaussian (Grushka 1972)."""
+    size = log(max(grown, TINY))
+    as_it_was = -0.5 * (size / spread) ** 2 - log(spread * sqrt(2.0 * pi))
+    return exp(as_it_was - (0.5 * spread**2 - size + float(log_ndtr(size / spread - spread))))

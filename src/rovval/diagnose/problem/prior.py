@@ -15,17 +15,20 @@ from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.windows.windows import Windows
 from rovval.effects import Parameter
 from rovval.plant import Plant
+from rovval.simulation.fitted_tolerances import fitted_tolerances
 
 
 def tolerance_prior(plant: Plant, relative: float) -> Prior:
-    """Prior of the plant's parameters at a healthy vehicle, as each effect states it, about the values of the vehicle's file.
+    """Prior of the plant's parameters at a healthy vehicle, as each effect states it, about the values of the vehicle's file; of what every vehicle has to some
+    degree as the logs of its calibration have it.
 
     ``relative`` is the calibration tolerance, a relative standard deviation; the prior is empty where it is zero.
     """
     if relative <= 0:
         return Prior({})
-    stated = ((i, slot, slot.parameter.tolerance) for i, slot in enumerate(plant.slots))
-    return Prior({i: t.of(slot.parameter, plant.vehicle, slot.target, relative) for i, slot, t in stated if t is not None})
+    stated, known = ((i, slot, slot.parameter.tolerance) for i, slot in enumerate(plant.slots)), fitted_tolerances(plant.vehicle)
+    found = {i: t.of(slot.parameter, plant.vehicle, slot.target, relative) for i, slot, t in stated if t is not None}
+    return Prior(found | {i: known[slot.key] for i, slot in enumerate(plant.slots) if slot.key in known})
 
 
 def prior_mean(parameter: Parameter, runs: Sequence[Windows], otherwise: float) -> float:
