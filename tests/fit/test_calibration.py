@@ -18,6 +18,7 @@ from rovval.plant import Plant, parse_settings
 from rovval.report.fit import html, text
 from rovval.simulation import carried_effects, simulate
 from rovval.simulation.fitted_commands import beyond_fitted, fitted
+from rovval.simulation.fitted_tolerances import fitted_tolerances
 from rovval.vehicle import load, parse
 from rovval.vehicle.model import Vehicle
 from rovval.vehicle.write import to_toml
@@ -101,6 +102,13 @@ def test_what_the_logs_do_not_show_is_said_to_be_held_by_its_prior():
     assert all(key in text(done().document()) for key in held)
     page = unescape(html(done().document())).partition("Held by their prior")[2].partition("</section>")[0]
     assert all(row.unknown.manoeuvre in page for row in done().rows if not row.shown)
+
+
+def test_what_a_healthy_one_may_have_is_told_and_remembered():
+    told = done().document()["tolerances"]
+    assert {key: row["sd"] for key, row in told.items()} == fitted_tolerances(parse(to_toml(done().vehicle), "calibrated"))
+    page = html(done().document()).partition("What a healthy one may have")[2].partition("</section>")[0]
+    assert "inflow_loss.loss" in page and all(key in unescape(page) for key in told)
 
 
 def test_correlations_are_those_of_a_covariance():

@@ -25,10 +25,12 @@ from rovval.fit.random_effects import tolerances
 from rovval.fit.record import Record, begun, record, residual, rms
 from rovval.fit.unknowns import Unknown, applied, bounds, unknowns
 from rovval.plant import Plant, parse_settings
+from rovval.plant.platforms import USUAL
+from rovval.plant.slots import slots
 from rovval.simulation import carried_effects, simulate
 from rovval.simulation.fitted_commands import Excess, excesses, fitted, largest
 from rovval.simulation.fitted_errors import kept
-from rovval.simulation.fitted_tolerances import with_tolerances
+from rovval.simulation.fitted_tolerances import fitted_tolerances, with_tolerances
 from rovval.simulation.step import steps_a_sample
 from rovval.vehicle.model import Vehicle
 
@@ -87,6 +89,7 @@ class Calibration:
 
     def document(self) -> dict[str, Any]:
         """The same as JSON (schema rovval.calibration/1), factors of the file's numbers and offsets in SI, commands in rpm."""
+        units = {slot.key: slot.parameter.unit for slot in slots(self.vehicle, USUAL)}
         return {
             "schema": "rovval.calibration/1",
             "rovval": __version__,
@@ -112,6 +115,7 @@ class Calibration:
                 for name, by_run in self.options.items()
             ],
             "commands": dict(fitted(self.vehicle)),
+            "tolerances": {key: {"sd": sd, "unit": units[key]} for key, sd in fitted_tolerances(self.vehicle).items()},
             "extrapolated": [
                 {"run": run, "thruster": e.thruster, "way": e.way, "rpm": e.worst, "others": e.limit, "rows": e.count, "n": e.rows}
                 for run, e in self.extrapolated
