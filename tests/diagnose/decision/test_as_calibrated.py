@@ -77,6 +77,16 @@ def test_causes_of_a_vehicle_as_it_was_calibrated_are_not_believed(grown: float)
     assert found.causes < 0.3 if grown < 2.0 else found.causes > 0.6
 
 
+def test_causes_that_close_nothing_have_no_probability_and_none_below_it():
+    """-0.0 had been printed: what is left of them is a difference of two numbers that are the same but for rounding."""
+    prior = ModelPrior.of([Hypothesis(n, n, (), (), ()) for n in ("inflow_loss", "dvl_scale")])
+    causes = (Hypothesis("inflow_loss", "inflow_loss", (), (), ()),)
+    models = [Model((), None, 0.0, prior.log_mass(())), Model(causes, None, 80.0, prior.log_mass(causes))]
+    for grown in np.geomspace(0.3, 30.0, 40):
+        found = probabilities(models, {}, 60.0, {}, {}, left=Left({LOSS: np.ones(2)}, {LOSS: (1.0, 1e-6)}, {LOSS: float(grown)}, (float(grown),)))
+        assert found.causes == 0.0 and str(found.causes) == "0.0"
+
+
 def test_what_a_calibration_left_is_in_the_metric_of_the_gap():
     """A vehicle that left just the errors of this log has a gap that is once what it was, wherever a cause acts; one that left half of them, four times."""
     problem, _ = posed(("inflow_loss:loss=0.3",))

@@ -247,15 +247,15 @@ def _without_what_looks_alike(believed: Mapping[Entry, float], explained: Mappin
     share = dict(believed)
     for key, whole in believed.items():
         kind, names = key
-        alike, as_it_was = 0.0, 0.0
+        right, as_it_was = 1.0, 0.0
         if names and kind in (*CAUSES, FORM):
-            alike, as_it_was = explained[names].alike, explained[names].as_calibrated
+            right, as_it_was = explained[names].right, explained[names].as_calibrated
         elif key == FILE:
-            alike = looks_only_like_a_file()
+            right -= looks_only_like_a_file()
         elif key == ELSE or kind.startswith(VARYING):
             odds = _as_calibrated(left, names, PRIOR_SOMETHING_ELSE)
-            as_it_was = odds / (1.0 + odds)
-        share[key] -= (alike + as_it_was) * whole
+            right, as_it_was = 1.0 / (1.0 + odds), odds / (1.0 + odds)
+        share[key] -= (1.0 - right) * whole
         share[HEALTHY] += as_it_was * whole
     return share
 
