@@ -10,16 +10,16 @@ other vehicles: of a number its tolerance, of an effect its typical size.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from rovval import effects
-from rovval.core.data import Array, Run
+from rovval.core.data import Array, Flags, Run
 from rovval.core.errors import BadInput
-from rovval.diagnose.problem.problem import Problem, pose
+from rovval.diagnose.problem.problem import pose
 from rovval.diagnose.residuals.perturbations import Columns
 from rovval.diagnose.windows.multiple_shooting import cut
-from rovval.plant import Plant
 from rovval.simulation.fitted_tolerances import with_tolerances
 from rovval.vehicle.model import Vehicle
 
@@ -27,37 +27,42 @@ SLOP = 0.05  # relative tolerance of the file's numbers, as a diagnosis has it w
 ROUNDS, SETTLED = 200, 1e-3  # of expectation and maximisation at most, and the relative change of every variance from which it has settled
 
 
+class _Asked(NamedTuple):
+    """What one run asks: curvature (k, k) and slope (k,) of its log likelihood in parameters by their keys, of which those ``free`` (k,) are effects of which
+    every vehicle has some, and ``prior`` (k,) standard deviations."""
+
+    keys: tuple[str, ...]
+    free: Flags
+    prior: Array
+    curvature: Array
+    slope: Array
+
+
 def tolerances(runs: Sequence[Run], vehicles: Sequence[Vehicle], model: str, window_s: float) -> dict[str, float]:
     """Standard deviations, by key of the parameter, of the effects of which every vehicle has some, in ``runs`` of one vehicle about the vehicles that predict
     them. A run of which too little can be simulated says nothing; without any there are none."""
-    problems = [p for run, vehicle in zip(runs, vehicles, strict=True) if (p := _posed(run, with_tolerances(vehicle, {}), model, window_s))]
-    if not problems:
+    asked = [one for run, vehicle in zip(runs, vehicles, strict=True) if (one := _asked(run, with_tolerances(vehicle, {}), model, window_s))]
+    if not asked:
         return {}
-    plant, columns = problems[0].plant, problems[0].likelihood.total.columns
-    typical = np.array([problems[0].tolerance.sd.get(s, plant.slots[s].parameter.typical) for s in columns])
-    sd = np.sqrt(_variances([_of_all_windows(p) for p in problems], typical**2))
-    asked = _of_every_vehicle(plant)
-    return {plant.slots[s].key: float(x) for s, x in zip(columns, sd, strict=True) if s in asked}
+    first = asked[0]
+    sd = np.sqrt(_variances([(one.curvature, one.slope) for one in asked], first.prior**2))
+    return {key: float(x) for key, x, free in zip(first.keys, sd, first.free, strict=True) if free}
 
 
-def _of_every_vehicle(plant: Plant) -> tuple[int, ...]:
-    """Slots of the effects of which every vehicle has some."""
-    return tuple(i for i, slot in enumerate(plant.slots) if effects.load(slot.effect).option)
-
-
-def _posed(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Problem | None:
-    """The estimation problem of one run about a vehicle; None where too little can be simulated."""
+def _asked(run: Run, vehicle: Vehicle, model: str, window_s: float) -> _Asked | None:
+    """What a run asks about a vehicle; None where too little can be simulated."""
     try:
         windows, _ = cut([run], vehicle, model, window_s)
-        return pose(windows, Columns(_of_every_vehicle(windows[0].plant)), SLOP)
+        slots = windows[0].plant.slots
+        every = [i for i, slot in enumerate(slots) if effects.load(slot.effect).option]
+        problem = pose(windows, Columns(tuple(every)), SLOP)
     except BadInput:
         return None
-
-
-def _of_all_windows(problem: Problem) -> tuple[Array, Array]:
-    """Curvature (k, k) and slope (k,) of the log likelihood."""
-    equations = problem.likelihood.total
-    return equations.A.sum(axis=0) / problem.tempering, equations.b.sum(axis=0) / problem.tempering
+    equations, tolerance = problem.likelihood.total, problem.tolerance.sd
+    columns = equations.columns
+    prior = np.array([tolerance.get(s, slots[s].parameter.typical) for s in columns])
+    curvature, slope = equations.A.sum(axis=0) / problem.tempering, equations.b.sum(axis=0) / problem.tempering
+    return _Asked(tuple(slots[s].key for s in columns), np.isin(columns, every), prior, curvature, slope)
 
 
 def _variances(runs: Sequence[tuple[Array, Array]], prior: Array) -> Array:
