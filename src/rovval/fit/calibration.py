@@ -159,9 +159,9 @@ def calibrate(runs: Sequence[Run], vehicle: Vehicle, *, model: str = "fossen", w
             if min(gains[name]) > 0:
                 estimate, chosen, predicted, others = _estimate(records, vehicle, wider, model, (start,)), wider, better, found
     say("simulating the logs with the calibrated vehicle", 0.8)
-    left = _left(records, vehicle, chosen, model, others or (estimate,) * len(records))
-    by = [applied(vehicle, chosen, e.values) for e in others or (estimate,) * len(records)]
-    known = tolerances([one.run for one in records], by, model, window_s)
+    by = others or (estimate,) * len(records)
+    left = _left(records, vehicle, chosen, model, by)
+    known = tolerances([one.run for one in records], [applied(vehicle, chosen, e.values) for e in by], model, window_s)
     calibrated = with_tolerances(_remembering(applied(vehicle, chosen, estimate.values), records, left), known)
     errors = _errors(records, vehicle, calibrated, chosen, model, others)
     accepted = tuple(name for name, by_run in gains.items() if min(by_run) > 0)

@@ -44,7 +44,7 @@ def html(document: Mapping[str, Any]) -> str:
         further=[further(one) for one in document["extrapolated"]],
         options=document["options"],
         commands=commands(document["commands"]),
-        tolerances=[(key, quantity(one["sd"], one["unit"])) for key, one in document.get("tolerances", {}).items()],
+        tolerances=[(key, quantity(one["sd"], one["unit"])) for key, one in document["tolerances"].items()],
         footer=foot(),
     )
 

@@ -29,13 +29,13 @@ def healthy() -> Flight:
 
 
 def difference(a: Flight, b: Flight) -> float:
-    """Largest change of a column (rms), in units of its spread: a single cell is another where a ping falls a sample later."""
+    """Largest change of a cell of ``a`` from ``b``, in units of the column's spread in ``b``, by which all that is compared with it is measured alike."""
     found = 0.0
-    for name, x in a.measured.items():
-        change = x - b.measured[name]
+    for name, x in b.measured.items():
+        change = a.measured[name] - x
         change = (change + 180.0) % 360.0 - 180.0 if name == "Heading" else change
-        if np.nanstd(x) > 1e-6:  # of a column that stays as it is a rounding would be all
-            found = max(found, float(np.sqrt(np.nanmean(change**2)) / np.nanstd(x)))
+        both = np.isfinite(change)
+        found = max(found, float(np.abs(change[both]).max()) / (float(np.nanstd(x)) + 1e-9))
     return found
 
 
@@ -65,9 +65,9 @@ def check(name: str, healthy: Flight) -> None:
     none = fly(MERLIN, "joystick", [Planted(name, None, 0.0)], 11, 2.0)
     assert all(np.array_equal(x, healthy.true[key][: len(x)]) for key, x in none.true.items() if key != "voltage")
     full, little = (fly(MERLIN, "joystick", [Planted(name, None, s)], 11, SECONDS) for s in (1.0, 0.02))
-    assert difference(full, healthy) > 0.005
+    assert difference(full, healthy) > 0.03
     if name != "thruster_reversed":
-        assert difference(little, healthy) < 0.8 * difference(full, healthy)
+        assert difference(little, healthy) < 0.6 * difference(full, healthy)
     effect, kind = label(full), catalogue()[name]
     assert effect["values"] and effect["realised"]
     assert (effect["onset_s"] is not None) == kind.event

@@ -145,7 +145,7 @@ def test_something_beside_the_causes_leaves_them_at_work():
     assert something_beside(30.0, NONE) and not something_beside(-inf, NONE)
     assert alone.of("inflow_loss") > SURE and alone.of("inflow_loss") > found.of("inflow_loss") > 0.8
     known = Left({frozenset({"inflow_loss"}): np.full(2, 0.05)}, {frozenset({"inflow_loss"}): (0.05, SMALL)})
-    assert found.of("inflow_loss") == pytest.approx(1.0 - what_is_left(frozenset({"inflow_loss"}), known, beside=True).alike, abs=1e-4)
+    assert found.of("inflow_loss") == pytest.approx(what_is_left(frozenset({"inflow_loss"}), known, beside=True).right, abs=1e-4)
 
 
 @pytest.mark.parametrize("forces", [76.0, 80.0, 84.0])
@@ -198,7 +198,7 @@ def test_a_cause_that_varies_is_another_form_of_it_or_something_else(form: float
     priors = what_is_left(frozenset({"inflow_loss"}), None)
     share = 1.0 / (1.0 + np.exp(BETWEEN_CAUSES * (0.5 * (form - alike) + priors.evidence)))
     assert found.varying == pytest.approx(share, abs=1e-4)
-    assert [found.of("inflow_loss"), found.causes] == pytest.approx([(1.0 - share) * (1.0 - priors.alike)] * 2, abs=1e-4)
+    assert [found.of("inflow_loss"), found.causes] == pytest.approx([(1.0 - share) * priors.right] * 2, abs=1e-4)
     assert something_beside(-inf, varies) and found.best == {"inflow_loss"}
 
 

@@ -50,7 +50,7 @@ def left(healthy: float = 1e-6, **shares: float | tuple[float, float]) -> Left:
 
 def none_of_the_library(names: frozenset[str], known: Left | None, beside: bool = False) -> float:
     """Probability that what looks like causes is none of the library."""
-    return what_is_left(names, known, beside).alike
+    return 1.0 - what_is_left(names, known, beside).right
 
 
 AB = frozenset("ab")
@@ -88,7 +88,7 @@ def test_causes_that_leave_a_force_where_they_act_are_rather_something_else():
     """The odds are a ratio of two densities: over all forces that of something else, so found, integrates to one."""
 
     def odds(size: float, median: float = FORCE_RIGHT, wanders: bool = False) -> float:
-        none = what_is_left(AB, replace(left(a_b=0.3), unlogged={AB: ForceLeft(size, median, FORCE_ALIKE)}), wanders=wanders).alike
+        none = 1.0 - what_is_left(AB, replace(left(a_b=0.3), unlogged={AB: ForceLeft(size, median, FORCE_ALIKE)}), wanders=wanders).right
         return none / (1.0 - none)
 
     unknown = none_of_the_library(AB, left(a_b=0.3))

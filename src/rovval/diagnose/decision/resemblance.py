@@ -205,12 +205,11 @@ def evidence_by_force(left: ForceLeft) -> float:
 @dataclass(frozen=True, slots=True)
 class Explained:
     """What causes leave, as evidence: the log Bayes factor ``evidence`` of all that would look like them over something else that does not, by what is left
-    alone, and the parts of it (1) that are these causes (``right``), something else which looks ``alike``, and what the calibration of the vehicle left
-    (``as_calibrated``)."""
+    alone, and the parts of it (1) that are these causes (``right``) and what the calibration of the vehicle left (``as_calibrated``). The rest is something
+    else, which only looks like them."""
 
     evidence: float
     right: float
-    alike: float
     as_calibrated: float
 
 
@@ -228,7 +227,7 @@ def what_is_left(names: Names, left: Left | None, beside: bool = False, as_calib
         right = odds_of_left(*left.where_they_act(names), lambda share: freedom * (1.0 - share) ** (freedom - 1.0))
         alike *= SHOWS_BESIDE[1] / NOT_FOUND if names in left.adding else 1.0
     total = (right + as_calibrated) * force + alike
-    return Explained(log(total), right * force / total, alike / total, as_calibrated * force / total)
+    return Explained(log(total), right * force / total, as_calibrated * force / total)
 
 
 def little_force(names: Names, left: Left | None) -> float:
