@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnose_case import merlin, own
+from diagnose_case import merlin, own, with_values
 from kinematic import spoilt
 from tumbling import bluerov2, tumbling
 
@@ -14,6 +14,7 @@ from rovval.core.data import Array, Reason, Run
 from rovval.core.errors import Finding
 from rovval.diagnose.residuals.parity import ParityResiduals, parity_residuals
 from rovval.diagnose.residuals.sensor_faults import FittedFault, sensor_faults
+from rovval.diagnose.windows.conditioning import condition
 from rovval.diagnose.windows.multiple_shooting import cut_run
 from rovval.effects import load
 from rovval.vehicle.model import Vehicle
@@ -150,3 +151,13 @@ def test_a_late_sensor_is_read_without_the_bias_of_its_tangent(name: str, late: 
 
 def test_parity_of_healthy_sensors_finds_nothing():
     assert not [name for name, row in faults_of(spoilt({})).items() if row.significant]
+
+
+def test_a_fault_of_a_size_that_it_cannot_have_is_none():
+    """Velocities in steps of 0.2 m/s, held between pings, were read as 41 s late."""
+    run = own((), 5, 300.0)
+    pinged = np.arange(len(run)) // 16 * 16
+    coarse, _ = condition(with_values(run, **{c: np.round(run.get(c)[pinged] / 0.2) * 0.2 for c in "uvw"}))
+    late = faults_of(coarse)["velocity_filter_lag.dead"]
+    assert late.low > 0.0 and late.value > 1.5, "the least squares estimate, far from linear"
+    assert not late.significant

@@ -31,7 +31,7 @@ class FittedFault:
         was: what the vehicle's file says of it.
         unit: of all four.
         share: of the squared parity residuals that the fault accounts for.
-        significant: whether ``was`` lies outside the interval and ``share`` is above `MATERIAL`.
+        significant: whether ``was`` lies outside the interval, ``share`` is above `MATERIAL`, and the estimate is a value that the parameter can have.
         check: the kinematic identity in words.
         note: how it was fitted, in words.
     """
@@ -72,6 +72,7 @@ def sensor_faults(parity: ParityResiduals, windows: Windows, origin: Array) -> l
             slot_id = parity.columns[place]
             slot = windows.plant.slots[slot_id]
             low, high, was = float(value[j] - t * error[j]), float(value[j] + t * error[j]), float(origin[slot_id])
+            possible = slot.parameter.low <= was + float(value[j]) <= slot.parameter.high
             found.append(
                 FittedFault(
                     fault=slot.key,
@@ -81,7 +82,7 @@ def sensor_faults(parity: ParityResiduals, windows: Windows, origin: Array) -> l
                     was=was,
                     unit=slot.parameter.unit,
                     share=share,
-                    significant=bool(low > 0 or high < 0) and share > MATERIAL,
+                    significant=bool(low > 0 or high < 0) and share > MATERIAL and possible,
                 )
             )
     return found

@@ -61,11 +61,15 @@ def _outliers(series: Array, name: str) -> Flags:
 
 
 def quantisation_step(values: Array) -> float:
-    """Step in which a channel is written, from values (n,) that repeat themselves; 0 where these lie on no grid. Rounding to it errs uniformly, with
-    a variance of a twelfth of its square (Widrow 1956)."""
+    """Step in which a channel is written, from values (n,) that repeat themselves; 0 where these lie on no grid. Two of them are a step apart
+    where the channel is mostly at one of them: of one that clips they are the ends of its range. Rounding to a step errs uniformly, with a variance of a
+    twelfth of its square (Widrow 1956)."""
     held = values[1:][values[1:] == values[:-1]]
-    steps = np.diff(np.unique(held))
-    if len(steps) < 2 or (len(steps) + 1) * QUANTISED_REPEATS > len(held):
+    levels = np.unique(held)
+    steps = np.diff(levels)
+    if not len(steps) or len(levels) * QUANTISED_REPEATS > len(held):
+        return 0.0
+    if len(levels) == 2 and np.isin(values[np.isfinite(values)], levels).mean() <= 0.5:
         return 0.0
     steps = steps[steps > ROUNDING * steps.max()]
     multiples = steps / steps.min()
