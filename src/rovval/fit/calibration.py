@@ -20,6 +20,7 @@ from rovval.core.version import __version__
 from rovval.diagnose.criteria import HELD_OUT_RUNS
 from rovval.diagnose.effort import PROGRESSIVE_S
 from rovval.diagnose.windows.noise import clean_channels
+from rovval.fit.discrepancy import discrepancy
 from rovval.fit.estimate import Estimate, Problem, held_out_gain, maximum
 from rovval.fit.random_effects import tolerances
 from rovval.fit.record import Record, begun, record, residual, rms
@@ -30,7 +31,7 @@ from rovval.plant.slots import slots
 from rovval.simulation import carried_effects, simulate
 from rovval.simulation.fitted_commands import Excess, excesses, fitted, largest
 from rovval.simulation.fitted_errors import kept
-from rovval.simulation.fitted_tolerances import fitted_tolerances, with_tolerances
+from rovval.simulation.fitted_tolerances import fitted_discrepancy, fitted_tolerances, with_discrepancy, with_tolerances
 from rovval.simulation.step import steps_a_sample
 from rovval.vehicle.model import Vehicle
 
@@ -116,6 +117,7 @@ class Calibration:
             ],
             "commands": dict(fitted(self.vehicle)),
             "tolerances": {key: {"sd": sd, "unit": units[key]} for key, sd in fitted_tolerances(self.vehicle).items()},
+            "discrepancy": {kind: {"sd": sd, "unit": "N" if kind.startswith(AXES[:3]) else "N m"} for kind, sd in fitted_discrepancy(self.vehicle).items()},
             "extrapolated": [
                 {"run": run, "thruster": e.thruster, "way": e.way, "rpm": e.worst, "others": e.limit, "rows": e.count, "n": e.rows}
                 for run, e in self.extrapolated
@@ -161,8 +163,11 @@ def calibrate(runs: Sequence[Run], vehicle: Vehicle, *, model: str = "fossen", w
     say("simulating the logs with the calibrated vehicle", 0.8)
     by = others or (estimate,) * len(records)
     left = _left(records, vehicle, chosen, model, by)
-    known = tolerances([one.run for one in records], [applied(vehicle, chosen, e.values) for e in by], model, window_s)
-    calibrated = with_tolerances(_remembering(applied(vehicle, chosen, estimate.values), records, left), known)
+    own, apart = [one.run for one in records], [applied(vehicle, chosen, e.values) for e in by]
+    known = tolerances(own, apart, model, window_s)
+    unmodelled = discrepancy(own, [with_tolerances(v, known) for v in apart], model, window_s)
+    calibrated = _remembering(applied(vehicle, chosen, estimate.values), records, left)
+    calibrated = with_discrepancy(with_tolerances(calibrated, known), unmodelled)
     errors = _errors(records, vehicle, calibrated, chosen, model, others)
     accepted = tuple(name for name, by_run in gains.items() if min(by_run) > 0)
     rows = tuple(_row(vehicle, one, estimate, i) for i, one in enumerate(chosen))

@@ -1,4 +1,4 @@
-"""Random effects: how large what every vehicle has to some degree, and no file states, is in the logs of a calibration.
+"""Random effects: how large what every vehicle has to some degree, and no file states, is in the logs of a calibration; read `tolerances` first.
 
 An effect of which every vehicle has some (`effects.Effect.option`: loss of thrust under way, drag across axes, propeller torque) goes into a calibrated file
 only where it predicts every run better. What the runs ask of it all the same is the form error of the equations, and comes again in every log of the vehicle:
@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rovval import effects
 from rovval.core.data import Array, Flags, Run
@@ -45,7 +46,8 @@ def tolerances(runs: Sequence[Run], vehicles: Sequence[Vehicle], model: str, win
     if not asked:
         return {}
     first = asked[0]
-    sd = np.sqrt(_variances([(one.curvature, one.slope) for one in asked], first.prior**2))
+    each = np.arange(len(first.keys))
+    sd = np.sqrt(variances([(one.curvature, one.slope, each) for one in asked], first.prior**2, 1.0))
     return {key: float(x) for key, x, free in zip(first.keys, sd, first.free, strict=True) if free}
 
 
@@ -65,16 +67,16 @@ def _asked(run: Run, vehicle: Vehicle, model: str, window_s: float) -> _Asked | 
     return _Asked(tuple(slots[s].key for s in columns), np.isin(columns, every), prior, curvature, slope)
 
 
-def _variances(runs: Sequence[tuple[Array, Array]], prior: Array) -> Array:
-    """Variances (k,) of random effects of which each run has the curvature (k, k) and the slope (k,) of its log likelihood, by expectation and maximisation
-    (Laird and Ware 1982, 3.2), with one degree of freedom at ``prior`` (k,)."""
-    variance = prior
+def variances(runs: Sequence[tuple[Array, Array, NDArray[np.int64]]], start: Array, freedom: float) -> Array:
+    """Variances (g,) of groups of random effects, by expectation and maximisation (Laird and Ware 1982, 3.2) from ``start`` (g,), which has ``freedom`` degrees
+    of freedom. Each run has the curvature (k, k) and the slope (k,) of its log likelihood in its effects, and the group of each of these (k,)."""
+    variance, count = start, freedom + sum(np.bincount(group, minlength=len(start)) for *_, group in runs)
     for _ in range(ROUNDS):
-        squares = prior.copy()
-        for curvature, slope in runs:
-            covariance = np.linalg.inv(curvature + np.diag(1.0 / variance))
-            squares += (covariance @ slope) ** 2 + np.diag(covariance)
-        before, variance = variance, squares / (1.0 + len(runs))
+        squares = freedom * start
+        for curvature, slope, group in runs:
+            covariance = np.linalg.inv(curvature + np.diag(1.0 / variance[group]))
+            squares = squares + np.bincount(group, (covariance @ slope) ** 2 + np.diag(covariance), minlength=len(start))
+        before, variance = variance, squares / count
         if np.abs(variance / before - 1.0).max() < SETTLED:
             break
     return variance

@@ -45,6 +45,7 @@ def html(document: Mapping[str, Any]) -> str:
         options=document["options"],
         commands=commands(document["commands"]),
         tolerances=[(key, quantity(one["sd"], one["unit"])) for key, one in document["tolerances"].items()],
+        discrepancy=[(kind, quantity(one["sd"], one["unit"])) for kind, one in document["discrepancy"].items()],
         footer=foot(),
     )
 

@@ -1,7 +1,8 @@
-"""How large what every vehicle has to some degree, and no file states, was in the logs that a vehicle was calibrated on: loss of thrust under way, say.
+"""What a healthy vehicle may show, as large as it was in the logs that it was calibrated on.
 
-The numbers stand in the vehicle file's table `[calibration]`, one a parameter of such an effect (`effects.Effect.option`): standard deviations in the
-parameter's unit, by which a healthy vehicle may have it.
+The numbers stand in the vehicle file's table `[calibration]`, standard deviations all of them: of what every vehicle has to some degree and no file states,
+loss of thrust under way, say, one a parameter of such an effect (`effects.Effect.option`) in its unit; and of forces that no equation of the vehicle has,
+two an axis, N or N m (`fit.discrepancy`).
 """
 
 from __future__ import annotations
@@ -11,14 +12,39 @@ from collections.abc import Mapping
 from rovval.vehicle.model import Vehicle
 
 TOLERANCE = "tolerance."  # before the parameter's key
+DISCREPANCY = "discrepancy."  # before the kind of force
 
 
 def fitted_tolerances(vehicle: Vehicle) -> Mapping[str, float]:
     """Standard deviations by key of the parameter (``inflow_loss.loss``); empty where the vehicle's file does not say."""
-    return {key.removeprefix(TOLERANCE): value for key, value in vehicle.calibration.items() if key.startswith(TOLERANCE)}
+    return _known(vehicle, TOLERANCE)
 
 
 def with_tolerances(vehicle: Vehicle, found: Mapping[str, float]) -> Vehicle:
     """The vehicle with these in place of those that its file has, in four digits."""
-    others = {key: value for key, value in vehicle.calibration.items() if not key.startswith(TOLERANCE)}
-    return vehicle.model_copy(update={"calibration": others | {f"{TOLERANCE}{key}": float(f"{value:.4g}") for key, value in found.items()}})
+    return _with(vehicle, TOLERANCE, found)
+
+
+def fitted_discrepancy(vehicle: Vehicle) -> Mapping[str, float]:
+    """Standard deviations (N, N m) by `kind_of_force` of forces that go with the motion and that no equation has; empty where the vehicle's file does not
+    say."""
+    return _known(vehicle, DISCREPANCY)
+
+
+def kind_of_force(axis: str, damping: bool) -> str:
+    """What a force on an axis goes by: whether it is a ``damping``, which goes with the velocity on that axis alone."""
+    return f"{axis} damping" if damping else axis
+
+
+def with_discrepancy(vehicle: Vehicle, found: Mapping[str, float]) -> Vehicle:
+    """The vehicle with these in place of those that its file has, in four digits."""
+    return _with(vehicle, DISCREPANCY, found)
+
+
+def _known(vehicle: Vehicle, kind: str) -> Mapping[str, float]:
+    return {key.removeprefix(kind): value for key, value in vehicle.calibration.items() if key.startswith(kind)}
+
+
+def _with(vehicle: Vehicle, kind: str, found: Mapping[str, float]) -> Vehicle:
+    others = {key: value for key, value in vehicle.calibration.items() if not key.startswith(kind)}
+    return vehicle.model_copy(update={"calibration": others | {f"{kind}{key}": float(f"{value:.4g}") for key, value in found.items()}})

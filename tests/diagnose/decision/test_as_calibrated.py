@@ -70,11 +70,21 @@ def test_causes_of_a_vehicle_as_it_was_calibrated_are_not_believed(grown: float)
     prior = ModelPrior.of([Hypothesis(n, n, (), (), ()) for n in ("inflow_loss", "dvl_scale")])
     causes = (Hypothesis("inflow_loss", "inflow_loss", (), (), ()),)
     models = [Model((), None, 0.0, prior.log_mass(())), Model(causes, None, 80.0, prior.log_mass(causes))]
-    left = Left({LOSS: np.full(2, 0.5)}, {LOSS: (0.5, 1e-6)}, {LOSS: grown}, (grown,))
+    left = Left({LOSS: np.full(2, 0.5)}, {LOSS: (0.5, 1e-6)}, {LOSS: grown}, {"surge": grown})
     found = probabilities(models, {}, 60.0, {}, {}, left=left)
     assert found.healthy + found.causes + found.unexplained == pytest.approx(1.0)
     assert (found.likelier_than_not == "healthy") == (grown < 2.0)
     assert found.causes < 0.3 if grown < 2.0 else found.causes > 0.6
+
+
+def test_a_force_is_as_calibrated_where_it_acts():
+    """A gap that has grown on another axis says nothing of it; of what acts nowhere in particular any axis does."""
+    axes = {"surge": 20.0, "yaw": 1.0}
+    ahead, turning, anywhere = (Left({}, {}, {}, axes, forced).grown_since(frozenset()) for forced in (("surge",), ("yaw",), ()))
+    assert (ahead, turning, anywhere) == ((20.0,), (1.0,), (20.0, 1.0))
+    healthy = [Model((), None, 0.0, ModelPrior.of([Hypothesis("inflow_loss", "inflow_loss", (), (), ())]).log_mass(()))]
+    found = [probabilities(healthy, {}, 60.0, {}, {}, left=Left({}, {}, {}, axes, (axis,))).likelier_than_not for axis in axes]
+    assert found == [None, "healthy"]
 
 
 def test_causes_that_close_nothing_have_no_probability_and_none_below_it():
@@ -83,7 +93,7 @@ def test_causes_that_close_nothing_have_no_probability_and_none_below_it():
     causes = (Hypothesis("inflow_loss", "inflow_loss", (), (), ()),)
     models = [Model((), None, 0.0, prior.log_mass(())), Model(causes, None, 80.0, prior.log_mass(causes))]
     for grown in np.geomspace(0.3, 30.0, 40):
-        found = probabilities(models, {}, 60.0, {}, {}, left=Left({LOSS: np.ones(2)}, {LOSS: (1.0, 1e-6)}, {LOSS: float(grown)}, (float(grown),)))
+        found = probabilities(models, {}, 60.0, {}, {}, left=Left({LOSS: np.ones(2)}, {LOSS: (1.0, 1e-6)}, {LOSS: float(grown)}, {"surge": float(grown)}))
         assert found.causes == 0.0 and str(found.causes) == "0.0"
 
 

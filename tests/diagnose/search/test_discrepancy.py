@@ -22,7 +22,15 @@ def forces(at_work: dict[int, float]) -> GenericForces:
     X = rng.normal(size=(30, 12, 4 + len(AXES)))
     r = rng.normal(size=(30, 12)) + sum(size * X[..., 4 + i] for i, size in at_work.items())
     data = NormalEquations(np.einsum("wni,wnj->wij", X, X), np.einsum("wni,wn->wi", X, r), (r**2).sum(axis=1), tuple(range(X.shape[-1])))
-    return GenericForces(tuple((axis, str(i)) for i, axis in enumerate(AXES)), data, np.full(4, 2.0), rng.normal(size=4), 1.7)
+    none = np.zeros(len(AXES))
+    return GenericForces(tuple((axis, str(i)) for i, axis in enumerate(AXES)), data, np.full(4, 2.0), rng.normal(size=4), 1.7, none)
+
+
+def only(forces: GenericForces, *which: int) -> GenericForces:
+    """Some of the forces behind the same columns."""
+    keep = [0, 1, 2, 3, *(4 + i for i in which)]
+    data = NormalEquations(forces.data.A[:, keep][..., keep], forces.data.b[:, keep], forces.data.c, tuple(keep))
+    return replace(forces, names=tuple(forces.names[i] for i in which), expected=forces.expected[list(which)], data=data)
 
 
 def evidence(forces: GenericForces, size: float) -> float:
@@ -39,9 +47,7 @@ def test_those_at_work_are_found_and_pay_for_having_been_chosen():
     """Two of six, against the evidence of just those two worked out with the whole matrix, less the prior of each."""
     worth, names = forces({2: 0.8, 3: 0.9}).sparse()
     assert set(names) == {("surge", "2"), ("yaw", "3")}
-    both = forces({2: 0.8, 3: 0.9})
-    keep = [0, 1, 2, 3, 6, 7]
-    two = replace(both, names=both.names[2:4], data=NormalEquations(both.data.A[:, keep][..., keep], both.data.b[:, keep], both.data.c, tuple(keep)))
+    two = only(forces({2: 0.8, 3: 0.9}), 2, 3)
     assert worth == pytest.approx(max(evidence(two, size) for size in GENERIC_SIZES) - 2 * 2.0 * np.log(len(AXES) * 3), abs=0.5)
 
 
@@ -50,9 +56,31 @@ def test_each_by_itself_has_the_evidence_of_the_whole_matrix(size: float):
     both = forces({2: 0.8, 3: 0.9})
     found = both.alone(size)
     for i in range(len(AXES)):
-        keep = [0, 1, 2, 3, 4 + i]
-        one = replace(both, names=both.names[i : i + 1], data=NormalEquations(both.data.A[:, keep][..., keep], both.data.b[:, keep], both.data.c, tuple(keep)))
-        assert found[i] == pytest.approx(evidence(one, size), abs=1e-6)
+        assert found[i] == pytest.approx(evidence(only(both, i), size), abs=1e-6)
+
+
+def test_of_forces_that_are_expected_only_what_goes_beyond_them_has_evidence():
+    """Against the whole matrix with a second column for each force, of which the first has the expected size in both models."""
+    expected = np.array([0.0, 0.0, 0.3, 0.3, 0.3, 0.3])
+    both = replace(forces({2: 0.8, 3: 0.9}), expected=expected)
+    known = np.flatnonzero(expected)
+    columns = [0, 1, 2, 3, *(4 + known)]
+    for i in range(len(AXES)):
+        own = [*columns, 4 + i]
+        A, b = both.data.A[:, own][..., own], both.data.b[:, own]
+        whole = GenericForces(
+            both.names[i : i + 1], NormalEquations(A, b, both.data.c, tuple(range(len(own)))),
+            np.concatenate([both.precision, both.tempering / expected[known] ** 2]), np.concatenate([both.pull, np.zeros(len(known))]),
+            both.tempering, np.zeros(1),
+        )  # fmt: skip
+        assert both.alone(1.0)[i] == pytest.approx(evidence(whole, 1.0), abs=1e-6)
+
+
+def test_what_is_expected_is_worth_nothing_and_ten_times_as_much_is():
+    found, expected = forces({2: 0.8, 3: 0.9}), np.zeros(len(AXES))
+    assert replace(found, expected=expected + 0.9).sparse() == (-np.inf, ())
+    worth, names = replace(found, expected=expected + 0.05).sparse()
+    assert 6.0 < worth < found.sparse()[0] and set(names) == {("surge", "2"), ("yaw", "3")}
 
 
 def test_nothing_at_work_is_worth_nothing():
@@ -68,7 +96,7 @@ def test_a_force_that_a_coefficient_undoes_is_no_force_of_its_own(own: float, co
     X[..., 1] = own * X[..., 0] + np.sqrt(1.0 - own**2) * X[..., 1]
     r = rng.normal(size=(30, 12)) + 20.0 * (X[..., 1] - own * X[..., 0])
     data = NormalEquations(np.einsum("wni,wnj->wij", X, X), np.einsum("wni,wn->wi", X, r), (r**2).sum(axis=1), (0, 1))
-    beside = GenericForces((("surge", "u"),), data, np.full(1, 1e-3), np.zeros(1), 1.0)
+    beside = GenericForces((("surge", "u"),), data, np.full(1, 1e-3), np.zeros(1), 1.0, np.zeros(1))
     assert max(evidence(beside, size) for size in GENERIC_SIZES) > 100.0
     assert bool(beside.sparse()[1]) is counts
 
@@ -85,6 +113,6 @@ def test_forces_on_one_axis_are_those_of_that_axis_alone():
 def test_in_the_fine_metric_a_force_shows_on_the_axis_of_a_cause_and_none_beside_it():
     p, _ = posed(("cross_drag:yaw_to_sway=0.0,sway_to_yaw=0.3",))
     own = tuple(slot(p, key) for key in ("cross_drag.yaw_to_sway", "cross_drag.sway_to_yaw"))
-    alone, beside = (forces_beside(p, map_fit(p, p.origin, slots))[1] for slots in ((), own))
+    alone, beside = (forces_beside(p, map_fit(p, p.origin, slots)).fine for slots in ((), own))
     assert alone["yaw"] > 10.0 and beside["yaw"] < 0.05 * alone["yaw"]
-    assert forces_beside(replace(p, components=None), map_fit(p, p.origin, ()))[1] == {}, "where windows are too few to tell disturbances from anything"
+    assert forces_beside(replace(p, components=None), map_fit(p, p.origin, ())).fine == {}, "where windows are too few to tell disturbances from anything"

@@ -81,6 +81,7 @@ class Left:
         acting: of each set the share that it leaves where it acts, 1 where it closes nothing; and the share that a healthy vehicle is expected to show there.
         grown: of each set how many times the gap where it acts is what the calibration left there; empty without calibration.
         grown_by_axis: the same of each axis, whatever acts there.
+        forced: the axes on which the few generic forces act that explain most of what a healthy vehicle leaves.
         spread: by how much a vehicle that is as it was calibrated may show so (`gap.spread_as_calibrated`).
         unlogged: of each set that was asked the force that nobody logged where it acts (`unlogged_where_they_act`).
         adding: the sets that add to generic forces where they act (`adds_to_forces`), of those that were asked.
@@ -90,7 +91,8 @@ class Left:
     shares: Mapping[Names, Array]
     acting: Mapping[Names, tuple[float, float]]
     grown: Mapping[Names, float] = field(default_factory=dict)
-    grown_by_axis: tuple[float, ...] = ()
+    grown_by_axis: Mapping[str, float] = field(default_factory=dict)
+    forced: tuple[str, ...] = ()
     spread: float = CALIBRATED_SPREAD
     unlogged: Mapping[Names, ForceLeft] = field(default_factory=dict)
     adding: frozenset[Names] = frozenset()
@@ -107,10 +109,12 @@ class Left:
         return self.acting[best] if best else (1.0, TINY)
 
     def grown_since(self, names: Names) -> tuple[float, ...]:
-        """How many times the gap is what the calibration left where causes act, with the best of their parts (`grown`); of none on each axis; () where that is
-        not known."""
+        """How many times the gap is what the calibration left where causes act, with the best of their parts (`grown`); of none on each axis on which generic
+        forces act, on any where there are none; () where that is not known."""
         best = self._best_part(names)
-        return (self.grown[best],) if best in self.grown else () if names else self.grown_by_axis
+        if best in self.grown or names:
+            return (self.grown[best],) if best in self.grown else ()
+        return tuple(self.grown_by_axis[axis] for axis in self.forced if axis in self.grown_by_axis) or tuple(self.grown_by_axis.values())
 
     def _best_part(self, names: Names) -> Names:
         """The part of ``names`` that leaves least; none where none was fitted."""
@@ -130,14 +134,14 @@ def gap_left(problem: Problem, models: Iterable[Model]) -> Left:
     fits = [(m.names, m.fit) for m in models if m.fit]
     losses = [np.array([fit.dynamics_loss.sum(), fit.loss.sum()]) for _, fit in fits]
     shares, acting, gap = dict[Names, Array](), dict[Names, tuple[float, float]](), _Gap.of(problem)
-    grown, axes = dict[Names, float](), tuple(gap.errors[part] / size for part, size in gap.calibrated.items() if size > 0.0)
+    grown, axes = dict[Names, float](), {part: gap.errors[part] / size for part, size in gap.calibrated.items() if size > 0.0}
     for (names, fit), share in zip(fits, explainable_left(problem, losses), strict=True):
         if names not in shares or share.min() < shares[names].min():
             acting[names] = gap.left_where_it_acts(fit.parts)
             if gap.calibrated:
                 grown[names] = gap.grown(fit.parts)
         shares[names] = np.minimum(share, shares.get(names, np.inf))
-    return Left(shares, acting, grown, axes, spread_as_calibrated(problem.plant.vehicle), tolerated=tolerated_share(problem))
+    return Left(shares, acting, grown, axes, spread=spread_as_calibrated(problem.plant.vehicle), tolerated=tolerated_share(problem))
 
 
 @dataclass(frozen=True, slots=True)

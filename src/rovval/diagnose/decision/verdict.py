@@ -26,7 +26,7 @@ from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 from rovval.diagnose.inference.unlogged_forces import ForceLeft, unlogged_forces
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.residuals.sensor_faults import FittedFault
-from rovval.diagnose.search.discrepancy import forces_beside, generic_forces, nominal_forces
+from rovval.diagnose.search.discrepancy import Beside, forces_beside, generic_forces, nominal_forces
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.search.joint import refitted, some_of, with_relatives, without_each
 from rovval.diagnose.search.model import Model, Names, best_of_each_set, better_fits
@@ -144,22 +144,23 @@ class _Compared:
 def _compared(problem: Problem, selection: Selection, before: Mapping[Names, Weighed]) -> _Compared:
     """The sets that lead are weighed, and then each that would be named, beside others in the place of each of its causes, until the one that is named has
     been, and those of as many causes that fit better."""
-    forces, alone = forces_beside(problem, selection.healthy)
+    alone = forces_beside(problem, selection.healthy)
     file, met, nominal = file_evidence(problem, selection), list(selection.models), unlogged_forces(problem)
     gap = open_gap(problem, [selection.healthy, *(m.fit.posterior for m in met if m.fit)])
     weighed, weigh, exchanged = dict[Names, Weighed](), _leading(problem, selection), {selection.best.names}
     while True:
         weighed |= {m.names: _weighed(problem, m, m.fit, nominal, before) for m in weigh if m.fit}
-        adding = frozenset(names for names, one in weighed.items() if adds_to_forces(alone, one.fine))
-        left = replace(gap_left(problem, met), unlogged={names: one.unlogged for names, one in weighed.items() if one.unlogged}, adding=adding)
+        adding = frozenset(names for names, one in weighed.items() if adds_to_forces(alone.fine, one.fine))
+        unlogged = {names: one.unlogged for names, one in weighed.items() if one.unlogged}
+        left = replace(gap_left(problem, met), forced=alone.axes, unlogged=unlogged, adding=adding)
         beside, varying = {names: one.forces for names, one in weighed.items()}, {names: one.varying for names, one in weighed.items()}
-        belief = probabilities(met, file, forces, beside, varying, evidence_of_something_else(gap), left)
+        belief = probabilities(met, file, alone.evidence, beside, varying, evidence_of_something_else(gap), left)
         best, without = _needed(problem, selection, met, _fitted(problem, selection, met, belief.best))
         weigh = [best] if best.names not in weighed else []
         if best.names in exchanged:
             weigh = weigh or _rivals(problem, met, best, weighed)
         if best.fit is None or (best.names in exchanged and not weigh):
-            return _Compared(belief, best, without, weighed, forces, gap)
+            return _Compared(belief, best, without, weighed, alone.evidence, gap)
         met = [best, *(m for m in met if m.names != best.names)]
         if best.names not in exchanged:
             met += with_relatives(problem, selection.prior, selection.library, best, {m.names for m in met})
@@ -190,7 +191,7 @@ def _weighed(problem: Problem, model: Model, fit: HypothesisFit, nominal: Mappin
     if model.names in before and before[model.names].of == of:
         return before[model.names]
     there, fit = _where_at_work(problem, model, fit)
-    forces, fine = (generic_forces(there, fit.posterior).sparse()[0], {}) if model.part else forces_beside(there, fit.posterior)
+    forces, _, fine = Beside(generic_forces(there, fit.posterior).sparse()[0], (), {}) if model.part else forces_beside(there, fit.posterior)
     left, at_first = unlogged_forces(there, fit.posterior), unlogged_forces(there) if model.part else nominal
     wanders = any(h.effect.wanders for h in model.causes)
     unlogged = unlogged_where_they_act(there, left, at_first, wanders) if left and at_first else None

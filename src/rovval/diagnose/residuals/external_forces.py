@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rovval.core.channels import AXES
+from rovval.core.channels import AXES, VELOCITIES
 from rovval.core.data import Array
 from rovval.core.large_arrays import columns_first
 from rovval.diagnose.criteria import LEAST_AXIS_FORCE, SIGN_SMOOTHING
@@ -27,6 +27,12 @@ def generic_force_responses(runs: Sequence[Windows], beta: Array, features: Sequ
     names = tuple((axis, f) for axis in AXES for f in banks[0] if all(f in bank for bank in banks) and (not features or f in features))
     forces = [[(axis, bank[f] * wrench[AXES.index(axis)]) for axis, f in names] for bank in banks]
     return names, [force_sensitivities(windows, beta, own) for windows, own in zip(runs, forces, strict=True)]
+
+
+def damps(axis: str, feature: str) -> bool:
+    """Whether a generic force with this feature goes with the velocity on its own axis alone, as a damping does."""
+    own = VELOCITIES[AXES.index(axis)]
+    return feature in (own, f"{own}|{own}|", f"|{own}|", f"sign of {own}")
 
 
 def force_features(windows: Windows) -> dict[str, Array]:

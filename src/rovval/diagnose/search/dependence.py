@@ -46,7 +46,8 @@ def dependence(problem: Problem, point: Posterior, causes: Sequence[Hypothesis])
             answer[..., at : at + len(own)] = _responses(problem, point, windows, one, h, [along[name] for name in own])
             at += len(own)
         answers.append(answer)
-    found, k = beside(problem, names, answers, point.linear, point.precision, point.precision * point.departure), len(point.columns)
+    prior = point.precision, point.precision * point.departure
+    found, k = beside(problem, names, answers, point.linear, *prior, np.zeros(len(names))), len(point.columns)
     found.data.A[:, :k, :k] += point.total.A - point.dynamics.A
     found.data.b[:, :k] += point.total.b - point.dynamics.b
     return found

@@ -3,26 +3,30 @@ depth and thrusters.
 
 They are never the explanation. Set free beside what was found and beside coefficients within tolerance, their evidence says how much of the gap is
 systematic and still unexplained, so that an effect of the library that is only the least bad is not named; and on which axis and with what the
-unexplained force varies.
+unexplained force varies. A calibrated vehicle has such forces as large as the logs of its calibration had them (`fit.discrepancy`); of these there is no
+evidence, but of what goes beyond them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
+from rovval.core.channels import AXES
 from rovval.core.data import Array
 from rovval.core.large_arrays import side_by_side
 from rovval.diagnose.criteria import GENERIC_SIZES, MATERIAL, MOST_FORCES
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.cross_validation import Fold, held_out_losses
 from rovval.diagnose.problem.problem import Problem, in_fine_metric
-from rovval.diagnose.residuals.external_forces import generic_force_responses
+from rovval.diagnose.residuals.external_forces import damps, generic_force_responses, typical_wrench
 from rovval.diagnose.residuals.normal_equations import Linearisation, NormalEquations, concatenated, normal_equations
 from rovval.diagnose.residuals.nuisances import nuisance_sd
 from rovval.diagnose.residuals.ridge import Prior, eliminated
+from rovval.simulation.fitted_tolerances import fitted_discrepancy, kind_of_force
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +39,7 @@ class GenericForces:
         precision: (k,) of the priors of the fit's columns.
         pull: (k,) gradient that those priors add.
         tempering: what squared residuals are divided by (`problem.Problem.tempering`).
+        expected: (f,) standard deviations of the forces that a calibrated vehicle has anyway; 0 where nothing is known of them.
     """
 
     names: tuple[tuple[str, str], ...]
@@ -42,12 +47,11 @@ class GenericForces:
     precision: Array
     pull: Array
     tempering: float
+    expected: Array
 
     def alone(self, prior_size: float) -> Array:
         """Evidence (f,) of each force by itself, of that prior standard deviation."""
-        k = len(self.precision)
-        A, b = self._eliminated(self.precision)
-        return self._of_each(A[k:, k:], b[k:], self.tempering / prior_size**2)
+        return self._of_each(*self._beyond_expected(*self.beside_the_fit()), self.tempering / prior_size**2)
 
     def by_axis(self) -> dict[str, float]:
         """Evidence of the few forces on each axis that explain most (`sparse`); 0 of an axis on which none does."""
@@ -61,11 +65,11 @@ class GenericForces:
         One that the fit's columns can undo all but a little of (`MATERIAL`), as drag undoes a force that varies with speed, is none: the two
         against each other hold the simulation to the measured speed, whatever it is that is missing.
         """
-        k = len(self.precision)
-        A, b = self._eliminated(self.precision)
-        at_first = np.einsum("wii->i", self.data.A)
-        own = [k + i for i, (axis, _) in enumerate(self.names) if only in ("", axis) and A[k + i, k + i] > MATERIAL * at_first[k + i]]
-        A, b, names = A[np.ix_(own, own)], b[own], [self.names[i - k] for i in own]
+        A, b = self.beside_the_fit()
+        at_first = np.einsum("wii->i", self.data.A)[len(self.precision) :]
+        own = [i for i, (axis, _) in enumerate(self.names) if only in ("", axis) and A[i, i] > MATERIAL * at_first[i]]
+        A, b = self._beyond_expected(A, b)
+        A, b, names = A[np.ix_(own, own)], b[own], [self.names[i] for i in own]
         ridge, total, found = self.tempering / np.array(GENERIC_SIZES)[:, None] ** 2, 0.0, list[tuple[str, str]]()
         each = 2.0 * np.log(max(len(own) * len(ridge), 1))
         for _ in range(min(MOST_FORCES, len(own))):
@@ -86,10 +90,17 @@ class GenericForces:
         kept = [float(held_out_losses(self.data, folds, Prior(dict.fromkeys(columns, size)), self.tempering).sum()) for size in GENERIC_SIZES]
         return max(1.0 - min(kept) / whole, 0.0)
 
-    def _eliminated(self, precision: Array) -> tuple[Array, Array]:
-        """Curvature and slope of everything, the fit's columns with priors of ``precision`` eliminated."""
-        free = np.arange(len(precision))
-        return eliminated(self.data.A.sum(axis=0), self.data.b.sum(axis=0), free, np.diag(precision), self.pull)
+    def beside_the_fit(self) -> tuple[Array, Array]:
+        """Curvature (f, f) and slope (f,) of the forces, the fit's columns eliminated with their priors."""
+        k = len(self.precision)
+        A, b = eliminated(self.data.A.sum(axis=0), self.data.b.sum(axis=0), np.arange(k), np.diag(self.precision), self.pull)
+        return A[k:, k:], b[k:]
+
+    def _beyond_expected(self, A: Array, b: Array) -> tuple[Array, Array]:
+        """The same of further forces beside those that are expected, which are eliminated: what goes with the same motion adds to these."""
+        known = np.flatnonzero(self.expected)
+        toward = np.linalg.solve(A[np.ix_(known, known)] + np.diag(self.tempering / self.expected[known] ** 2), np.column_stack([A[known], b[known]]))
+        return A - A[:, known] @ toward[:, :-1], b - A[:, known] @ toward[:, -1]
 
     def _of_each(self, A: Array, b: Array, ridge: Array | float) -> Array:
         """Evidence of each force by itself; curvature and slope of the forces with all else eliminated."""
@@ -99,33 +110,49 @@ class GenericForces:
 def generic_forces(problem: Problem, point: Posterior) -> GenericForces:
     """Every feature on every axis, simulated about a fit, beside its columns."""
     names, answers = generic_force_responses(problem.runs, point.beta)
-    return beside(problem, names, answers, point.linear, point.precision, point.precision * point.departure)
+    return beside(problem, names, answers, point.linear, point.precision, point.precision * point.departure, expected_forces(problem, names))
 
 
-def forces_beside(problem: Problem, point: Posterior) -> tuple[float, dict[str, float]]:
-    """(Evidence of a few generic forces beside a fit (`GenericForces.sparse`), the same by axis in the fine metric, in which what is left of the gap is no form
-    error; empty where there is no such metric)."""
+class Beside(NamedTuple):
+    """Generic forces beside a fit: ``evidence`` of a few of them (`GenericForces.sparse`) and the ``axes`` on which these act; and evidence by axis of all that
+    there is in the ``fine`` metric, in which what is left of the gap is no form error, whatever is expected; empty where there is no such metric."""
+
+    evidence: float
+    axes: tuple[str, ...]
+    fine: Mapping[str, float]
+
+
+def forces_beside(problem: Problem, point: Posterior) -> Beside:
+    """Those beside the fit that ended at ``point``."""
     fine = in_fine_metric(problem, point.beta, point.linear)
     names, answers = generic_force_responses(problem.runs, point.beta)
-    prior = point.precision, point.precision * point.departure
-    evidence = beside(problem, names, answers, point.linear, *prior).sparse()[0]
-    return evidence, beside(fine[0], names, answers, fine[1], *prior).by_axis() if fine else {}
+    prior, expected = (point.precision, point.precision * point.departure), expected_forces(problem, names)
+    evidence, few = beside(problem, names, answers, point.linear, *prior, expected).sparse()
+    all_of_it = beside(fine[0], names, answers, fine[1], *prior, np.zeros(len(names))).by_axis() if fine else {}
+    return Beside(evidence, tuple(dict.fromkeys(axis for axis, _ in few)), all_of_it)
 
 
 def nominal_forces(problem: Problem) -> GenericForces:
     """The same about the nominal vehicle, with nothing beside them: what the gap itself looks like."""
     names, answers = generic_force_responses(problem.runs, problem.origin)
-    return beside(problem, names, answers, problem.nominal, np.zeros(0), np.zeros(0))
+    return beside(problem, names, answers, problem.nominal, np.zeros(0), np.zeros(0), expected_forces(problem, names))
+
+
+def expected_forces(problem: Problem, names: Sequence[tuple[str, str]]) -> Array:
+    """Standard deviations (f,) of generic forces that the problem's vehicle has by its calibration, in the rms of the thrusters' own force on each axis."""
+    known, wrench = fitted_discrepancy(problem.plant.vehicle), dict(zip(AXES, typical_wrench(problem.runs), strict=True))
+    return np.array([known.get(kind_of_force(axis, damps(axis, feature)), 0.0) / wrench[axis] for axis, feature in names])
 
 
 def beside(
-    problem: Problem, names: tuple[tuple[str, str], ...], answers: Sequence[Array], linear: Sequence[Linearisation], precision: Array, pull: Array
-) -> GenericForces:
+    problem: Problem, names: tuple[tuple[str, str], ...], answers: Sequence[Array], linear: Sequence[Linearisation], precision: Array, pull: Array,
+    expected: Array,
+) -> GenericForces:  # fmt: skip
     """Named responses ``answers`` (m, n, c, f) of each run's windows as further columns beside those of ``linear``, whose priors have ``precision`` and add the
-    gradient ``pull`` (k,)."""
+    gradient ``pull`` (k,), and beside forces of ``expected`` size (f,)."""
     ids = tuple(range(len(problem.origin), len(problem.origin) + len(names)))
     parts = []
     for part, one, answer in zip(problem.runs, linear, answers, strict=True):
         both = Linearisation(one.r, side_by_side(one.S, answer), one.J, (*one.columns, *ids), one.valid)
         parts.append(normal_equations(both, part.ok, problem.likelihood.variance, nuisance_sd(part)))
-    return GenericForces(names, concatenated(parts), precision, pull, problem.tempering)
+    return GenericForces(names, concatenated(parts), precision, pull, problem.tempering, expected)
