@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval.core.errors import BadInput
+from rovval.effects.lanes import reference_speed
 from rovval.vehicle.model import Vehicle
 
 Array = NDArray[np.float64]
@@ -49,7 +50,7 @@ class Inputs:
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """Arrays as the kernel reads them: no NaN; ``log`` (S, 4) altitude, wall distance, voltage over reference, tether length;
+    """Arrays as the kernel reads them: no NaN; ``log`` (S, 5) altitude, wall distance, voltage over reference, tether length, load of the supply;
     ``next_gap`` (S,) the first sample from each one on whose thruster speed is missing (S where there is none)."""
 
     speed: Array
@@ -74,14 +75,14 @@ def prepare(inputs: Inputs, vehicle: Vehicle) -> Prepared:
     next_gap = np.minimum.accumulate(places[::-1])[::-1].astype(np.int64)
     voltage = _held(inputs.voltage, samples, 1.0)
     reference = vehicle.pulse_table.voltage if vehicle.pulse_table and inputs.voltage is not None else float(voltage[0])
+    speed = np.stack([_held(column, samples, 0.0) for column in inputs.speed.T], axis=1)
     log = np.stack(
         [
             _or(inputs.altitude, samples, FAR), _or(inputs.wall_distance, samples, FAR), voltage / reference,
-            _or(inputs.tether_length, samples, 0.0),
+            _or(inputs.tether_length, samples, 0.0), np.mean(np.abs(speed / reference_speed(vehicle)) ** 3, axis=1),
         ],
         axis=1,
     )  # fmt: skip
-    speed = np.stack([_held(column, samples, 0.0) for column in inputs.speed.T], axis=1)
     t = np.asarray(np.arange(samples) * inputs.dt if inputs.t is None else inputs.t, dtype=np.float64)
     extra = np.zeros((1, 1, 6)) if inputs.extra is None else np.ascontiguousarray(inputs.extra, dtype=float)
     return Prepared(np.ascontiguousarray(speed), np.ascontiguousarray(log), t, extra, next_gap)

@@ -18,7 +18,7 @@ TARGETED = {"added_mass", "linear_drag", "quadratic_drag", "inertia_error", "thr
 TARGETED |= {"thruster_reversed", "thruster_misaligned", "thruster_interaction", "thruster_sticking"}  # by axis or thruster, as the library has them
 NAMED_SINCE = {  # what a plant holds for foreign and the library has learnt
     "sticky_thruster": "thruster_sticking", "water_leak": "buoyancy_drift", "manipulator": "moving_tool", "dry_friction": "dragged_load",
-    "sliding_battery": "shifting_ballast", "ventilation": "ventilation",
+    "sliding_battery": "shifting_ballast", "ventilation": "ventilation", "power_limit": "supply_droop",
 }  # fmt: skip
 EARLY_S = 10.0  # an onset within the first window is no onset to a diagnosis in windows of 10 s
 MAIN_AXIS = 0.5  # an axis belongs to an effect that pushes it at least half as hard as its hardest

@@ -73,6 +73,7 @@ def constants(spec: Spec) -> dict[str, float]:
     numbers |= {name.upper(): where.first[name] for name in GROUPS}
     numbers |= {
         "W": spec.lanes, "THRUSTERS": k, "BODY": where.body_rows, "STRIDE": where.stride, "INPUT_ROWS": where.rows, "LOG_ROWS": LOG_ROWS,
+        "TIME": LOG.index("t"), "WRENCH": len(LOG),
         "THRUST_ROWS": 3 * k + 6 if spec.flow else 6, "PAYLOAD_ROWS": MASS_ROWS,
         "SPEED_LIMIT_2": SPEED_LIMIT**2, "RATE_LIMIT_2": RATE_LIMIT**2, "ADVANCE_LIMIT": ADVANCE_LIMIT, "THIRD": 1.0 / 3.0,
     }  # fmt: skip

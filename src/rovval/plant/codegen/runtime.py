@@ -121,20 +121,20 @@ def _sqrt(x: Any) -> Any:
 def load_log(
     log: Any, t: Any, extra: Any, gain: Any, which: Any, start: Any, step: int, dt: float, la: Any, use_extra: bool, width: int, rows: int
 ) -> None:
-    """Logged quantities and the extra wrench at a step's ends, each lane at its own place in the log; the fifth row is time."""
-    last = t.shape[0] - 1
+    """Logged quantities and the extra wrench at a step's ends, each lane at its own place in the log; the row after the log's columns is time."""
+    last, columns = t.shape[0] - 1, log.shape[1]
     for end in range(2):
         for lane in range(width):
             j = min(start[lane] + step + end, last)
-            for c in range(4):
+            for c in range(columns):
                 la[(end * rows + c) * width + lane] = log[j, c]
-            la[(end * rows + 4) * width + lane] = t[start[lane]] + (step + end) * dt
+            la[(end * rows + columns) * width + lane] = t[start[lane]] + (step + end) * dt
             if use_extra:
                 for c in range(6):
                     value = 0.0
                     if which[lane] >= 0:
                         value = gain[lane] * extra[which[lane], j, c]
-                    la[(end * rows + 5 + c) * width + lane] = value
+                    la[(end * rows + columns + 1 + c) * width + lane] = value
 
 
 @compiled({**OPTIONS, "cache": False})

@@ -11,7 +11,7 @@ from rovval.plant.codegen.kernel.log import lag_memory, speeds_of_step
 from rovval.plant.codegen.kernel.step import halt, record, take_step
 
 from rovval.plant.codegen.kernel.symbols import (  # isort: skip
-    ALIVE, EULER, EXPLICIT, FLOW, FULL, INPUT_ROWS, JET, LAGGED, LOG_ROWS, MEMORY, NEXT, ROWS, STATE, THRUST_ROWS, THRUSTERS, Array, W,
+    ALIVE, EULER, EXPLICIT, FLOW, FULL, INPUT_ROWS, JET, LAGGED, LOG_ROWS, MEMORY, NEXT, ROWS, STATE, THRUST_ROWS, THRUSTERS, TIME, Array, W,
     compiled_function, spread,
 )  # fmt: skip
 from rovval.plant.codegen.kernel.thrust import thrust_of_stage
@@ -55,7 +55,7 @@ def run(
                     m, th, lg, la, geo, g, pairs, weights, again, begin, f0, f1, inv_dt, use_log, use_rest, use_wake, use_side, use_extra
                 )
                 if FULL and pending:
-                    take_payload(m, late, onset, b, begin * LOG_ROWS * W + 4 * W, lg)
+                    take_payload(m, late, onset, b, (begin * LOG_ROWS + TIME) * W, lg)
                 if LAGGED:
                     remember_lag(m)
                 if EXPLICIT:

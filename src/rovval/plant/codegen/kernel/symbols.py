@@ -24,6 +24,8 @@ STRIDE = 1  # rows of a thruster
 INPUT_ROWS = 1  # rows of a lane that `Plant` hands over; those that follow are the kernel's own
 ROWS = 1  # rows of a lane in all
 LOG_ROWS = 1  # logged quantities and extra wrench at one time
+TIME = 0  # row of the time among them
+WRENCH = 0  # first row of the extra wrench among them
 THRUST_ROWS = 1  # thrusts at rest and their wrench at one stage time
 PAYLOAD_ROWS = 1  # rows that a payload replaces, from MASS on
 

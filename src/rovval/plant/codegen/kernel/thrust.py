@@ -6,7 +6,8 @@ Thruster speeds are taken at the stage times: frozen over the step they make the
 from __future__ import annotations
 
 from rovval.plant.codegen.kernel.symbols import (  # isort: skip
-    ADVANCE, BODY, ENDS, FLOW, FULL, JET, LAG, LAGGED, LOG_ROWS, MEMORY, NEXT, STRIDE, THRUSTERS, Array, Lanes, W, in_turn, unrolled,
+    ADVANCE, BODY, ENDS, FLOW, FULL, JET, LAG, LAGGED, LOG_ROWS, MEMORY, NEXT, STRIDE, THRUSTERS, WRENCH, Array, Lanes, W, in_turn,
+    unrolled,
 )  # fmt: skip
 
 
@@ -32,7 +33,7 @@ def thrust_of_stage(
         side_force(m, tv, g)
     if FULL and use_extra:
         for c in range(6 * W):
-            tv[3 * THRUSTERS * W + c] += lv[5 * W + c]
+            tv[3 * THRUSTERS * W + c] += lv[WRENCH * W + c]
 
 
 def thrust_at_rest(
