@@ -6,7 +6,7 @@ import functools
 
 import numpy as np
 import pytest
-from diagnose_case import merlin, own
+from diagnose_case import merlin, own, without
 
 from rovval.core.channels import AXES
 from rovval.diagnose.inference.map_fit import healthy_fit
@@ -43,6 +43,13 @@ def test_a_foreign_force_shows_on_the_axes_where_it_acts():
     none, some = found(), found(FOREIGN)
     assert list(none) == [*AXES, *(f"{axis} damping" for axis in AXES)]
     assert some["yaw"] > 10.0 * none["yaw"] and some["heave"] < 2.0 * none["heave"]
+
+
+def test_of_a_vehicle_without_a_velocity_log_no_damping_is_known_along_its_axes():
+    runs = [without(own((), seed, 100.0), "u", "v", "w") for seed in (1, 2)]
+    some = discrepancy(runs, [merlin()] * 2, "fossen", 10.0)
+    assert "surge damping" not in some and "yaw damping" in some
+    assert all(np.isfinite(x) and x > 0.0 for x in some.values())
 
 
 def test_a_run_that_cannot_be_used_says_nothing():

@@ -32,15 +32,17 @@ FIRST = 0.03  # of the thrusters' rms: size of a force from which the search beg
 
 def discrepancy(runs: Sequence[Run], vehicles: Sequence[Vehicle], model: str, window_s: float) -> dict[str, float]:
     """Standard deviations (N, N m), by `simulation.fitted_tolerances.kind_of_force`, of coefficients of generic forces of unit rms in ``runs`` of one vehicle
-    about the vehicles that predict them, whose numbers have their tolerances. A run of which too little can be simulated says nothing; without any there are
-    none."""
+    about the vehicles that predict them, whose numbers have their tolerances; none of forces that no run can have, as a damping where the velocity was not
+    logged. A run of which too little can be simulated says nothing."""
     asked = [one for run, vehicle in zip(runs, vehicles, strict=True) if (one := _asked(run, with_discrepancy(vehicle, {}), model, window_s))]
     if not asked:
         return {}
     start = np.tile(np.mean([FIRST * wrench for *_, wrench in asked], axis=0) ** 2, 2)
-    sd = np.sqrt(variances([one[:3] for one in asked], start, 0.0))
+    known = np.unique(np.concatenate([kind for *_, kind, _ in asked]))
+    each = [(curvature, slope, np.searchsorted(known, kind)) for curvature, slope, kind, _ in asked]
+    sd = np.sqrt(variances(each, start[known], 0.0))
     kinds = [kind_of_force(axis, damping) for damping in (False, True) for axis in AXES]
-    return {kind: float(x) for kind, x in zip(kinds, sd, strict=True)}
+    return {kinds[i]: float(x) for i, x in zip(known, sd, strict=True)}
 
 
 def _asked(run: Run, vehicle: Vehicle, model: str, window_s: float) -> tuple[Array, Array, NDArray[np.int64], Array] | None:
