@@ -14,11 +14,12 @@ LANES: tuple[list[str], ...] = (
     [],
     ["thrust_lag:tau=0.3,dead=0.2", "current_constant:north=0.4"],
     ["waves:amplitude=0.5", "seabed:firmness=1,depth=11"],
+    ["supply_droop:droop=0.5"],
 )
 
 
 @pytest.mark.parametrize("name", ["merlin", pytest.param("minerva", marks=pytest.mark.slow)])
-@pytest.mark.parametrize("lanes", [(0,), (1, 0, 2)])
+@pytest.mark.parametrize("lanes", [(0,), (1, 0, 2, 3)])
 def test_steps_are_the_motion_of_the_whole_run(name, lanes):
     plant, rng, steps = Plant(vehicle.load(name), substeps=2), np.random.default_rng(5), 60
     speed = np.stack([cases.random_inputs(rng, plant).speed[:steps] for _ in lanes])

@@ -79,13 +79,18 @@ def prepare(inputs: Inputs, vehicle: Vehicle) -> Prepared:
     log = np.stack(
         [
             _or(inputs.altitude, samples, FAR), _or(inputs.wall_distance, samples, FAR), voltage / reference,
-            _or(inputs.tether_length, samples, 0.0), np.mean(np.abs(speed / reference_speed(vehicle)) ** 3, axis=1),
+            _or(inputs.tether_length, samples, 0.0), load(speed, vehicle),
         ],
         axis=1,
     )  # fmt: skip
     t = np.asarray(np.arange(samples) * inputs.dt if inputs.t is None else inputs.t, dtype=np.float64)
     extra = np.zeros((1, 1, 6)) if inputs.extra is None else np.ascontiguousarray(inputs.extra, dtype=float)
     return Prepared(np.ascontiguousarray(speed), np.ascontiguousarray(log), t, extra, next_gap)
+
+
+def load(speed: Array, vehicle: Vehicle) -> Array:
+    """Power (...,) that all thrusters draw at ``speed`` (..., k) rev/s, over what they draw where they hold the vehicle at 1 m/s ahead."""
+    return np.asarray(np.mean(np.abs(speed / reference_speed(vehicle)) ** 3, axis=-1))
 
 
 def _or(values: Array | None, samples: int, fill: float) -> Array:

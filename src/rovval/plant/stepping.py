@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval.plant import slots
-from rovval.plant.inputs import FAR, Prepared
+from rovval.plant.inputs import FAR, Prepared, load
 from rovval.plant.integration import Starts, blocked
 from rovval.plant.lowering import lower
 from rovval.plant.model import REASONS, Plant
@@ -32,7 +32,7 @@ class Stepper:
         self.nu, self.eta, self.stopped = nu.copy(), eta.copy(), np.full(size, -1)
         self.why = [""] * size
         self._lowered = lower(plant.nominal, plant.slots, plant.index, plant.null, beta)
-        self._integrator = plant.integrator
+        self._integrator, self._vehicle = plant.integrator, plant.vehicle
         self._dt, self._step = dt, 0
         lanes = self._lowered.lanes
         back = int(LAG_MEMORY * lanes.lag.max() / dt) + 1 + int(np.ceil(np.abs(lanes.shift).max() / dt)) if lanes.lag.any() or lanes.shift.any() else 0
@@ -46,7 +46,8 @@ class Stepper:
         self._speed = np.concatenate([self._speed[:, 1:], speed[:, None]], axis=1)
         size, rows, k = self._speed.shape
         first = np.arange(size) * rows + rows - 2
-        log = np.repeat([[FAR, FAR, 1.0, 0.0]], size * rows, axis=0)
+        log = np.repeat([[FAR, FAR, 1.0, 0.0, 0.0]], size * rows, axis=0)
+        log[:, 4] = load(self._speed, self._vehicle).reshape(-1)
         if altitude is not None:
             log[:, 0] = np.repeat(altitude, rows)
         t = np.tile((self._step - (rows - 2) + np.arange(rows)) * self._dt, size)
