@@ -1,6 +1,6 @@
 """Vehicles in another simulator, calibrated on three of its logs: what is then wrong with them is named, and nobody is blamed where nothing is.
 
-Vehicles of an earlier form of this plant, with other thrust, were looked at while the engine was made, and so were seeds 2 to 5 of this one; these were not.
+Vehicles of an earlier form of this plant, with other thrust, were looked at while the engine was made, and so were seeds 2 to 6 of this one; these were not.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def answers(seed: int, folder: Path) -> tuple[Answer, ...]:
     return ask(tuple(asked))
 
 
-@pytest.mark.parametrize("seed", [1, 6])  # a vehicle takes six minutes
+@pytest.mark.parametrize("seed", [1, 7])  # a vehicle takes six minutes
 def test_what_is_wrong_with_a_calibrated_vehicle_is_named(seed: int, tmp_path_factory: pytest.TempPathFactory):
     found = answers(seed, tmp_path_factory.mktemp(f"mujoco{seed}"))
     print("\n" + "\n".join(f"{one.question.piece}: {one}" for one in found) + "\n\n" + confidence(found))
