@@ -30,7 +30,7 @@ def test_at_that_load_so_much_is_lost_over_what_is_left():
 
 
 def test_a_thruster_loses_thrust_to_the_load_of_the_others():
-    """Two runs of a vehicle at rest: one thruster by itself, and the same with a pair that pushes against each other, whose own thrusts cancel."""
+    """Two runs of a vehicle at rest: a vertical thruster by itself, and beside a horizontal one that turns faster."""
     vehicle = merlin()
     plant, n, thrusters = Plant(vehicle, "fossen"), reference_speed(vehicle), vehicle.thrusters
     alone = np.zeros((20, len(thrusters)))

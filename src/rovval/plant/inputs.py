@@ -50,7 +50,7 @@ class Inputs:
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """Arrays as the kernel reads them: no NaN; ``log`` (S, 5) altitude, wall distance, voltage over reference, tether length, load of the supply;
+    """Arrays as the kernel reads them: no NaN; ``log`` (S, 5) as `codegen.spec.LOGGED`, the voltage over its reference;
     ``next_gap`` (S,) the first sample from each one on whose thruster speed is missing (S where there is none)."""
 
     speed: Array
@@ -79,7 +79,7 @@ def prepare(inputs: Inputs, vehicle: Vehicle) -> Prepared:
     log = np.stack(
         [
             _or(inputs.altitude, samples, FAR), _or(inputs.wall_distance, samples, FAR), voltage / reference,
-            _or(inputs.tether_length, samples, 0.0), load(speed, vehicle),
+            _or(inputs.tether_length, samples, 0.0), load(speed, reference_speed(vehicle)),
         ],
         axis=1,
     )  # fmt: skip
@@ -88,9 +88,9 @@ def prepare(inputs: Inputs, vehicle: Vehicle) -> Prepared:
     return Prepared(np.ascontiguousarray(speed), np.ascontiguousarray(log), t, extra, next_gap)
 
 
-def load(speed: Array, vehicle: Vehicle) -> Array:
-    """Power (...,) that all thrusters draw at ``speed`` (..., k) rev/s, over what they draw where they hold the vehicle at 1 m/s ahead."""
-    return np.asarray(np.mean(np.abs(speed / reference_speed(vehicle)) ** 3, axis=-1))
+def load(speed: Array, reference: float) -> Array:
+    """Power (...,) that all thrusters draw at ``speed`` (..., k) rev/s, over what they draw at the ``reference``, which holds the vehicle at 1 m/s ahead."""
+    return np.asarray(np.mean(np.abs(speed / reference) ** 3, axis=-1))
 
 
 def _or(values: Array | None, samples: int, fill: float) -> Array:

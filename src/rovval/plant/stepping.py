@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from rovval.effects.lanes import reference_speed
 from rovval.plant import slots
+from rovval.plant.codegen.spec import LOGGED
 from rovval.plant.inputs import FAR, Prepared, load
 from rovval.plant.integration import Starts, blocked
 from rovval.plant.lowering import lower
@@ -32,7 +34,7 @@ class Stepper:
         self.nu, self.eta, self.stopped = nu.copy(), eta.copy(), np.full(size, -1)
         self.why = [""] * size
         self._lowered = lower(plant.nominal, plant.slots, plant.index, plant.null, beta)
-        self._integrator, self._vehicle = plant.integrator, plant.vehicle
+        self._integrator, self._reference = plant.integrator, reference_speed(plant.vehicle)
         self._dt, self._step = dt, 0
         lanes = self._lowered.lanes
         back = int(LAG_MEMORY * lanes.lag.max() / dt) + 1 + int(np.ceil(np.abs(lanes.shift).max() / dt)) if lanes.lag.any() or lanes.shift.any() else 0
@@ -47,7 +49,7 @@ class Stepper:
         size, rows, k = self._speed.shape
         first = np.arange(size) * rows + rows - 2
         log = np.repeat([[FAR, FAR, 1.0, 0.0, 0.0]], size * rows, axis=0)
-        log[:, 4] = load(self._speed, self._vehicle).reshape(-1)
+        log[:, LOGGED.index("load")] = load(self._speed, self._reference).reshape(-1)
         if altitude is not None:
             log[:, 0] = np.repeat(altitude, rows)
         t = np.tile((self._step - (rows - 2) + np.arange(rows)) * self._dt, size)

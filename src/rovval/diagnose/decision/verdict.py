@@ -26,7 +26,7 @@ from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 from rovval.diagnose.inference.unlogged_forces import ForceLeft, unlogged_forces
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.residuals.sensor_faults import FittedFault
-from rovval.diagnose.search.discrepancy import Beside, forces_beside, generic_forces, nominal_forces
+from rovval.diagnose.search.discrepancy import forces_beside, generic_forces, nominal_forces
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.search.joint import refitted, some_of, with_relatives, without_each
 from rovval.diagnose.search.model import Model, Names, best_of_each_set, better_fits
@@ -191,7 +191,7 @@ def _weighed(problem: Problem, model: Model, fit: HypothesisFit, nominal: Mappin
     if model.names in before and before[model.names].of == of:
         return before[model.names]
     there, fit = _where_at_work(problem, model, fit)
-    forces, _, fine = Beside(generic_forces(there, fit.posterior).sparse()[0], (), {}) if model.part else forces_beside(there, fit.posterior)
+    forces, fine = (generic_forces(there, fit.posterior).sparse()[0], {}) if model.part else forces_beside(there, fit.posterior)[:2]
     left, at_first = unlogged_forces(there, fit.posterior), unlogged_forces(there) if model.part else nominal
     wanders = any(h.effect.wanders for h in model.causes)
     unlogged = unlogged_where_they_act(there, left, at_first, wanders) if left and at_first else None

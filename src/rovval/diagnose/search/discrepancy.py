@@ -114,12 +114,12 @@ def generic_forces(problem: Problem, point: Posterior) -> GenericForces:
 
 
 class Beside(NamedTuple):
-    """Generic forces beside a fit: ``evidence`` of a few of them (`GenericForces.sparse`) and the ``axes`` on which these act; and evidence by axis of all that
-    there is in the ``fine`` metric, in which what is left of the gap is no form error, whatever is expected; empty where there is no such metric."""
+    """Generic forces beside a fit: ``evidence`` of a few of them (`GenericForces.sparse`); evidence by axis of all that there is in the ``fine`` metric, in
+    which what is left of the gap is no form error, whatever is expected, empty where there is no such metric; and the ``axes`` on which the few act."""
 
     evidence: float
-    axes: tuple[str, ...]
     fine: Mapping[str, float]
+    axes: tuple[str, ...]
 
 
 def forces_beside(problem: Problem, point: Posterior) -> Beside:
@@ -129,7 +129,7 @@ def forces_beside(problem: Problem, point: Posterior) -> Beside:
     prior, expected = (point.precision, point.precision * point.departure), expected_forces(problem, names)
     evidence, few = beside(problem, names, answers, point.linear, *prior, expected).sparse()
     all_of_it = beside(fine[0], names, answers, fine[1], *prior, np.zeros(len(names))).by_axis() if fine else {}
-    return Beside(evidence, tuple(dict.fromkeys(axis for axis, _ in few)), all_of_it)
+    return Beside(evidence, all_of_it, tuple(dict.fromkeys(axis for axis, _ in few)))
 
 
 def nominal_forces(problem: Problem) -> GenericForces:

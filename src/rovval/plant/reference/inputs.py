@@ -7,7 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from rovval.plant.reference.state import LOG, Run, chain
+from rovval.plant.codegen.spec import LOGGED
+from rovval.plant.reference.state import Run, chain
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -36,7 +37,7 @@ def at_stages(run: Run, step: int, f0: float, f1: float, h: float) -> list[dict[
     begin, memory, stages = a + slope * (f0 * dt), run.memory, []
     for part in (0.0, 0.5, 1.0):
         f = f0 + (f1 - f0) * part
-        names = {c: run.prepared.log[now, i] + (run.prepared.log[after, i] - run.prepared.log[now, i]) * f for i, c in enumerate(LOG)}
+        names = {c: run.prepared.log[now, i] + (run.prepared.log[after, i] - run.prepared.log[now, i]) * f for i, c in enumerate(LOGGED)}
         names["t"] = run.prepared.t[run.start] + (step + f) * dt
         n = _lagged(run.lanes.lag, memory, begin, a + slope * (f * dt), slope, part * h)
         if part == 0.0:

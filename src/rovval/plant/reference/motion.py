@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from rovval.core.frames import rotation_from_quaternion
 from rovval.plant.codegen.layout import ADVANCE_LIMIT
+from rovval.plant.codegen.spec import LOGGED
 from rovval.plant.platforms import load
-from rovval.plant.reference.state import LOG, Run, chain, total
+from rovval.plant.reference.state import Run, chain, total
 
 Array = NDArray[np.float64]
 
@@ -112,7 +113,7 @@ def _names(x: Array, rotation: Array, over_ground: Array, stage: Mapping[str, Ar
     names = {n: x[:, i] for i, n in enumerate("xyz")} | {n: x[:, 7 + i] for i, n in enumerate("uvwpqr")}
     names |= {f"r{i + 1}{j + 1}": rotation[:, i, j] for i in range(3) for j in range(3)}
     names |= {n: over_ground[:, i] for i, n in enumerate(("vn", "ve", "vd"))}
-    return names | {n: stage[n] for n in (*LOG, "t")}
+    return names | {n: stage[n] for n in (*LOGGED, "t")}
 
 
 def _at(place: Array, force: Array) -> Array:

@@ -20,7 +20,6 @@ from rovval.plant.model import Plant
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-LOG = ("altitude", "wall_distance", "voltage", "tether_length", "load")
 
 
 @dataclass
