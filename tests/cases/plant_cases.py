@@ -58,7 +58,7 @@ def random_inputs(rng: np.random.Generator, plant: Plant, samples: int = 400, ho
     speed = np.repeat(rng.normal(size=(samples // 10 + 1, k)), 10, axis=0)[:samples] * full
     return Inputs(
         dt=0.1, speed=speed, hold=hold, altitude=rng.uniform(0.2, 3, samples), wall_distance=rng.uniform(0.2, 3, samples),
-        voltage=rng.uniform(14, 17, samples), tether_length=rng.uniform(0, 100, samples),
+        voltage=rng.uniform(14, 17, samples), tether_length=rng.uniform(0, 100, samples), turned=np.linspace(-7, 7, samples),
         extra=rng.normal(size=(3, samples, 6)) * plant.vehicle.weight * 0.01,
     )  # fmt: skip
 

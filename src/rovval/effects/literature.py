@@ -20,6 +20,8 @@ REFERENCES = MappingProxyType(
         "OCEANS 2016 MTS/IEEE Monterey. doi:10.1109/OCEANS.2016.7761326.",
         "Biran 2003": "Biran, A. (2003). Ship Hydrostatics and Stability. Butterworth-Heinemann.",
         "Blue Robotics T200": "Blue Robotics. T200 thruster: technical details and performance tables.",
+        "Buckham 2004": "Buckham, B., Driscoll, F. R. and Nahon, M. (2004). Development of a finite element cable model for use in low-tension dynamics "
+        "simulation. Journal of Applied Mechanics 71(4).",
         "Caccia 2000": "Caccia, M., Indiveri, G. and Veruggio, G. (2000). Modeling and identification of open-frame variable configuration unmanned underwater "
         "vehicles. IEEE Journal of Oceanic Engineering 25(2).",
         "Carlton 2018": "Carlton, J. (2018). Marine Propellers and Propulsion, 4th edition. Butterworth-Heinemann.",
@@ -43,11 +45,15 @@ REFERENCES = MappingProxyType(
         "International Conference on Intelligent Robots and Systems.",
         "Gebre-Egziabher 2006": "Gebre-Egziabher, D., Elkaim, G. H., Powell, J. D. and Parkinson, B. W. (2006). Calibration of strapdown magnetometers in "
         "magnetic field domain. Journal of Aerospace Engineering 19(2).",
+        "Gertler and Hagen 1967": "Gertler, M. and Hagen, G. R. (1967). Standard equations of motion for submarine simulation. Naval Ship Research and "
+        "Development Center, report 2510.",
         "Gill 1982": "Gill, A. E. (1982). Atmosphere-Ocean Dynamics. Academic Press.",
+        "Gracey 1980": "Gracey, W. (1980). Measurement of aircraft speed and altitude. NASA Reference Publication 1046.",
         "Groves 2013": "Groves, P. D. (2013). Principles of GNSS, Inertial, and Multisensor Integrated Navigation Systems, 2nd edition. Artech House.",
         "Healey 1995": "Healey, A. J., Rock, S. M., Cody, S., Miles, D. and Brown, J. P. (1995). Toward an improved understanding of thruster dynamics for "
         "underwater vehicles. IEEE Journal of Oceanic Engineering 20(4).",
         "Hoerner 1965": "Hoerner, S. F. (1965). Fluid-Dynamic Drag. Published by the author.",
+        "Hoerner and Borst 1975": "Hoerner, S. F. and Borst, H. V. (1975). Fluid-Dynamic Lift. Hoerner Fluid Dynamics.",
         "JMSE 2025": "Hydrodynamic calculation and analysis of a complex-shaped ROV moving near the wall based on CFDs (2025). Journal of Marine Science and "
         "Engineering 13(6), 1183. doi:10.3390/jmse13061183.",
         "Joyce 1989": "Joyce, T. M. (1989). On in situ calibration of shipboard ADCPs. Journal of Atmospheric and Oceanic Technology 6(1).",

@@ -22,7 +22,8 @@ class Inputs:
 
     ``speed`` (S, k) rev/s. ``hold`` True: a command, held until the next sample; False: a measured speed, linear between
     samples, taken at the Runge-Kutta stage times. ``altitude``, ``wall_distance``, ``tether_length`` (S,) m and ``voltage`` (S,) V or None;
-    NaN where the log has none. ``t`` (S,) s since the run's start. ``extra`` (E, S, 6) body wrenches, N and N m, linear between samples.
+    NaN where the log has none. ``turned`` (S,) rad of yaw since the run's start, whole turns counted, or None. ``t`` (S,) s since then. ``extra``
+    (E, S, 6) body wrenches, N and N m, linear between samples.
     """
 
     dt: float
@@ -32,6 +33,7 @@ class Inputs:
     wall_distance: Array | None = None
     voltage: Array | None = None
     tether_length: Array | None = None
+    turned: Array | None = None
     t: Array | None = None
     extra: Array | None = None
 
@@ -40,7 +42,7 @@ class Inputs:
         object.__setattr__(self, "speed", speed)
         if speed.ndim != 2 or not len(speed) or not self.dt > 0:
             raise BadInput(f"thruster speeds are {speed.shape} at {self.dt} s, not (samples, thrusters)")
-        for name in ("altitude", "wall_distance", "voltage", "tether_length", "t"):
+        for name in ("altitude", "wall_distance", "voltage", "tether_length", "turned", "t"):
             value = getattr(self, name)
             if value is not None and np.shape(value) != (len(speed),):
                 raise BadInput(f"{name} is {np.shape(value)} for {len(speed)} samples")
@@ -50,7 +52,7 @@ class Inputs:
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """Arrays as the kernel reads them: no NaN; ``log`` (S, 5) as `codegen.spec.LOGGED`, the voltage over its reference;
+    """Arrays as the kernel reads them: no NaN; ``log`` (S, c) as `codegen.spec.LOGGED`, the voltage over its reference;
     ``next_gap`` (S,) the first sample from each one on whose thruster speed is missing (S where there is none)."""
 
     speed: Array
@@ -68,7 +70,7 @@ class Prepared:
 
 def prepare(inputs: Inputs, vehicle: Vehicle) -> Prepared:
     """Fill what is missing so that no NaN reaches the kernel. A missing speed keeps its last value for the memory of lags, and
-    stops the lane that runs into it; a bottom, wall or tether that is not seen has no effect; voltage keeps its last value."""
+    stops the lane that runs into it; a bottom, wall or tether that is not seen has no effect; voltage and turns keep their last value."""
     samples = len(inputs.speed)
     missing = ~np.isfinite(inputs.speed).all(axis=1)
     places = np.where(missing, np.arange(samples), samples)
@@ -79,7 +81,7 @@ def prepare(inputs: Inputs, vehicle: Vehicle) -> Prepared:
     log = np.stack(
         [
             _or(inputs.altitude, samples, FAR), _or(inputs.wall_distance, samples, FAR), voltage / reference,
-            _or(inputs.tether_length, samples, 0.0), load(speed, reference_speed(vehicle)),
+            _or(inputs.tether_length, samples, 0.0), load(speed, reference_speed(vehicle)), _held(inputs.turned, samples, 0.0),
         ],
         axis=1,
     )  # fmt: skip

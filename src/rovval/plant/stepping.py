@@ -36,6 +36,7 @@ class Stepper:
         self._lowered = lower(plant.nominal, plant.slots, plant.index, plant.null, beta)
         self._integrator, self._reference = plant.integrator, reference_speed(plant.vehicle)
         self._dt, self._step = dt, 0
+        self._turned = np.zeros(size)
         lanes = self._lowered.lanes
         back = int(LAG_MEMORY * lanes.lag.max() / dt) + 1 + int(np.ceil(np.abs(lanes.shift).max() / dt)) if lanes.lag.any() or lanes.shift.any() else 0
         self._speed = np.zeros((size, back + 2, k))
@@ -48,8 +49,11 @@ class Stepper:
         self._speed = np.concatenate([self._speed[:, 1:], speed[:, None]], axis=1)
         size, rows, k = self._speed.shape
         first = np.arange(size) * rows + rows - 2
-        log = np.repeat([[FAR, FAR, 1.0, 0.0, 0.0]], size * rows, axis=0)
+        log = np.repeat([[FAR, FAR, 1.0, 0.0, 0.0, 0.0]], size * rows, axis=0)
         log[:, LOGGED.index("load")] = load(self._speed, self._reference).reshape(-1)
+        turned = np.tile(self._turned[:, None], rows)
+        turned[:, -1] += self._dt * self.nu[:, 5]
+        log[:, LOGGED.index("turned")] = turned.reshape(-1)
         if altitude is not None:
             log[:, 0] = np.repeat(altitude, rows)
         t = np.tile((self._step - (rows - 2) + np.arange(rows)) * self._dt, size)
@@ -61,6 +65,7 @@ class Stepper:
         for b in np.flatnonzero(here):
             self.why[b] = f"stopped at {self._step * self._dt:.1f} s: {REASONS[codes[b]]}"
         self.stopped = np.where(here, self._step, self.stopped)
+        self._turned = self._turned + np.mod(out[:, 1, 11] - self.eta[:, 5] + np.pi, 2.0 * np.pi) - np.pi
         self.nu, self.eta = out[:, 1, :6], out[:, 1, 6:]
 
     def _starts(self, sample: NDArray[np.int64]) -> Starts:

@@ -52,6 +52,7 @@ def recorded_actuation(run: Run, vehicle: Vehicle) -> Actuation:
                     wall_distance=_optional(run, "wall_distance"),
                     voltage=_optional(run, "voltage"),
                     tether_length=_optional(run, "tether_length"),
+                    turned=_turned(run),
                 ),
                 known=known,
                 source=SOURCES[family],
@@ -167,6 +168,12 @@ def _optional(run: Run, name: str) -> Array | None:
     last = np.maximum.accumulate(np.where(ok, np.arange(len(run)), -1))
     first = int(np.argmax(ok))
     return np.asarray(values[np.where(last < 0, first, last)])
+
+
+def _turned(run: Run) -> Array | None:
+    """Yaw (rad) since the run's start, whole turns counted, or None where no heading was logged."""
+    heading = _optional(run, "psi")
+    return None if heading is None else np.asarray(np.unwrap(heading) - heading[0])
 
 
 def _velocity_from_pose(run: Run, at: NDArray[np.int64]) -> Array:

@@ -13,12 +13,11 @@ from rovval.core.channels import VELOCITIES
 from rovval.core.data import Array, Run, SimResult
 from rovval.core.frames import rotation_from_euler
 from rovval.plant import Plant, parse_settings
+from rovval.plant.codegen.spec import LOGGED
 from rovval.plant.inputs import prepare
 from rovval.plant.lowering import Lowered, lower
 from rovval.simulation.actuation import recorded_actuation
 from rovval.vehicle.model import Vehicle
-
-LOG = ("altitude", "wall_distance", "voltage", "tether_length")  # the columns of `Prepared.log`
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +50,7 @@ def _state(run: Run, sim: SimResult, vehicle: Vehicle) -> dict[str, Array]:
     log = prepare(recorded_actuation(run, vehicle).inputs, vehicle).log
     names = {"t": run.t, **{n: nu[:, i] for i, n in enumerate(VELOCITIES)}, **{n: eta[:, i] for i, n in enumerate("xyz")}}
     names |= {f"r{i + 1}{j + 1}": rotation[:, i, j] for i in range(3) for j in range(3)}
-    return names | {n: ground[:, i] for i, n in enumerate(("vn", "ve", "vd"))} | {n: log[:, i] for i, n in enumerate(LOG)}
+    return names | {n: ground[:, i] for i, n in enumerate(("vn", "ve", "vd"))} | {n: log[:, i] for i, n in enumerate(LOGGED)}
 
 
 def _acting(lowered: Lowered, kind: str, names: Mapping[str, Array]) -> dict[str, Array]:

@@ -91,7 +91,7 @@ def test_a_false_alarm():
 
 
 def test_a_foreign_effect_is_never_named_right():
-    m = mark(label(planted("body_lift")), answer(cause("waves")))
+    m = mark(label(planted("memory_drag")), answer(cause("waves")))
     assert m["blamed"] and m["errors"] == 2 and m["top_1"] is None
 
 

@@ -36,8 +36,8 @@ CASES: list[tuple[dict[str, Any], dict[str, Any], dict[str, float], tuple[str, f
     (label(), believed(answer(), healthy=0.7), {}, ("healthy", 0.7), True),
     (label(), believed(answer(cause("waves", 0.8)), causes=0.8), {}, ("waves", 0.8), False),
     (label(), believed(answer(verdict="unknown"), healthy=0.1, something_else=0.2), {}, ("file", 0.7), False),
-    (label(planted("body_lift")), believed(answer(verdict="unknown"), something_else=0.6), {}, ("something_else", 0.6), True),
-    (label(planted("body_lift")), believed(answer(cause("waves", 0.5)), causes=0.5), {}, ("waves", 0.5), False),
+    (label(planted("memory_drag")), believed(answer(verdict="unknown"), something_else=0.6), {}, ("something_else", 0.6), True),
+    (label(planted("memory_drag")), believed(answer(cause("waves", 0.5)), causes=0.5), {}, ("waves", 0.5), False),
     (label(LIFT, left_out=True), believed(answer(verdict="unknown"), something_else=0.9), PLAIN, ("something_else", 0.9), True),
     (label(WAVES, SCALE), believed(answer(cause("waves", 0.9), cause("rpm_scale", 0.7)), causes=0.9), PLAIN, ("waves", 0.9), True),
     (label(WAVES, SCALE), believed(answer(cause("rpm_scale", 0.8)), causes=0.9), PLAIN, ("rpm_scale", 0.8), True),
@@ -88,7 +88,7 @@ def test_sets_are_pooled_by_plant_with_every_wrong_log(scored: dict[str, Any], t
     found = pool([tmp_path / name for name in ("one", "two", "three")])
     assert {plant: row["logs"] for plant, row in found["plants"].items()} == {"a": len(CASES), "b": 2 * len(CASES)}
     page = terminal.pooled(found)
-    assert "plant b" in page and page.count("body_lift x1 -> waves at 0.50") == 3
+    assert "plant b" in page and page.count("memory_drag x1 -> waves at 0.50") == 3
     assert "buoyancy_error x1 (not visible) -> healthy at 0.80" in page
     with pytest.raises(UsageProblem, match="four"):
         pool([tmp_path / "one", tmp_path / "four"])

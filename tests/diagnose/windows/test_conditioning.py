@@ -43,6 +43,12 @@ def test_a_rate_that_clips_is_masked_where_it_does_and_said():
     assert np.array_equal(mended.get("u"), run.get("u"))
 
 
+def test_a_rate_that_clips_both_ways_for_most_of_the_time_is_seen():
+    t = np.arange(3000) * 0.1
+    clipped = np.clip(0.3 * np.sin(0.3 * t) + 0.0013 * np.random.default_rng(0).normal(size=len(t)), -0.08, 0.064)
+    assert (saturated(clipped, 1e-3) == ((clipped == -0.08) | (clipped == 0.064))).all()
+
+
 @pytest.mark.parametrize(("every", "most"), [(2, 1.0), (5, 0.5), (8, 0.5)])
 def test_held_velocities_are_drawn_between_pings(every: int, most: float):
     """The error by holding falls to half; of pings only two samples apart, which are hardly held, it does not grow."""

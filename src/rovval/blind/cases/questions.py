@@ -56,7 +56,7 @@ SMALL: tuple[tuple[str, tuple[tuple[str, str | None, float], ...], bool], ...] =
     ("rich", (("gyro_bias", "yaw", 1.5),), False),
     ("rich", (("buoyancy_error", None, -1.5), ("thruster_degraded", "HFP", 1.2)), False),
     ("survey", (("quadratic_drag", "surge", 2.0), ("current_constant", None, 1.2)), False),
-    ("rich", (("body_lift", None, 2.0),), False),
+    ("rich", (("memory_drag", None, 2.0),), False),
     ("rich", (("hidden_trim", None, 2.0),), False),
     ("rich", (("thruster_degraded", "HFS", 1.5),), True),
     ("rich", (("reverse_asymmetry", None, 2.0),), True),

@@ -19,6 +19,8 @@ TARGETED |= {"thruster_reversed", "thruster_misaligned", "thruster_interaction",
 NAMED_SINCE = {  # what a plant holds for foreign and the library has learnt
     "sticky_thruster": "thruster_sticking", "water_leak": "buoyancy_drift", "manipulator": "moving_tool", "dry_friction": "dragged_load",
     "sliding_battery": "shifting_ballast", "ventilation": "ventilation", "power_limit": "supply_droop",
+    "one_sided_drag": "drag_asymmetry[surge]", "body_lift": "hull_lift", "twisted_tether": "tether_torsion",
+    "depth_port_error": "depth_error",
 }  # fmt: skip
 EARLY_S = 10.0  # an onset within the first window is no onset to a diagnosis in windows of 10 s
 MAIN_AXIS = 0.5  # an axis belongs to an effect that pushes it at least half as hard as its hardest

@@ -10,7 +10,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from rovval.alignment.noise import white_noise
 from rovval.core.data import Array, Flags, Reason, Resampled, Run
 from rovval.core.errors import Finding
 from rovval.diagnose.criteria import (
@@ -59,11 +58,14 @@ def condition(run: Run) -> tuple[Run, tuple[Finding, ...]]:
 
 
 def saturated(values: Array, least: float) -> Flags:
-    """Samples (n,) of a channel at the end of its sensor's range: the same extreme value many times, reached in a step that neither noise nor rounding
-    makes, larger than ``least``, below which no sensor is believed: a steady state is neared slowly."""
+    """Samples (n,) of a channel at the end of its sensor's range: the same extreme value many times, reached in a step that rounding does not make, larger
+    than ``least``, below which no sensor is believed: a steady state is neared slowly. Noise never repeats a value that rounding does not."""
     known = values[np.isfinite(values)]
     stop = np.zeros(len(values), dtype=bool)
-    noise = max(white_noise(known, np.ones(len(known), dtype=bool)), quantisation_step(known))
+    between = known[(known > known.min(initial=np.inf)) & (known < known.max(initial=-np.inf))]
+    if not len(between):
+        return stop
+    rounding = quantisation_step(between)
     for sign in (1.0, -1.0):
         levels, counts = np.unique(sign * known, return_counts=True)
         if len(levels) < 2 or counts[-1] < max(SATURATED_SAMPLES, SATURATED_PROMINENCE * counts[-4:-1].max()):
@@ -71,7 +73,7 @@ def saturated(values: Array, least: float) -> Flags:
         here: Flags = np.asarray(sign * values == levels[-1])
         first = np.flatnonzero(here[1:] & ~here[:-1])
         rise = sign * (values[first + 1] - values[first])
-        if len(first) and float(np.nanmedian(rise)) > max(SATURATED_RISE * noise, least):
+        if len(first) and float(np.nanmedian(rise)) > max(SATURATED_RISE * rounding, least):
             stop |= here
     return stop
 

@@ -15,7 +15,7 @@ W = 16  # lanes of a block: fewer than 16 trips and LLVM leaves the loop scalar;
 HOOKS = ("speed", "acting", "static", "thrust", "water", "wrench")
 PER_THRUSTER = ("speed", "acting", "static", "thrust")
 SWITCHED = ("acting", "static", "thrust", "water", "wrench")  # worked out only in blocks where some lane has the effect
-LOGGED = ("altitude", "wall_distance", "voltage", "tether_length", "load")  # columns of a prepared log
+LOGGED = ("altitude", "wall_distance", "voltage", "tether_length", "load", "turned")  # columns of a prepared log
 LOG = (*LOGGED, "t")  # rows of the log at one time, before the extra wrench
 
 # What an effect's function may ask for by the name of its argument, beside the effect's own rows: functions of the body's motion ...
