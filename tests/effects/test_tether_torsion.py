@@ -11,6 +11,7 @@ from diagnose_case import LIBRARY, merlin, own, with_values
 from rovval.blind.cases.csv_log import write_csv
 from rovval.blind.plant.spec import Planted
 from rovval.blind.second.flight import fly
+from rovval.core.errors import UsageProblem
 from rovval.diagnose import diagnose
 from rovval.plant import Inputs, Plant, parse_settings
 from rovval.plant.stepping import Stepper
@@ -31,8 +32,8 @@ def test_it_turns_the_vehicle_back_by_stiffness_times_turns():
     plant, n = Plant(merlin()), 20
     still, eta, nu = np.zeros((n, len(plant.vehicle.thrusters))), np.zeros((1, 6)), np.zeros((1, 6))
     moment = np.zeros((1, n, 6))
-    moment[..., 5] = 4.0 - 3.0 * 6.0
-    beta = parse_settings(plant, ["tether_torsion:stiffness=3,steady=4"])[None]
+    moment[..., 5] = -3.0 * 6.0
+    beta = parse_settings(plant, ["tether_torsion:stiffness=3"])[None]
     wound = plant.simulate(Inputs(0.1, still, False, turned=np.full(n, 6.0)), np.zeros(1, int), n - 1, nu, eta, beta)
     pushed = plant.simulate(Inputs(0.1, still, False, extra=moment), np.zeros(1, int), n - 1, nu, eta, plant.null[None], np.zeros(1, int))
     assert wound.nu == pytest.approx(pushed.nu, abs=1e-9) and wound.nu[0, -1, 5] < 0.0
@@ -65,6 +66,12 @@ def test_another_plant_s_twisted_tether_is_named_with_its_stiffness(tmp_path: Pa
     assert cause.parameters["stiffness"].value == pytest.approx(flight.truth["effects"][0]["values"]["stiffness"], rel=0.1)
 
 
-def test_it_is_told_with_the_twist_that_was_there_before():
-    [cause] = diagnose([own(("tether_torsion:stiffness=8,steady=20",), 3, 300.0)], merlin()).causes
-    assert cause.effect == "tether_torsion" and cause.parameters["steady"].low < 20.0 < cause.parameters["steady"].high
+def test_a_steady_moment_is_not_told_as_this():
+    """Thrusters that point a little askew, or a propeller's torque."""
+    causes = diagnose([own(("propeller_torque:common=0.05",), 3, 300.0)], merlin()).causes
+    assert "tether_torsion" not in {c.effect for c in causes}
+
+
+def test_without_a_heading_it_is_refused():
+    with pytest.raises(UsageProblem, match="needs psi"):
+        own(("tether_torsion:stiffness=8",), 3, 20.0)

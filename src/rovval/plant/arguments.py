@@ -15,6 +15,7 @@ from rovval.plant.inputs import Inputs
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 ABSENT = ("altitude", "wall_distance", "voltage", "tether_length")
+INPUTS = {c: c for c in ABSENT} | {"psi": "turned"}  # what inputs hold of a channel that a parameter acts by
 
 
 def checked(
@@ -38,7 +39,7 @@ def checked(
     slots.check_bounds(found, beta)
     moved = [found[int(c)] for c in np.flatnonzero((beta != null).any(axis=0))]
     missing = [f"{n} needs {c}" for n in sorted({s.effect for s in moved}) for c in effects.load(n).needs if c in ABSENT and _absent(inputs, c)]
-    missing += [f"{s.key} needs {s.parameter.needs}" for s in moved if s.parameter.needs in ABSENT and _absent(inputs, s.parameter.needs)]
+    missing += [f"{s.key} needs {s.parameter.needs}" for s in moved if s.parameter.needs in INPUTS and _absent(inputs, s.parameter.needs)]
     missing += _nothing_instead(found, null, beta, inputs)
     if missing:
         raise UsageProblem(all_at_once(missing, "channels that the log does not hold"))
@@ -75,5 +76,5 @@ def _nothing_instead(found: Sequence[slots.Slot], null: Array, beta: Array, inpu
 
 
 def _absent(inputs: Inputs, channel: str) -> bool:
-    values = getattr(inputs, channel)
+    values = getattr(inputs, INPUTS[channel])
     return values is None or not np.isfinite(values).any()

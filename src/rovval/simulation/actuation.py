@@ -171,9 +171,9 @@ def _optional(run: Run, name: str) -> Array | None:
 
 
 def _turned(run: Run) -> Array | None:
-    """Yaw (rad) since the run's start, whole turns counted, or None where no heading was logged."""
+    """Yaw (rad) since the run's start, whole turns counted, or None where no heading was logged but that of the start."""
     heading = _optional(run, "psi")
-    return None if heading is None else np.asarray(np.unwrap(heading) - heading[0])
+    return None if heading is None or run.ok("psi").sum() < 2 else np.asarray(np.unwrap(heading) - heading[0])
 
 
 def _velocity_from_pose(run: Run, at: NDArray[np.int64]) -> Array:
