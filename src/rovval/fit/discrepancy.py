@@ -16,14 +16,10 @@ from numpy.typing import NDArray
 
 from rovval.core.channels import AXES
 from rovval.core.data import Array, Run
-from rovval.core.errors import BadInput
 from rovval.diagnose.inference.map_fit import healthy_fit
-from rovval.diagnose.problem.problem import pose
 from rovval.diagnose.residuals.external_forces import damps, typical_wrench
-from rovval.diagnose.residuals.perturbations import Columns
 from rovval.diagnose.search.discrepancy import generic_forces
-from rovval.diagnose.windows.multiple_shooting import cut
-from rovval.fit.random_effects import SLOP, variances
+from rovval.fit.random_effects import posed, variances
 from rovval.simulation.fitted_tolerances import kind_of_force, with_discrepancy
 from rovval.vehicle.model import Vehicle
 
@@ -48,10 +44,8 @@ def discrepancy(runs: Sequence[Run], vehicles: Sequence[Vehicle], model: str, wi
 def _asked(run: Run, vehicle: Vehicle, model: str, window_s: float) -> tuple[Array, Array, NDArray[np.int64], Array] | None:
     """What a run asks about a vehicle: curvature (f, f) and slope (f,) of its log likelihood in generic forces, N or N m, with all else at its most probable
     beside them; the kind of each (f,); and the rms of the thrusters' force by axis (6,). None where too little can be simulated."""
-    try:
-        windows, _ = cut([run], vehicle, model, window_s)
-        problem = pose(windows, Columns(()), SLOP)
-    except BadInput:
+    problem = posed(run, vehicle, model, window_s)
+    if problem is None:
         return None
     forces, wrench = generic_forces(problem, healthy_fit(problem)), typical_wrench(problem.runs)
     axis = np.array([AXES.index(name) for name, _ in forces.names])

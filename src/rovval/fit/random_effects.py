@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 from rovval import effects
 from rovval.core.data import Array, Flags, Run
 from rovval.core.errors import BadInput
-from rovval.diagnose.problem.problem import pose
+from rovval.diagnose.problem.problem import Problem, pose
 from rovval.diagnose.residuals.perturbations import Columns
 from rovval.diagnose.windows.multiple_shooting import cut
+from rovval.plant.slots import Slot
 from rovval.simulation.fitted_tolerances import with_tolerances
 from rovval.vehicle.model import Vehicle
 
@@ -53,18 +54,29 @@ def tolerances(runs: Sequence[Run], vehicles: Sequence[Vehicle], model: str, win
 
 def _asked(run: Run, vehicle: Vehicle, model: str, window_s: float) -> _Asked | None:
     """What a run asks about a vehicle; None where too little can be simulated."""
-    try:
-        windows, _ = cut([run], vehicle, model, window_s)
-        slots = windows[0].plant.slots
-        every = [i for i, slot in enumerate(slots) if effects.load(slot.effect).option]
-        problem = pose(windows, Columns(tuple(every)), SLOP)
-    except BadInput:
+    problem = posed(run, vehicle, model, window_s)
+    if problem is None:
         return None
-    equations, tolerance = problem.likelihood.total, problem.tolerance.sd
-    columns = equations.columns
+    equations, tolerance, slots = problem.likelihood.total, problem.tolerance.sd, problem.plant.slots
+    columns, every = equations.columns, every_vehicle_has(slots)
     prior = np.array([tolerance.get(s, slots[s].parameter.typical) for s in columns])
     curvature, slope = equations.A.sum(axis=0) / problem.tempering, equations.b.sum(axis=0) / problem.tempering
     return _Asked(tuple(slots[s].key for s in columns), np.isin(columns, every), prior, curvature, slope)
+
+
+def posed(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Problem | None:
+    """The estimation problem of a run in the numbers of a vehicle that have a tolerance and in what every vehicle has; None where too little can be
+    simulated."""
+    try:
+        windows, _ = cut([run], vehicle, model, window_s)
+        return pose(windows, Columns(every_vehicle_has(windows[0].plant.slots)), SLOP)
+    except BadInput:
+        return None
+
+
+def every_vehicle_has(slots: Sequence[Slot]) -> tuple[int, ...]:
+    """Places of the parameters of effects of which every vehicle has some (`effects.Effect.option`)."""
+    return tuple(i for i, slot in enumerate(slots) if effects.load(slot.effect).option)
 
 
 def variances(runs: Sequence[tuple[Array, Array, NDArray[np.int64]]], start: Array, freedom: float) -> Array:
