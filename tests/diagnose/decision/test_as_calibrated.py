@@ -73,7 +73,7 @@ def test_causes_of_a_vehicle_as_it_was_calibrated_are_not_believed(grown: float)
     left = Left({LOSS: np.full(2, 0.5)}, {LOSS: (0.5, 1e-6)}, {LOSS: grown}, {"surge": grown})
     found = probabilities(models, {}, 60.0, {}, {}, left=left)
     assert found.healthy + found.causes + found.unexplained == pytest.approx(1.0)
-    assert (found.likelier_than_not == "healthy") == (grown < 2.0)
+    assert (found.said == "healthy") == (grown < 2.0)
     assert found.causes < 0.3 if grown < 2.0 else found.causes > 0.6
 
 
@@ -83,7 +83,7 @@ def test_a_force_is_as_calibrated_where_it_acts():
     ahead, turning, anywhere = (Left({}, {}, {}, axes, forced).grown_since(frozenset()) for forced in (("surge",), ("yaw",), ()))
     assert (ahead, turning, anywhere) == ((20.0,), (1.0,), (20.0, 1.0))
     healthy = [Model((), None, 0.0, ModelPrior.of([Hypothesis("inflow_loss", "inflow_loss", (), (), ())]).log_mass(()))]
-    found = [probabilities(healthy, {}, 60.0, {}, {}, left=Left({}, {}, {}, axes, (axis,))).likelier_than_not for axis in axes]
+    found = [probabilities(healthy, {}, 60.0, {}, {}, left=Left({}, {}, {}, axes, (axis,))).said for axis in axes]
     assert found == [None, "healthy"]
 
 

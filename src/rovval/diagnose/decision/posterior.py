@@ -16,7 +16,7 @@ left (`as_calibrated`). Which of several sets of as many causes it is, is less s
 
 The set that is named has as many causes as is most probable, and of such sets it is the one that the true one is expected to share the most causes with
 (centroid estimator: Carvalho and Lawrence 2008). The most probable single set may hold a cause that most of the others do without. A further cause is named
-where it, or one that the log does not tell from it, is more likely at work than not, causes being at work.
+where it, or one that the log does not tell from it, is as likely at work (`NAMED_FROM`), causes being at work.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ import numpy as np
 
 from rovval.diagnose.criteria import (
     BETWEEN_CAUSES,
-    EVEN_ODDS,
     GROUP_PROBABILITY,
+    NAMED_FROM,
     NOT_FOUND,
     PRIOR_CAUSES,
     PRIOR_FILE,
@@ -100,15 +100,15 @@ class Probabilities:
         return self.something_else + self.not_found
 
     @property
-    def likelier_than_not(self) -> Literal["causes", "healthy"] | None:
-        """What is said: causes, or a healthy vehicle; None where neither has even odds (`EVEN_ODDS`), though it may be the most probable of several."""
-        return "causes" if self.causes > EVEN_ODDS else "healthy" if self.healthy > EVEN_ODDS else None
+    def said(self) -> Literal["causes", "healthy"] | None:
+        """What is said: causes, or a healthy vehicle; None where neither is probable enough (`NAMED_FROM`), though it may be the most probable of several."""
+        return "causes" if self.causes > NAMED_FROM else "healthy" if self.healthy > NAMED_FROM else None
 
     @property
     def best(self) -> Names:
         """The set of causes that is named where causes are believed: as many as is most probable, and those of which the true set, if it has as many, is
-        expected to hold the most, of the sets that are not negligible beside the most probable one (`NEGLIGIBLE`), without those that are less likely at
-        work than not where causes are, whichever of its group it is; empty where there is none."""
+        expected to hold the most, of the sets that are not negligible beside the most probable one (`NEGLIGIBLE`), without those that are not likely
+        enough at work (`NAMED_FROM`) where causes are, whichever of its group it is; empty where there is none."""
         whole = self._whole()
         count = max((len(names) for names in whole), key=lambda n: sum(p for names, p in whole.items() if len(names) == n), default=0)
         alike = {names: p for names, p in whole.items() if len(names) == count}
@@ -118,7 +118,7 @@ class Probabilities:
         while len(named) > 1:
             likely_at_work = {name: self._at_work(name, named) for name in sorted(named)}
             least = min(likely_at_work, key=lambda name: likely_at_work[name])
-            if likely_at_work[least] > EVEN_ODDS * self.causes:
+            if likely_at_work[least] > NAMED_FROM * self.causes:
                 break
             named -= {least}
         return named

@@ -1,6 +1,6 @@
 """The verdict: explained, partly explained, unknown, or no gap. It is decided here and nowhere else.
 
-What is said is more likely than not: causes, or a healthy vehicle, that are only the most probable of several answers are not (unknown).
+What is said is as probable as `NAMED_FROM`: causes, or a healthy vehicle, that are only the most probable of several answers are not (unknown).
 """
 
 from __future__ import annotations
@@ -115,10 +115,10 @@ def decide(
         unlogged=beside_best.unlogged if beside_best else None, unexplained=None,
     )  # fmt: skip
     contradicted = any(h.effect.place != "sensor" for h in best.causes) and _contradicted(problem, residuals)
-    if best.fit and beside_best and belief.likelier_than_not == "causes" and not contradicted:
+    if best.fit and beside_best and belief.said == "causes" and not contradicted:
         return _named(problem, found, best, best.fit, compared.without)
     found = replace(found, indications=indications(selection.steps[0] if selection.steps else (), known, faults))
-    if belief.likelier_than_not == "healthy":
+    if belief.said == "healthy":
         return found
     inconstant = [h.name for h in best.causes] if belief.varying > 0.5 * belief.unexplained else []
     goes_with = beside_best.varying.goes_with if inconstant and beside_best else None

@@ -2,7 +2,7 @@
 
 Every model that is fitted is kept with its evidence and its prior mass; which of them is believed is decided elsewhere (`decision`). The search only has
 to meet the probable ones. It goes one cause beyond the best set, since of two causes that offset each other neither explains the logs alone, and one beyond a
-cause that is more likely the form error of the others than not. And it goes a second way, from the next best single cause, where that is not far behind.
+cause that may well be the form error of the others. And it goes a second way, from the next best single cause, where that is not far behind.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from math import log
 
 import numpy as np
 
-from rovval.diagnose.criteria import BETWEEN_CAUSES, EVEN_ODDS
+from rovval.diagnose.criteria import BETWEEN_CAUSES, NAMED_FROM
 from rovval.diagnose.effort import MOST_CAUSES, NEGLIGIBLE, SETS_WEIGHED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of
 from rovval.diagnose.inference.gap import tolerated_share
@@ -160,12 +160,13 @@ def _extended(over: _Space, front: Model, least: float) -> tuple[list[Candidate]
 
 
 def _looks_like_form_error(problem: Problem, before: Model, after: Model) -> bool:
-    """Whether the last cause of a model leaves so much of what the model ``before`` it leaves of held-out windows that it is rather the form error of that."""
+    """Whether the last cause of a model leaves so much of what the model ``before`` it leaves of held-out windows that it would not be named: it may well be
+    the form error of that."""
     left = [np.array([fit.dynamics_loss.sum(), fit.loss.sum()]) for fit in (before.fit, after.fit) if fit]
     if len(left) < 2:
         return False
     without, beside = explainable_left(problem, left)
-    return form_error(beside / without, tolerated_share(problem) / without) > EVEN_ODDS
+    return form_error(beside / without, tolerated_share(problem) / without) > 1.0 - NAMED_FROM
 
 
 def _model(prior: ModelPrior, front: Model, one: Candidate) -> Model:
