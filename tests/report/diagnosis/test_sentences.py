@@ -136,6 +136,8 @@ def test_what_is_steady_and_what_comes_and_goes_are_told_as_such() -> None:
     [
         ("something_else", "no effect of the library explains: something else is at work (probability 0.90), most in surge and yaw.", "worst stretches"),
         ("miscalibrated_file", "No single cause: many numbers of the vehicle's file seem to be off at once (probability 0.90).", "rovval fit"),
+        ("causes", "Undecided: an effect of the library is the likeliest answer (probability 0.90), which is less than the 0.6 from which", "further logs"),
+        ("healthy", "Undecided: a vehicle that is as its file has it, within tolerance, is the likeliest answer (probability 0.90)", "further logs"),
     ],
 )
 def test_an_unknown_gap_says_which_kind_of_answer_is_the_most_probable(likely: str, said: str, then: str) -> None:
@@ -143,6 +145,7 @@ def test_an_unknown_gap_says_which_kind_of_answer_is_the_most_probable(likely: s
     p = dict.fromkeys(SURE, 0.1 / 3) | {likely: 0.9}
     d = null(0.1, 0.1, verdict="unknown", left=left, probabilities=p)
     assert said in answer(d) and then in first_screen(d).next
+    assert verdict(d) == ("no cause named" if likely in ("causes", "healthy") else "unknown effect")
     assert "a force in surge and yaw that nothing in the library explains; it varies with u, and with a formula for it the error falls to 76 %" in sentence(d)
 
 

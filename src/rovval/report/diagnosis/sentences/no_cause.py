@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rovval import effects
+from rovval.diagnose.criteria import NAMED_FROM
 from rovval.diagnose.result.diagnosis import Diagnosis, Unexplained
 from rovval.report.common.numbers import listed, number, per_cent, probability
 from rovval.report.diagnosis.sentences.plain import falls, remaining, titled
@@ -10,12 +11,20 @@ from rovval.report.diagnosis.sentences.words import parameter, sensor_tolerance
 
 NOISE = "sensor noise"
 STEADY = "constant"  # of the generic forces, the one that depends on nothing
+SHORT = {  # what may be the most probable kind of answer and is not given, since it is not probable enough
+    "causes": "an effect of the library is the likeliest answer", "healthy": "a vehicle that is as its file has it, within tolerance, is the likeliest answer",
+}  # fmt: skip
 WORTH_A_FORMULA = 0.95  # of the rms error: a formula that leaves more of it helps nobody (chosen)
 
 
 def undecided(d: Diagnosis) -> bool:
     """Whether no gap is claimed and yet something was seen: an effect that takes away more than tolerances do, a sensor beyond its tolerance."""
     return d.verdict == "no_gap" and d.indications is not None and d.indications.beyond_tolerance
+
+
+def short(d: Diagnosis) -> bool:
+    """Whether the most probable answer is one that would be given, were it more probable."""
+    return d.verdict == "unknown" and _likeliest(d) in SHORT
 
 
 def nothing(d: Diagnosis) -> str:
@@ -28,18 +37,26 @@ def nothing(d: Diagnosis) -> str:
 def unknown(d: Diagnosis) -> str:
     """Why no cause is named though there is a gap: the kind of model that is the most probable, or a log that contradicts itself."""
     opposed = [row for row in d.log if row.finding == "contradicted"]
-    p = d.probabilities
-    kinds = {} if p is None else {"causes": p.causes, "healthy": p.healthy, "file": p.miscalibrated_file, "else": p.something_else}
-    likely = max(kinds, key=lambda kind: kinds[kind], default="")
-    sure = f" (probability {probability(kinds[likely])})" if likely else ""
+    p, likely = d.probabilities, _likeliest(d)
     if opposed and likely in ("causes", ""):
         return f"No cause is named, because the log contradicts itself: {opposed[0].channel} {opposed[0].detail}."
+    if p and likely in SHORT:
+        value = probability(p.causes if likely == "causes" else p.healthy)
+        return f"Undecided: {SHORT[likely]} (probability {value}), which is less than the {NAMED_FROM:g} from which an answer is given."
+    if p and likely == "file":
+        return f"No single cause: many numbers of the vehicle's file seem to be off at once (probability {probability(p.miscalibrated_file)})."
+    sure = f" (probability {probability(p.something_else)})" if p else ""
     if d.left and d.left.accounted is not None:
         return f"There is a gap that nothing here explains{sure}: {known(d)} account for only {per_cent(d.left.accounted)} of it, and no effect for the rest."
-    if likely == "file":
-        return f"No single cause: many numbers of the vehicle's file seem to be off at once{sure}."
     missed = f", or one in another form ({probability(p.not_found)})" if p and p.not_found else ""
     return f"There is a gap that no effect of the library explains: something else is at work{sure}{missed}{_acting(d)}."
+
+
+def _likeliest(d: Diagnosis) -> str:
+    """The most probable kind of answer; "" where no probabilities are known."""
+    p = d.probabilities
+    kinds = {"causes": p.causes, "healthy": p.healthy, "file": p.miscalibrated_file, "else": p.something_else + p.not_found} if p else {}
+    return max(kinds, key=lambda kind: kinds[kind], default="")
 
 
 def unexplained(d: Diagnosis) -> str:
@@ -83,8 +100,10 @@ def next_step(d: Diagnosis) -> str:
         return "Check the sensor, or fly longer: more data decides."
     if d.verdict == "no_gap":
         return ""
-    p = d.probabilities
-    if p and p.miscalibrated_file >= max(p.healthy, p.causes, p.something_else):
+    likely = _likeliest(d)
+    if short(d):
+        return "Give further logs of this vehicle along with this one: more data decides."
+    if likely == "file":
         return "Calibrate the vehicle's file with `rovval fit` and diagnose again."
     return "Look at the worst stretches below; log what nobody logged (tether, current), or fly the same again."
 

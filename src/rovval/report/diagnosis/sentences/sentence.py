@@ -22,7 +22,7 @@ VERDICTS = {
 
 def verdict(d: Diagnosis) -> str:
     """The verdict in a few words."""
-    return "no cause named" if no_cause.undecided(d) else VERDICTS[d.verdict]
+    return "no cause named" if no_cause.undecided(d) or no_cause.short(d) else VERDICTS[d.verdict]
 
 
 def sentence(d: Diagnosis) -> str:
