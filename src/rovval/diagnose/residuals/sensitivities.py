@@ -17,7 +17,7 @@ from rovval.diagnose.residuals.perturbations import DisplacedColumn, Perturbatio
 from rovval.diagnose.windows.attitude import tilted, tumbling
 from rovval.diagnose.windows.windows import Windows, channel_difference, predicted_channels
 
-AT_ONCE = 16_000  # lanes that are simulated before their differences are taken: some 0.15 GB
+AT_ONCE = 8_000  # lanes that are simulated before their differences are taken: some 0.1 GB
 LANES = 2_000  # lanes a call: 20 MB, which stay with the process; larger arrays go back to the system each time (measured: a tenth slower)
 
 
