@@ -45,7 +45,8 @@ pytestmark = pytest.mark.benchmark
 
 def inputs(plant: Plant, samples: int = 1000) -> Inputs:
     rng = np.random.default_rng(0)
-    return Inputs(0.1, np.repeat(rng.normal(size=(samples // 20, len(plant.vehicle.thruster))), 20, axis=0) * 1.2, False)
+    speed = np.repeat(rng.normal(size=(samples // 20, len(plant.vehicle.thruster))), 20, axis=0) * 1.2
+    return Inputs(0.1, speed, False, turned=np.linspace(0.0, 6.0, len(speed)))
 
 
 def best(call, repeats=7, clock=time.thread_time):
@@ -129,7 +130,7 @@ def flops_per_step() -> int:
 
 
 def held(slot: Slot) -> bool:
-    """Whether the log of `inputs`, which holds thruster speeds alone, has the channels that a parameter acts with."""
+    """Whether the log of `inputs`, which holds thruster speeds and the turns of the vehicle alone, has the channels that a parameter acts with."""
     return not {*effects.load(slot.effect).needs, slot.parameter.needs} & set(ABSENT)
 
 
