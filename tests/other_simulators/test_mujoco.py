@@ -54,7 +54,7 @@ def answers(seed: int, folder: Path) -> tuple[Answer, ...]:
     return ask(tuple(asked))
 
 
-@pytest.mark.parametrize("seed", [1, 7])  # a vehicle takes six minutes
+@pytest.mark.parametrize("seed", [1, 8])  # a vehicle takes six minutes
 def test_what_is_wrong_with_a_calibrated_vehicle_is_named(seed: int, tmp_path_factory: pytest.TempPathFactory):
     found = answers(seed, tmp_path_factory.mktemp(f"mujoco{seed}"))
     print("\n" + "\n".join(f"{one.question.piece}: {one}" for one in found) + "\n\n" + confidence(found))
