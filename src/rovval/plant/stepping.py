@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from rovval.core.frames import wrap
 from rovval.effects.lanes import reference_speed
 from rovval.plant import slots
 from rovval.plant.codegen.spec import LOGGED
@@ -65,7 +66,7 @@ class Stepper:
         for b in np.flatnonzero(here):
             self.why[b] = f"stopped at {self._step * self._dt:.1f} s: {REASONS[codes[b]]}"
         self.stopped = np.where(here, self._step, self.stopped)
-        self._turned = self._turned + np.mod(out[:, 1, 11] - self.eta[:, 5] + np.pi, 2.0 * np.pi) - np.pi
+        self._turned = self._turned + wrap(out[:, 1, 11] - self.eta[:, 5])
         self.nu, self.eta = out[:, 1, :6], out[:, 1, 6:]
 
     def _starts(self, sample: NDArray[np.int64]) -> Starts:

@@ -128,10 +128,10 @@ def _flown(problem: Problem, beta: Array, manoeuvre: Manoeuvre) -> Run | None:
     inputs = Inputs(dt=DT, speed=speed, hold=False, t=t, altitude=side.get("altitude"), wall_distance=side.get("wall_distance"),
                     voltage=side.get("voltage"), tether_length=side.get("tether_length"))  # fmt: skip
     eta0 = np.array([[0.0, 0.0, 10.0, 0.0, 0.0, 0.0]])
-    inputs = replace(inputs, turned=np.zeros(n))
-    for _ in range(2):  # how far it turns it knows once it is flown
-        motion = problem.plant.simulate(inputs, np.array([0]), n - 1, np.zeros((1, 6)), eta0, beta[None])
-        inputs = replace(inputs, turned=np.unwrap(motion.eta[0, :, 5]))
+    turned = np.zeros(n)
+    for _ in range(2):  # how far it turns is known once it was flown
+        motion = problem.plant.simulate(replace(inputs, turned=turned), np.array([0]), n - 1, np.zeros((1, 6)), eta0, beta[None])
+        turned = np.unwrap(motion.eta[0, :, 5])
     if motion.stopped[0] >= 0:
         return None
     values = dict(zip(VELOCITIES, motion.nu[0].T, strict=True)) | dict(zip(("x", "y", "z", "phi", "theta", "psi"), motion.eta[0].T, strict=True))
