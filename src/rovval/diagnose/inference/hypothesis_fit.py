@@ -24,6 +24,8 @@ from rovval.diagnose.residuals.normal_equations import Linearisation, Whitened
 from rovval.diagnose.residuals.ridge import losses
 from rovval.diagnose.residuals.sensitivities import linearise
 
+NORMAL_QUANTILE = float(stats.norm.ppf(0.5 + INTERVAL_PROBABILITY / 2))  # standard errors in half of an interval, where these are known
+
 
 @dataclass(frozen=True, slots=True)
 class HypothesisFit:
@@ -121,7 +123,8 @@ def standard_errors(problem: Problem, fitted: HypothesisFit, fixed: Sequence[int
     """Standard errors (k,) of the fitted slots under autocorrelated residuals and coefficients within tolerance, in the parameters' units.
 
     The sandwich covariance of the joint fit (White 1982), with scores summed over pairs of neighbouring windows, and the posterior covariance of the
-    other coefficients; never less than the covariance of the linearised fit times the design effect. Slots that are ``fixed`` have no error.
+    other coefficients. Of few windows it may be too small by chance: the interval that it gives (`confidence_interval`) is never shorter than the normal one of
+    the linearised fit's covariance times the design effect. Slots that are ``fixed`` have no error.
     """
     point, k = fitted.posterior, len(fitted.slots)
     free, bread = np.array([c not in fixed for c in point.columns]), np.zeros_like(point.curvature)
@@ -129,7 +132,8 @@ def standard_errors(problem: Problem, fitted: HypothesisFit, fixed: Sequence[int
     score = point.total.b - np.einsum("wij,j->wi", point.total.A, point.solve(point.curvature, point.descent))
     sandwich = sandwich_variance(bread[:k], score - score.mean(axis=0))  # the mean is not zero on a bound, which takes up the rest
     by_tolerance = problem.tempering * (bread[:k, k:] ** 2 @ point.precision[k:])
-    return np.asarray(np.sqrt(np.maximum(sandwich + by_tolerance, problem.design_effect * np.diag(bread)[:k])))
+    known = problem.design_effect * np.diag(bread)[:k] * (NORMAL_QUANTILE / _quantile(problem.window_count)) ** 2
+    return np.asarray(np.sqrt(np.maximum(sandwich + by_tolerance, known)))
 
 
 def sandwich_variance(bread: Array, score: Array) -> Array:
@@ -148,5 +152,9 @@ def only_places(problem: Problem, slot: int) -> bool:
 def confidence_interval(value: float, error: float, blocks: int) -> tuple[float, float]:
     """Two-sided interval of `INTERVAL_PROBABILITY` about ``value``, of standard error ``error``: Student's t with a degree of freedom
     for two of ``blocks`` windows."""
-    t = float(stats.t.ppf(0.5 + INTERVAL_PROBABILITY / 2, max(blocks // 2 - 1, 2)))
-    return value - t * error, value + t * error
+    return value - _quantile(blocks) * error, value + _quantile(blocks) * error
+
+
+def _quantile(blocks: int) -> float:
+    """Standard errors in half of an interval, where so many windows say how large they are."""
+    return float(stats.t.ppf(0.5 + INTERVAL_PROBABILITY / 2, max(blocks // 2 - 1, 2)))
