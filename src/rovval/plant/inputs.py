@@ -9,11 +9,13 @@ from numpy.typing import NDArray
 
 from rovval.core.errors import BadInput
 from rovval.effects.lanes import reference_speed
+from rovval.plant.codegen.spec import LOGGED
 from rovval.vehicle.model import Vehicle
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 FAR = 1e6  # m; a bottom or wall that the log does not see is taken to be this far, where no effect reaches
+UNSEEN = {"altitude": FAR, "wall_distance": FAR, "voltage": 1.0, "tether_length": 0.0, "load": 0.0, "turned": 0.0}  # of `LOGGED`: values without effect
 
 
 @dataclass(frozen=True)
@@ -75,16 +77,12 @@ def prepare(inputs: Inputs, vehicle: Vehicle) -> Prepared:
     missing = ~np.isfinite(inputs.speed).all(axis=1)
     places = np.where(missing, np.arange(samples), samples)
     next_gap = np.minimum.accumulate(places[::-1])[::-1].astype(np.int64)
-    voltage = _held(inputs.voltage, samples, 1.0)
+    voltage = _held(inputs.voltage, samples, UNSEEN["voltage"])
     reference = vehicle.pulse_table.voltage if vehicle.pulse_table and inputs.voltage is not None else float(voltage[0])
     speed = np.stack([_held(column, samples, 0.0) for column in inputs.speed.T], axis=1)
-    log = np.stack(
-        [
-            _or(inputs.altitude, samples, FAR), _or(inputs.wall_distance, samples, FAR), voltage / reference,
-            _or(inputs.tether_length, samples, 0.0), load(speed, reference_speed(vehicle)), _held(inputs.turned, samples, 0.0),
-        ],
-        axis=1,
-    )  # fmt: skip
+    logged = {name: _or(getattr(inputs, name), samples, UNSEEN[name]) for name in ("altitude", "wall_distance", "tether_length")}
+    logged |= {"voltage": voltage / reference, "load": load(speed, reference_speed(vehicle)), "turned": _held(inputs.turned, samples, UNSEEN["turned"])}
+    log = np.stack([logged[name] for name in LOGGED], axis=1)
     t = np.asarray(np.arange(samples) * inputs.dt if inputs.t is None else inputs.t, dtype=np.float64)
     extra = np.zeros((1, 1, 6)) if inputs.extra is None else np.ascontiguousarray(inputs.extra, dtype=float)
     return Prepared(np.ascontiguousarray(speed), np.ascontiguousarray(log), t, extra, next_gap)

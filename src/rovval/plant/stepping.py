@@ -9,7 +9,7 @@ from rovval.core.frames import wrap
 from rovval.effects.lanes import reference_speed
 from rovval.plant import slots
 from rovval.plant.codegen.spec import LOGGED
-from rovval.plant.inputs import FAR, Prepared, load
+from rovval.plant.inputs import UNSEEN, Prepared, load
 from rovval.plant.integration import Starts, blocked
 from rovval.plant.lowering import lower
 from rovval.plant.model import REASONS, Plant
@@ -50,13 +50,13 @@ class Stepper:
         self._speed = np.concatenate([self._speed[:, 1:], speed[:, None]], axis=1)
         size, rows, k = self._speed.shape
         first = np.arange(size) * rows + rows - 2
-        log = np.repeat([[FAR, FAR, 1.0, 0.0, 0.0, 0.0]], size * rows, axis=0)
+        log = np.repeat([[UNSEEN[name] for name in LOGGED]], size * rows, axis=0)
         log[:, LOGGED.index("load")] = load(self._speed, self._reference).reshape(-1)
         turned = np.tile(self._turned[:, None], rows)
         turned[:, -1] += self._dt * self.nu[:, 5]
         log[:, LOGGED.index("turned")] = turned.reshape(-1)
         if altitude is not None:
-            log[:, 0] = np.repeat(altitude, rows)
+            log[:, LOGGED.index("altitude")] = np.repeat(altitude, rows)
         t = np.tile((self._step - (rows - 2) + np.arange(rows)) * self._dt, size)
         prepared = Prepared(self._speed.reshape(size * rows, k), log, t, np.zeros((1, 1, 6)), np.full(size * rows, size * rows))
         starts = self._starts(first)

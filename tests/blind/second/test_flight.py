@@ -20,6 +20,7 @@ from rovval.plant import Plant
 
 MERLIN = vehicle_file("merlin")
 SECONDS = 20.0
+ALL_AT_ONCE = ("thruster_reversed", "velocity_filter_lag")  # a shaft turns the one way or the other; the highest corner of a filter is 4 Hz of the 5 there are
 FEW = ("quadratic_drag", "thrust_lag", "current_shear", "tether_snag", "compass_deviation", "kelp")  # one of each way into the plant
 
 
@@ -66,7 +67,7 @@ def check(name: str, healthy: Flight) -> None:
     assert all(np.array_equal(x, healthy.true[key][: len(x)]) for key, x in none.true.items() if key != "voltage")
     full, little = (fly(MERLIN, "joystick", [Planted(name, None, s)], 11, SECONDS) for s in (1.0, 0.02))
     assert difference(full, healthy) > 0.03
-    if name != "thruster_reversed":
+    if name not in ALL_AT_ONCE:
         assert difference(little, healthy) < 0.6 * difference(full, healthy)
     effect, kind = label(full), catalogue()[name]
     assert effect["values"] and effect["realised"]
