@@ -10,6 +10,7 @@ import pytest
 from rovval.core.data import Array
 from rovval.diagnose.residuals.normal_equations import (
     Linearisation,
+    gathered,
     normal_equations,
     nuisance_corrected,
     whiten,
@@ -59,6 +60,31 @@ def test_slopes_that_stand_still_give_the_same_products():
     moved = normal_equations(replace(whole, r=other_r), ok, variance, spread)
     np.testing.assert_allclose(got.normal_equations(other_r).b, moved.b, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(got.normal_equations(other_r).c, moved.c, rtol=1e-9, atol=1e-9)
+
+
+def test_sums_of_groups_further_columns_and_a_few_windows_at_a_time_are_the_same_products():
+    linear, ok, variance, spread = random_linear(6)
+    whole = normal_equations(linear, ok, variance, spread)
+    first, more = replace(linear, S=linear.S[..., :2], columns=linear.columns[:2]), replace(linear, S=linear.S[..., 2:], columns=linear.columns[2:])
+    held = np.array([np.arange(len(ok)) % 2 == 0, np.arange(len(ok)) % 2 == 1])
+    grouped = normal_equations(first, ok, variance, spread, more, held)
+    assert grouped.columns == whole.columns
+    again = gathered((whole.part(slice(w, w + 1)) for w in range(len(ok))), len(ok))
+    for name in ("A", "b", "c"):
+        one, sums, at_once = (getattr(data, name) for data in (whole, grouped, again))
+        np.testing.assert_allclose(sums, np.stack([one[which].sum(axis=0) for which in held]), rtol=1e-9, atol=1e-9)
+        np.testing.assert_array_equal(at_once, one)
+
+
+def test_a_step_leaves_what_the_sensitivities_leave():
+    near, ok, variance, spread = random_linear(7)
+    near = replace(near, r=np.where(ok, near.r, 0.0), valid=np.arange(len(ok)) != 2)
+    step = np.random.default_rng(8).normal(size=len(near.columns))
+    white, want = whiten(near, ok, variance, spread), near.r - np.where((ok & near.valid[:, None, None]), near.S @ step, 0.0)
+    np.testing.assert_allclose(white.after(step).r, want, rtol=1e-9, atol=1e-9)
+    moved, anew = normal_equations(near, ok, variance, spread).after(step), normal_equations(replace(near, r=near.r - near.S @ step), ok, variance, spread)
+    np.testing.assert_allclose(moved.b, anew.b, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(moved.c, anew.c, rtol=1e-9, atol=1e-9)
 
 
 def test_start_states_are_taken_out_as_ridge_regression_does():

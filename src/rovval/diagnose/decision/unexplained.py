@@ -81,7 +81,7 @@ def unexplained(
     departures = zip(point.columns[point.effect_count :], point.standardised_departures(), strict=True)
     beyond = [(problem.plant.slots[c].key, float(z)) for c, z in departures if abs(z) > OUT_OF_TOLERANCE]
     departed = max(beyond, key=lambda one: abs(one[1]), default=None)
-    return Unexplained(axes, depends, forces.held_out_gain(problem.folds), departed, tuple(inconstant), goes_with, oscillation(problem, point))
+    return Unexplained(axes, depends, forces.held_out_gain(), departed, tuple(inconstant), goes_with, oscillation(problem, point))
 
 
 def unexplained_by_any(problem: Problem, accounted: float, residuals: list[Array], point: Posterior) -> Unexplained:

@@ -26,7 +26,7 @@ from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 from rovval.diagnose.inference.unlogged_forces import ForceLeft, unlogged_forces
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.residuals.sensor_faults import FittedFault
-from rovval.diagnose.search.discrepancy import forces_beside, generic_forces, nominal_forces
+from rovval.diagnose.search.discrepancy import Beside, forces_beside, nominal_forces
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.search.joint import refitted, some_of, with_relatives, without_each
 from rovval.diagnose.search.model import Model, Names, best_of_each_set, better_fits
@@ -41,14 +41,13 @@ class Weighed:
 
     Attributes:
         of: evidence of the model, and the time from which its causes are at work, where not all through: by these it is known again.
-        forces: evidence of generic forces beside it; ``fine`` the same by axis in the fine metric, of a model of the whole log.
+        beside: generic forces beside it; in the fine metric, too, of a model of the whole log.
         varying: by how much the sizes of its causes vary.
         unlogged: the force that nobody logged where its causes act; None where that is not known.
     """
 
     of: tuple[float, float | None]
-    forces: float
-    fine: Mapping[str, float]
+    beside: Beside
     varying: Variation
     unlogged: ForceLeft | None
 
@@ -150,10 +149,10 @@ def _compared(problem: Problem, selection: Selection, before: Mapping[Names, Wei
     weighed, weigh, exchanged = dict[Names, Weighed](), _leading(problem, selection), {selection.best.names}
     while True:
         weighed |= {m.names: _weighed(problem, m, m.fit, nominal, before) for m in weigh if m.fit}
-        adding = frozenset(names for names, one in weighed.items() if adds_to_forces(alone.fine, one.fine))
+        adding = frozenset(names for names, one in weighed.items() if adds_to_forces(alone.fine, one.beside.fine))
         unlogged = {names: one.unlogged for names, one in weighed.items() if one.unlogged}
         left = replace(gap_left(problem, met), forced=alone.axes, unlogged=unlogged, adding=adding)
-        beside, varying = {names: one.forces for names, one in weighed.items()}, {names: one.varying for names, one in weighed.items()}
+        beside, varying = {names: one.beside.evidence for names, one in weighed.items()}, {names: one.varying for names, one in weighed.items()}
         belief = probabilities(met, file, alone.evidence, beside, varying, evidence_of_something_else(gap), left)
         best, without = _needed(problem, selection, met, _fitted(problem, selection, met, belief.best))
         weigh = [best] if best.names not in weighed else []
@@ -191,11 +190,11 @@ def _weighed(problem: Problem, model: Model, fit: HypothesisFit, nominal: Mappin
     if model.names in before and before[model.names].of == of:
         return before[model.names]
     there, fit = _where_at_work(problem, model, fit)
-    forces, fine = (generic_forces(there, fit.posterior).sparse()[0], {}) if model.part else forces_beside(there, fit.posterior)[:2]
+    beside = forces_beside(there, fit.posterior, fine=not model.part)
     left, at_first = unlogged_forces(there, fit.posterior), unlogged_forces(there) if model.part else nominal
     wanders = any(h.effect.wanders for h in model.causes)
     unlogged = unlogged_where_they_act(there, left, at_first, wanders) if left and at_first else None
-    return Weighed(of, forces, fine, variation(there, fit.posterior, model.causes), unlogged)
+    return Weighed(of, beside, variation(there, fit.posterior, model.causes), unlogged)
 
 
 def _fitted(problem: Problem, selection: Selection, met: Sequence[Model], names: Names) -> Model:
@@ -233,13 +232,13 @@ def _needed(problem: Problem, selection: Selection, met: Sequence[Model], best: 
 def _named(problem: Problem, found: Decision, best: Model, fit: HypothesisFit, without: Mapping[str, Model]) -> Decision:
     """The causes of the best set, which was weighed, are named; they explain a part where generic forces beside them, or sizes that vary along the log, are
     likelier than not, or where they leave more of the gap than noise and tolerances make."""
-    belief, beside, left = found.probabilities, found.weighed[best.names], left_open(problem, fit)
+    belief, weighed, left = found.probabilities, found.weighed[best.names], left_open(problem, fit)
     problem, fit = _where_at_work(problem, best, fit)
     probability = {h.name: belief.of(h.name) for h in best.causes}
     added = {name: best.evidence - m.evidence for name, m in without.items()}
     rest = None
-    if something_beside(beside.forces, beside.varying):
-        rest = unexplained(problem, generic_forces(problem, fit.posterior), fit.posterior, goes_with=beside.varying.goes_with)
+    if something_beside(weighed.beside.evidence, weighed.varying):
+        rest = unexplained(problem, weighed.beside.forces, fit.posterior, goes_with=weighed.varying.goes_with)
     elif left > 1.0:
         rest = unexplained_by_any(problem, 1.0 / left, corrected_residuals(problem, fit.beta), fit.posterior)
     return replace(
@@ -250,7 +249,7 @@ def _named(problem: Problem, found: Decision, best: Model, fit: HypothesisFit, w
         groups={h.name: belief.group(h.name) for h in best.causes},
         probability=probability,
         added=added,
-        generic_beside=max(beside.forces, 0.0),
+        generic_beside=max(weighed.beside.evidence, 0.0),
         departure=fit.posterior.largest_departure(),
         open_gap=left,
         unexplained=rest,

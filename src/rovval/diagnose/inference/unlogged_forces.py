@@ -46,11 +46,8 @@ def unlogged_forces(problem: Problem, point: Posterior | None = None) -> dict[st
         return {}
     wrench, some = typical_wrench(problem.runs), evenly_spread(problem.runs)
     runs, beta = [windows.some(some) for windows in problem.runs], problem.origin if point is None else point.beta
-    step = np.zeros(0) if point is None else point.solve(point.curvature, point.descent)
-    left = [
-        Linearisation(one.r[some] - one.S[some] @ step, one.S[some, ..., :0], one.J[some], (), one.valid[some])
-        for one in (problem.nominal if point is None else point.linear)
-    ]
+    whole = problem.nominal if point is None else [one.after(point.solve(point.curvature, point.descent)) for one in point.whitened]
+    left = [Linearisation(one.r[some], one.S[some], one.J[some], (), one.valid[some]) for one in whole]
     noise = np.sqrt(problem.likelihood.variance.mean(axis=0))
     size = variance_components(runs, left, segment_responses(runs, beta, wrench), noise).share * wrench / thrusters_force(wrench, problem.plant.vehicle)
     return {axis: float(value) for axis, value in zip(AXES, size, strict=True) if axis in axis_channels(runs[0])}

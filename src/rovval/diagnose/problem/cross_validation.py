@@ -7,7 +7,7 @@ autocorrelated residuals say less than independent ones.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -56,12 +56,18 @@ class FoldSums:
     @classmethod
     def of(cls, data: NormalEquations, folds: Sequence[Fold]) -> FoldSums:
         """Sum the normal equations over each fold's held-out windows."""
-        return cls(
-            data,
-            np.stack([sum((data.A[w] for w in np.flatnonzero(f.test)), np.zeros(data.A.shape[1:])) for f in folds]),
-            np.stack([data.b[f.test].sum(axis=0) for f in folds]),
-            np.array([data.c[f.test].sum() for f in folds]),
-        )
+        held = by_fold(data, folds)
+        return cls(data, held.A, held.b, held.c)
+
+
+def by_fold(data: NormalEquations, folds: Sequence[Fold]) -> NormalEquations:
+    """Normal equations of the windows that each of f folds holds out, as of one window (f, ...)."""
+    return replace(
+        data,
+        A=np.stack([sum((data.A[w] for w in np.flatnonzero(f.test)), np.zeros(data.A.shape[1:])) for f in folds]),
+        b=np.stack([data.b[f.test].sum(axis=0) for f in folds]),
+        c=np.array([data.c[f.test].sum() for f in folds]),
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ what the whole library leaves, with nothing for equations that are only nearly r
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -28,6 +28,8 @@ from rovval.diagnose.residuals.normal_equations import (
     NormalEquations,
     Whitened,
     concatenated,
+    gathered,
+    normal_equations,
     nuisance_corrected,
     whiten,
 )
@@ -40,6 +42,8 @@ from rovval.diagnose.windows.closed_loop import loop_gains, variance_factors
 from rovval.diagnose.windows.windows import Windows
 from rovval.plant import Plant, parse_settings
 from rovval.simulation import carried_effects
+
+WINDOWS_AT_ONCE = 8  # windows: some thousand lanes each, as many as are simulated at once
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,10 +158,18 @@ def _without_stopped(windows: Windows, valid: np.ndarray) -> Windows:
 
 
 def equations_at(problem: Problem, beta: Array, columns: tuple[int, ...], displaced: Sequence[DisplacedColumn] = ()) -> NormalEquations:
-    """Normal equations about ``beta`` (k,) in the metric of the likelihood, parity with them: one simulation of every window a column."""
-    linear = [linearise(windows, beta, columns, displaced) for windows in problem.runs]
-    dynamics = equations_of_runs(problem.runs, linear, problem.likelihood.variance, nuisance_sd)
-    return dynamics + _parity_at(problem, beta, dynamics.columns)
+    """Normal equations about ``beta`` (k,) in the metric of the likelihood, parity with them: one simulation of every window a column. The sensitivities of a
+    few windows at a time (`WINDOWS_AT_ONCE`) are kept, which are much more than what is made of them."""
+
+    def parts() -> Iterator[NormalEquations]:
+        for windows, check in zip(problem.runs, problem.parity, strict=True):
+            for begin in range(0, windows.count, WINDOWS_AT_ONCE):
+                which = slice(begin, begin + WINDOWS_AT_ONCE)
+                few = windows.part(which)
+                dynamics = normal_equations(linearise(few, beta, columns, displaced), few.ok, problem.likelihood.variance, nuisance_sd(few))
+                yield dynamics + check.normal_equations(beta, dynamics.columns, problem.design_effect, which=which)
+
+    return gathered(parts(), problem.window_count)
 
 
 def gap_equations_at(problem: Problem, beta: Array, columns: tuple[int, ...]) -> tuple[NormalEquations, NormalEquations]:

@@ -7,6 +7,7 @@ each window (Woodbury identity; where the prior on the initial state is flat, th
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -39,9 +40,18 @@ class NormalEquations:
         where = {column: i for i, column in enumerate(self.columns)}
         return np.array([where[s] for s in slots], dtype=int)
 
+    def part(self, which: slice) -> NormalEquations:
+        """Those of the windows ``which``."""
+        return replace(self, A=self.A[which], b=self.b[which], c=self.c[which])
+
     def summed(self) -> NormalEquations:
         """Those of all windows in one (1, ...)."""
         return replace(self, A=self.A.sum(axis=0, keepdims=True), b=self.b.sum(axis=0, keepdims=True), c=self.c.sum(keepdims=True))
+
+    def after(self, step: Array) -> NormalEquations:
+        """Those after a ``step`` (k,), in the linearised model."""
+        toward = self.A @ step
+        return replace(self, b=self.b - toward, c=self.c - 2.0 * self.b @ step + toward @ step)
 
     def __add__(self, other: NormalEquations) -> NormalEquations:
         A = np.add(self.A, other.A, out=zeros(*self.A.shape))
@@ -58,6 +68,18 @@ def concatenated(parts: list[NormalEquations]) -> NormalEquations:
         np.concatenate([p.c for p in parts]),
         parts[0].columns,
     )
+
+
+def gathered(parts: Iterable[NormalEquations], m: int) -> NormalEquations:
+    """Normal equations of ``m`` windows in all, of which ``parts`` are made a few windows at a time, in their order."""
+    at, found = 0, NormalEquations(zeros(0, 0, 0), np.zeros((0, 0)), np.zeros(0), ())
+    for part in parts:
+        if not at:
+            k = len(part.columns)
+            found = NormalEquations(zeros(m, k, k), np.zeros((m, k)), np.zeros(m), part.columns)
+        here = slice(at, at + len(part.c))
+        found.A[here], found.b[here], found.c[here], at = part.A, part.b, part.c, here.stop
+    return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +129,15 @@ class Whitened:
             S[w] = (x / root[:, None]).reshape(n, c, -1)
         return Linearisation(self.r, S, self._where_valid(self.J), self.columns, self.valid)
 
+    def after(self, step: Array) -> Linearisation:
+        """Residuals after a ``step`` (k,), in the linearised model, and the nuisances: a linearisation without columns."""
+        ends = np.cumsum([block.x.shape[-1] for block in self.blocks])
+        each = np.zeros(int(ends[-1]))
+        each[self.place] = step
+        moved = sum(block.x @ own for block, own in zip(self.blocks, np.split(each, ends[:-1]), strict=True))
+        left = self.r - self._where_valid(np.divide(moved, self.root, out=np.zeros_like(self.root), where=self.root > 0.0)).reshape(self.r.shape)
+        return Linearisation(left, np.zeros((*left.shape, 0)), self._where_valid(self.J), (), self.valid)
+
     def normal_equations(self, r: Array) -> NormalEquations:
         """Normal equations of other residuals ``r`` (m, n, c) with these sensitivities."""
         scaled = r.reshape(self.root.shape) * self.root
@@ -119,23 +150,33 @@ class Whitened:
         return values if self.valid.all() else np.where(self.valid.reshape(-1, *[1] * (values.ndim - 1)), values, 0.0)
 
 
-def normal_equations(linear: Linearisation, ok: np.ndarray, variance: Array, spread: Array) -> NormalEquations:
-    """Normal equations of every window of ``linear``.
+def normal_equations(
+    linear: Linearisation, ok: np.ndarray, variance: Array, spread: Array, further: Linearisation | None = None, held: np.ndarray | None = None
+) -> NormalEquations:
+    """Normal equations of every window of ``linear``, or of all windows of each group as of one.
 
     Args:
         linear: residuals and sensitivities.
         ok: where residuals hold a measurement (m, n, c).
         variance: white part of their covariance (n, c).
         spread: prior standard deviation (s,) of the first s nuisances, which are marginalised; the others are left out.
+        further: sensitivities of the same windows to further columns, behind these.
+        held: which windows are of which group (f, m), each of one.
     """
-    m, k = len(linear.r), linear.S.shape[-1]
-    A, b, c = zeros(m, k, k), np.zeros((m, k)), np.zeros(m)
-    for w in range(m):
+    columns = linear.columns if further is None else (*linear.columns, *further.columns)
+    f, k = len(linear.r) if held is None else len(held), len(columns)
+    A, b, c = zeros(f, k, k), np.zeros((f, k)), np.zeros(f)
+    for w, g in enumerate(np.arange(f) if held is None else np.argmax(held, axis=0)):
         root, q, x, y = _window(linear, w, ok, variance, spread)
+        if further is not None:
+            x = np.concatenate([x.T, further.S[w].reshape(len(root), -1).T * root]).T
+            y = q.T @ x
         r = linear.r[w].reshape(-1) * root
         z = q.T @ r
-        A[w], b[w], c[w] = x.T @ x - y.T @ y, x.T @ r - y.T @ z, r @ r - z @ z
-    return NormalEquations(A, b, c, linear.columns)
+        A[g] += x.T @ x - y.T @ y
+        b[g] += x.T @ r - y.T @ z
+        c[g] += r @ r - z @ z
+    return NormalEquations(A, b, c, columns)
 
 
 def whiten(linear: Linearisation, ok: np.ndarray, variance: Array, spread: Array) -> Whitened:

@@ -30,6 +30,7 @@ from rovval.diagnose.windows.attitude import tumbling
 from rovval.diagnose.windows.windows import Windows
 from rovval.effects import load
 
+EVERY = slice(None)  # windows
 
 @dataclass(frozen=True, slots=True)
 class ParityResiduals:
@@ -110,15 +111,17 @@ class ParityResiduals:
         given = np.where(self.is_delay, 0.0, beta[list(self.equations.columns)])
         return np.where(self.is_factor, given / (1.0 + given), given), np.where(self.is_factor, (1.0 + given) ** -2, 1.0)
 
-    def normal_equations(self, beta: Array, columns: tuple[int, ...], design_effect: float, summed: bool = False) -> NormalEquations:
+    def normal_equations(
+        self, beta: Array, columns: tuple[int, ...], design_effect: float, summed: bool = False, which: slice = EVERY
+    ) -> NormalEquations:
         """Normal equations of the parity residuals about ``beta`` (p,) in ``columns``, times ``design_effect`` over their own: beside the dynamics, one
-        common design effect then suits both. ``summed``: of all windows in one.
+        common design effect then suits both. ``summed``: of all windows in one; else of the windows ``which``.
 
         But for delays, residuals are linear in the sensors' parameters, r(beta) = r - T beta, so that with A = T'T, b = T'r and c = r'r at the null values
         b(beta) = b - A beta and c(beta) = c - beta'(b + b(beta)). A factor s makes the measured velocity 1 + s times the true one; the residual is one of the
         measured velocity, of which the fault is s / (1 + s), with derivative 1 / (1 + s)^2. Columns without a signature are zero.
         """
-        null = self._about_delays(beta).summed() if summed else self._about_delays(beta)
+        null = self._about_delays(beta).summed() if summed else self._about_delays(beta).part(which)
         m, k = len(null.c), len(columns)
         taken, slope = self._faults(beta)
         b = null.b - null.A @ taken

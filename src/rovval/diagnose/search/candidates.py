@@ -48,7 +48,8 @@ def candidates(
         data: normal equations of the library, linearised at the baseline.
         library: hypotheses to choose from.
         promised: evidence of each initial point in that linearisation, by label.
-        needed: evidence with which it is not negligible, by label; what promises less, or has less, is fitted quickly and no further.
+        needed: evidence with which it is not negligible, by label; what promises less, or has less, is fitted quickly and no further, and not at all beside
+            causes that were chosen before.
         baseline: the model that they are added to.
         chosen: slots of the causes of the baseline.
     """
@@ -90,7 +91,8 @@ def candidates(
 
     tries = Counter[str]()
     for h in ordered:
-        promising = h.evident or promised[h.label] > (share if len(fits) >= LEAST_SCREENED else min(share, SCREENED_ANYWAY))
+        least = max(share if len(fits) >= LEAST_SCREENED else min(share, SCREENED_ANYWAY), needed[h.label] if chosen else -np.inf)
+        promising = h.evident or promised[h.label] > least
         if promising and (tries[h.name] < STARTS_TRIED if h.name in fits and _has_local_minima(h) else h.name not in fits and len(fits) < MOST_CANDIDATES):
             refit(h)
             tries[h.name] += 1

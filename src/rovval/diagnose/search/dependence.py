@@ -8,6 +8,7 @@ each covariate, which say how much its size changes with that covariate.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from rovval.core.data import Array
 from rovval.core.large_arrays import columns_first
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.laplace import Posterior
+from rovval.diagnose.problem.cross_validation import by_fold
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.equivalent_wrench import equivalent_wrench
 from rovval.diagnose.residuals.external_forces import wrench_sensitivities
@@ -39,17 +41,18 @@ def dependence(problem: Problem, point: Posterior, causes: Sequence[Hypothesis])
     names = tuple((h.name, covariate) for h, own in zip(causes, asked, strict=True) for covariate in own)
     if not names:
         return None
-    answers = list[Array]()
-    for windows, one, along in zip(problem.runs, point.linear, varying, strict=True):
+    answers, linear = list[Array](), point.linear
+    for windows, one, along in zip(problem.runs, linear, varying, strict=True):
         answer, at = columns_first(*one.r.shape, columns=len(names)), 0
         for h, own in zip(causes, asked, strict=True):
             answer[..., at : at + len(own)] = _responses(problem, point, windows, one, h, [along[name] for name in own])
             at += len(own)
         answers.append(answer)
     prior = point.precision, point.precision * point.departure
-    found, k = beside(problem, names, answers, point.linear, *prior, np.zeros(len(names))), len(point.columns)
-    found.data.A[:, :k, :k] += point.total.A - point.dynamics.A
-    found.data.b[:, :k] += point.total.b - point.dynamics.b
+    found, k = beside(problem, names, answers, linear, *prior, np.zeros(len(names))), len(point.columns)
+    parity = by_fold(replace(point.total, A=point.total.A - point.dynamics.A, b=point.total.b - point.dynamics.b), problem.folds)
+    found.data.A[:, :k, :k] += parity.A
+    found.data.b[:, :k] += parity.b
     return found
 
 

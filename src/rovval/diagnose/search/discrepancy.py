@@ -11,19 +11,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import reduce
+from operator import add
 from typing import NamedTuple
 
 import numpy as np
 
 from rovval.core.channels import AXES
 from rovval.core.data import Array
-from rovval.core.large_arrays import side_by_side
 from rovval.diagnose.criteria import GENERIC_SIZES, MATERIAL, MOST_FORCES
 from rovval.diagnose.inference.laplace import Posterior
-from rovval.diagnose.problem.cross_validation import Fold, held_out_losses
+from rovval.diagnose.problem.cross_validation import FoldSums, cross_validate
 from rovval.diagnose.problem.problem import Problem, in_fine_metric
 from rovval.diagnose.residuals.external_forces import damps, generic_force_responses, typical_wrench
-from rovval.diagnose.residuals.normal_equations import Linearisation, NormalEquations, concatenated, normal_equations
+from rovval.diagnose.residuals.normal_equations import Linearisation, NormalEquations, normal_equations
 from rovval.diagnose.residuals.nuisances import nuisance_sd
 from rovval.diagnose.residuals.ridge import Prior, eliminated
 from rovval.simulation.fitted_tolerances import fitted_discrepancy, kind_of_force
@@ -35,7 +36,7 @@ class GenericForces:
 
     Attributes:
         names: (axis, feature) of each force: what it acts on, and what it varies with.
-        data: normal equations of the fit's k columns and of the forces behind them.
+        data: normal equations of the fit's k columns and of the forces behind them, of the windows that are held out together as of one.
         precision: (k,) of the priors of the fit's columns.
         pull: (k,) gradient that those priors add.
         tempering: what squared residuals are divided by (`problem.Problem.tempering`).
@@ -83,12 +84,11 @@ class GenericForces:
             A, b = np.delete(np.delete(A, best, 0), best, 1), np.delete(b, best)
         return total if found else -np.inf, tuple(found)
 
-    def held_out_gain(self, folds: Sequence[Fold]) -> float:
+    def held_out_gain(self) -> float:
         """Share by which all forces reduce the squared error on held-out windows, everything else fixed; 0 where they do not."""
-        k = len(self.precision)
-        columns, whole = self.data.columns[k:], float(self.data.c.sum())
-        kept = [float(held_out_losses(self.data, folds, Prior(dict.fromkeys(columns, size)), self.tempering).sum()) for size in GENERIC_SIZES]
-        return max(1.0 - min(kept) / whole, 0.0)
+        columns, held = self.data.columns[len(self.precision) :], FoldSums(self.data, self.data.A, self.data.b, self.data.c)
+        kept = [cross_validate(held, Prior(dict.fromkeys(columns, size)), self.tempering).loss for size in GENERIC_SIZES]
+        return max(1.0 - min(kept) / float(self.data.c.sum()), 0.0)
 
     def beside_the_fit(self) -> tuple[Array, Array]:
         """Curvature (f, f) and slope (f,) of the forces, the fit's columns eliminated with their priors."""
@@ -114,22 +114,25 @@ def generic_forces(problem: Problem, point: Posterior) -> GenericForces:
 
 
 class Beside(NamedTuple):
-    """Generic forces beside a fit: ``evidence`` of a few of them (`GenericForces.sparse`); evidence by axis of all that there is in the ``fine`` metric, in
+    """Generic ``forces`` beside a fit: ``evidence`` of a few of them (`GenericForces.sparse`); evidence by axis of all that there is in the ``fine`` metric, in
     which what is left of the gap is no form error, whatever is expected, empty where there is no such metric; and the ``axes`` on which the few act."""
 
+    forces: GenericForces
     evidence: float
     fine: Mapping[str, float]
     axes: tuple[str, ...]
 
 
-def forces_beside(problem: Problem, point: Posterior) -> Beside:
-    """Those beside the fit that ended at ``point``."""
-    fine = in_fine_metric(problem, point.beta, point.linear)
+def forces_beside(problem: Problem, point: Posterior, fine: bool = True) -> Beside:
+    """Those beside the fit that ended at ``point``, and, where ``fine`` asks for it, those in the fine metric."""
+    linear = point.linear
+    finer = in_fine_metric(problem, point.beta, linear) if fine else None
     names, answers = generic_force_responses(problem.runs, point.beta)
     prior, expected = (point.precision, point.precision * point.departure), expected_forces(problem, names)
-    evidence, few = beside(problem, names, answers, point.linear, *prior, expected).sparse()
-    all_of_it = beside(fine[0], names, answers, fine[1], *prior, np.zeros(len(names))).by_axis() if fine else {}
-    return Beside(evidence, all_of_it, tuple(dict.fromkeys(axis for axis, _ in few)))
+    forces = beside(problem, names, answers, linear, *prior, expected)
+    evidence, few = forces.sparse()
+    all_of_it = beside(finer[0], names, answers, finer[1], *prior, np.zeros(len(names))).by_axis() if finer else {}
+    return Beside(forces, evidence, all_of_it, tuple(dict.fromkeys(axis for axis, _ in few)))
 
 
 def nominal_forces(problem: Problem) -> GenericForces:
@@ -151,8 +154,9 @@ def beside(
     """Named responses ``answers`` (m, n, c, f) of each run's windows as further columns beside those of ``linear``, whose priors have ``precision`` and add the
     gradient ``pull`` (k,), and beside forces of ``expected`` size (f,)."""
     ids = tuple(range(len(problem.origin), len(problem.origin) + len(names)))
+    held = np.stack([fold.test for fold in problem.folds])
     parts = []
-    for part, one, answer in zip(problem.runs, linear, answers, strict=True):
-        both = Linearisation(one.r, side_by_side(one.S, answer), one.J, (*one.columns, *ids), one.valid)
-        parts.append(normal_equations(both, part.ok, problem.likelihood.variance, nuisance_sd(part)))
-    return GenericForces(names, concatenated(parts), precision, pull, problem.tempering, expected)
+    for i, (part, one, answer) in enumerate(zip(problem.runs, linear, answers, strict=True)):
+        forces = Linearisation(one.r, answer, one.J, ids, one.valid)
+        parts.append(normal_equations(one, part.ok, problem.likelihood.variance, nuisance_sd(part), forces, held[:, problem.run_of_window == i]))
+    return GenericForces(names, reduce(add, parts), precision, pull, problem.tempering, expected)

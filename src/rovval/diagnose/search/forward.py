@@ -22,6 +22,7 @@ from rovval.diagnose.inference.map_fit import refit_healthy
 from rovval.diagnose.inference.shrinkage import explainable_left, form_error
 from rovval.diagnose.problem.cross_validation import FoldSums, compare_held_out
 from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.search.baseline import Candidate, baseline_of, healthy_baseline
 from rovval.diagnose.search.candidates import candidates
@@ -101,11 +102,13 @@ class _Space:
 
 @dataclass(frozen=True, slots=True)
 class _Met:
-    """What a search met so far: models, the healthy vehicle first; candidates of each step that had any; and when something seems to begin (s)."""
+    """What a search met so far: models, the healthy vehicle first; candidates of each step that had any; when something seems to begin (s); and the library
+    as it was last linearised."""
 
     models: list[Model]
     tried: list[list[Candidate]]
     onset: float | None
+    linear: NormalEquations | None = None
 
     @property
     def best(self) -> Model:
@@ -115,10 +118,10 @@ class _Met:
 
 def _grown(over: _Space, met: _Met, front: Model, most: int, progress: Callable[[str, float], None]) -> _Met:
     """What was met and what is met on the way from ``front`` on, to which one cause after the other is added, up to ``most``."""
-    models, tried, onset, doubted, best = list(met.models), list(met.tried), met.onset, False, met.best
+    models, tried, onset, linear, doubted, best = list(met.models), list(met.tried), met.onset, met.linear, False, met.best
     for number in range(len(front.causes), most):
         progress(f"adding each of {len(over.library)} hypotheses to {number} causes", 0.7 - 0.4 * 0.7**number)
-        found, suspected = _extended(over, front, best.log_posterior + log(NEGLIGIBLE))
+        found, suspected, linear = _extended(over, front, best.log_posterior + log(NEGLIGIBLE), linear)
         onset = suspected if front.fit is None else onset
         if not found:
             break
@@ -130,7 +133,7 @@ def _grown(over: _Space, met: _Met, front: Model, most: int, progress: Callable[
         before_doubted, doubted = doubted, _looks_like_form_error(over.problem, before, front)
         if front.log_posterior < best.log_posterior + log(NEGLIGIBLE) or len(front.causes) > len(best.causes) + 1 or (doubted and before_doubted):
             break
-    return _Met(models, tried, onset)
+    return _Met(models, tried, onset, linear)
 
 
 def _rival(met: _Met) -> Model | None:
@@ -145,18 +148,20 @@ def _rival(met: _Met) -> Model | None:
     return rival if rival.log_posterior > near else None
 
 
-def _extended(over: _Space, front: Model, least: float) -> tuple[list[Candidate], float | None]:
-    """Candidates for one cause more than ``front`` has, none where none promises a log posterior of ``least``; and the onset that the log suggests."""
+def _extended(over: _Space, front: Model, least: float, near: NormalEquations | None) -> tuple[list[Candidate], float | None, NormalEquations]:
+    """Candidates for one cause more than ``front`` has, none where none promises a log posterior of ``least``; the onset that the log suggests; and the library
+    linearised there, as it was ``near`` by where that holds."""
     problem, chosen = over.problem, front.fit.slots if front.fit else ()
     baseline = baseline_of(front.fit) if front.fit else healthy_baseline(problem, over.healthy)
-    data = linearised(problem, over.library, baseline.posterior)
+    data = linearised(problem, over.library, baseline.posterior, near)
     open_now = [h for h in over.library if h.name not in front.names]
     promised = screened(problem, data, open_now, chosen)
     onset = None if front.fit else suspected_onset(problem, data, open_now)
     needed = {h.label: 2.0 * (least - over.prior.log_mass((*front.causes, h))) - baseline.evidence for h in open_now}
     if not any(h.evident or promised[h.label] > needed[h.label] for h in open_now):
-        return [], onset
-    return [c for c in candidates(problem, data, open_now, promised, needed, baseline, chosen) if plausible(problem, c)], onset
+        return [], onset, data
+    found = [c for c in candidates(problem, data, open_now, promised, needed, baseline, chosen) if plausible(problem, c)]
+    return found, onset, data
 
 
 def _looks_like_form_error(problem: Problem, before: Model, after: Model) -> bool:
@@ -185,7 +190,7 @@ def _exchanged(over: _Space, met: _Met) -> tuple[Posterior, list[Model], Model]:
     models = [Model((), None, laplace_evidence(problem, healthy), models[0].log_prior), *models[1:]]
     known = {m.names for m in models}
     while len(best.causes) > 1:
-        exchanged = [*without_each(problem, over.prior, best, known), *with_relatives(problem, over.prior, over.library, best, known)]
+        exchanged = [*without_each(problem, over.prior, best, known), *with_relatives(problem, over.prior, over.library, best, known, met.linear)]
         models = settled(problem, [*models, *exchanged], 1)
         better = max(models, key=lambda m: m.log_posterior)
         if better.fit is None or better.log_posterior <= best.log_posterior:

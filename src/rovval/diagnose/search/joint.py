@@ -38,7 +38,9 @@ def without_each(problem: Problem, prior: ModelPrior, whole: Model, known: set[N
     return found
 
 
-def with_relatives(problem: Problem, prior: ModelPrior, library: Sequence[Hypothesis], whole: Model, known: set[Names]) -> list[Model]:
+def with_relatives(
+    problem: Problem, prior: ModelPrior, library: Sequence[Hypothesis], whole: Model, known: set[Names], near: NormalEquations | None = None
+) -> list[Model]:
     """Models of a set of causes with each of them exchanged for the hypotheses of the library that would stand in for it, whether or not the search met them.
 
     About the fit of the set each cause is taken out in turn, with its response in the linearised model, and every hypothesis is screened in its place; those
@@ -51,11 +53,12 @@ def with_relatives(problem: Problem, prior: ModelPrior, library: Sequence[Hypoth
         library: hypotheses to choose from.
         whole: the set, its fit with sensitivities.
         known: names of the sets that were fitted already; those that are fitted here are added to it.
+        near: the library linearised near by, which is made anew where that does not hold.
     """
     if whole.fit is None or whole.part or len(whole.causes) < 2:
         return []
     fit, found = whole.fit, list[Model]()
-    data, others = linearised(problem, library, fit.posterior), [h for h in library if h.name not in whole.names]
+    data, others = linearised(problem, library, fit.posterior, near), [h for h in library if h.name not in whole.names]
     for cause in whole.causes:
         rest = [h for h in whole.causes if h is not cause]
         kept = tuple(dict.fromkeys(s for h in rest for s in h.slots))

@@ -14,6 +14,7 @@ from math import log
 import numpy as np
 
 from rovval.core.data import Array, Flags
+from rovval.core.large_arrays import zeros
 from rovval.diagnose.criteria import FEW_WINDOWS, LEAST_WINDOWS
 from rovval.diagnose.effort import NEGLIGIBLE, ONSETS_TRIED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of
@@ -189,8 +190,10 @@ class _Switch:
         early[np.arange(k, k + len(taken)), taken] = 1.0
 
         def switched(old: NormalEquations, new: NormalEquations) -> NormalEquations:
-            A = np.where(first[:, None, None], early @ old.A @ early.T, late @ new.A @ late.T)
-            b = np.where(first[:, None], old.b @ early.T, new.b @ late.T)
+            A, b = zeros(len(first), len(columns), len(columns)), np.zeros((len(first), len(columns)))
+            for w, is_early in enumerate(first):
+                data, way = (old, early) if is_early else (new, late)
+                A[w], b[w] = way @ data.A[w] @ way.T, data.b[w] @ way.T
             return NormalEquations(A, b, np.where(first, old.c, new.c), columns)
 
         none = np.zeros(len(taken))

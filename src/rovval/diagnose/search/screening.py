@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from rovval.core.data import Array
+from rovval.diagnose.effort import RELINEARISED_FROM
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of, prior_of, wide_prior
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem, equations_at
@@ -15,12 +16,27 @@ from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.residuals.ridge import Prior, free_columns
 
 
-def linearised(problem: Problem, library: Iterable[Hypothesis], base: Posterior) -> NormalEquations:
-    """Normal equations of a library about the baseline ``base``, with how far each column is from the mean of its prior there."""
+def linearised(problem: Problem, library: Iterable[Hypothesis], base: Posterior, near: NormalEquations | None = None) -> NormalEquations:
+    """Normal equations of a library about the baseline ``base``, with how far each column is from the mean of its prior there: those about a baseline ``near``
+    it, moved there, where they still hold (`moved_to`), else made anew."""
+    if near and (there := moved_to(problem, near, base)):
+        return there
     asked = columns_of(list(library))
     data = equations_at(problem, base.beta, tuple(sorted({*asked.slots, *problem.tolerance.sd, *base.columns})), asked.displaced)
     offset = np.array([base.beta[c] - problem.origin[c] if c < len(base.beta) else 0.0 for c in data.columns])
     return replace(data, offset=offset)
+
+
+def moved_to(problem: Problem, data: NormalEquations, base: Posterior) -> NormalEquations | None:
+    """Normal equations of a library at the baseline ``base``, by the linearisation ``data`` about another; None where it does not hold there: the cost that it
+    predicts, or what a step from there would gain, is not that of the simulation at ``base`` (`RELINEARISED_FROM`)."""
+    if not set(base.columns) <= set(data.columns) or data.offset is None:
+        return None
+    offset = np.array([base.beta[c] - problem.origin[c] if c < len(base.beta) else 0.0 for c in data.columns])
+    there = data.after(offset - data.offset)
+    slope = there.b.sum(axis=0)[there.place(base.columns)] - base.total.b.sum(axis=0)
+    off = abs(float(there.c.sum() - base.total.c.sum())) + float(slope @ base.solve(base.curvature, slope))
+    return replace(there, offset=offset) if off <= RELINEARISED_FROM * problem.tempering else None
 
 
 def screened(problem: Problem, data: NormalEquations, library: Iterable[Hypothesis], chosen: tuple[int, ...]) -> dict[str, float]:

@@ -72,6 +72,10 @@ class Windows:
         kept = {name: getattr(self, name)[which] for name in ("start", "nu0", "eta0", "y", "ok")}
         return replace(self, disturbance_response=None, **kept)
 
+    def part(self, which: slice) -> Windows:
+        """Those of the windows ``which``, with their disturbances."""
+        return replace(self.some(which), disturbance_response=None if self.disturbance_response is None else self.disturbance_response[which])
+
     def depths(self) -> Array:
         """Depths (m, down) that the run went through where they were measured, else those that its windows begin at."""
         return self.run.get("z")[self.run.ok("z")] if self.run.measured("z") else self.eta0[:, 2]
