@@ -9,10 +9,9 @@ from rovval.core.data import Array
 from rovval.diagnose.criteria import HELD_OUT_BLOCK
 from rovval.diagnose.problem.cross_validation import (
     Fold,
-    FoldSums,
+    by_fold,
     compare_held_out,
     cross_validate,
-    held_out_losses,
     make_folds,
 )
 from rovval.diagnose.residuals.normal_equations import NormalEquations
@@ -40,11 +39,11 @@ def test_held_out_loss_is_that_of_ridge_regression_on_held_out_windows():
         return np.asarray(np.linalg.lstsq(X, np.concatenate([r[train].ravel(), [0, 0]]), rcond=None)[0])
 
     held = sum(((r[f.test] - S[f.test][:, :, [1, 3]] @ brute(f.train)) ** 2).sum() for f in folds)
-    sums = FoldSums.of(data, folds)
+    sums = by_fold(data, folds)
     base, named = compare_held_out(sums, Prior({1: 0.5}), {"both": Prior({3: 2.0})}, design_effect)
     assert named["both"].loss == pytest.approx(held)
     assert base.loss == pytest.approx(cross_validate(sums, Prior({1: 0.5}), design_effect).loss)
-    assert held_out_losses(data, folds, prior, design_effect).sum() == pytest.approx(held)
+    assert cross_validate(sums, prior, design_effect).loss == pytest.approx(held)
     np.testing.assert_allclose(named["both"].step[[1, 3]], brute(np.ones(m, dtype=bool)))
 
 

@@ -24,8 +24,6 @@ from rovval.diagnose.residuals.normal_equations import Linearisation, Whitened
 from rovval.diagnose.residuals.ridge import losses
 from rovval.diagnose.residuals.sensitivities import linearise
 
-NORMAL_QUANTILE = float(stats.norm.ppf(0.5 + INTERVAL_PROBABILITY / 2))  # standard errors in half of an interval, where these are known
-
 
 @dataclass(frozen=True, slots=True)
 class HypothesisFit:
@@ -132,7 +130,8 @@ def standard_errors(problem: Problem, fitted: HypothesisFit, fixed: Sequence[int
     score = point.total.b - np.einsum("wij,j->wi", point.total.A, point.solve(point.curvature, point.descent))
     sandwich = sandwich_variance(bread[:k], score - score.mean(axis=0))  # the mean is not zero on a bound, which takes up the rest
     by_tolerance = problem.tempering * (bread[:k, k:] ** 2 @ point.precision[k:])
-    known = problem.design_effect * np.diag(bread)[:k] * (NORMAL_QUANTILE / _quantile(problem.window_count)) ** 2
+    normal = float(stats.norm.ppf(0.5 + INTERVAL_PROBABILITY / 2)) / _quantile(problem.window_count)
+    known = problem.design_effect * np.diag(bread)[:k] * normal**2
     return np.asarray(np.sqrt(np.maximum(sandwich + by_tolerance, known)))
 
 

@@ -129,7 +129,7 @@ def heavy_tails(problem: Problem, point: Posterior) -> float:
     `PRIOR_FREEDOM`) to the wide normal one in which they are fitted (`PRIOR_WIDTH`): what the evidence gains by the other prior."""
     H, own = point.curvature, range(point.effect_count)
     parameters = [problem.plant.slots[s].parameter for s in point.columns[: point.effect_count]]
-    size = point.departure + point.solve(H, point.descent)
+    size = point.predicted_departure()
     sd = np.sqrt(problem.tempering * np.diag(np.linalg.solve(H, np.eye(len(H), len(own)))))
     total, z = 0.0, np.linspace(-6.0, 6.0, 241)  # standard deviations of the posterior: finer than any feature of the ratio
     for i, p in ((i, p) for i, p in zip(own, parameters, strict=True) if not p.places):

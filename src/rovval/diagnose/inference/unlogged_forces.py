@@ -46,7 +46,8 @@ def unlogged_forces(problem: Problem, point: Posterior | None = None) -> dict[st
         return {}
     wrench, some = typical_wrench(problem.runs), evenly_spread(problem.runs)
     runs, beta = [windows.some(some) for windows in problem.runs], problem.origin if point is None else point.beta
-    whole = problem.nominal if point is None else [one.after(point.solve(point.curvature, point.descent)) for one in point.whitened]
+    step = np.zeros(0) if point is None else point.solve(point.curvature, point.descent)
+    whole = problem.nominal if point is None else [one.after(step) for one in point.whitened]
     left = [Linearisation(one.r[some], one.S[some], one.J[some], (), one.valid[some]) for one in whole]
     noise = np.sqrt(problem.likelihood.variance.mean(axis=0))
     size = variance_components(runs, left, segment_responses(runs, beta, wrench), noise).share * wrench / thrusters_force(wrench, problem.plant.vehicle)

@@ -17,7 +17,7 @@ from rovval.core.data import Array
 from rovval.core.large_arrays import side_by_side
 from rovval.diagnose.criteria import FEW_WINDOWS, LEAST_NOISE, SMOOTHING
 from rovval.diagnose.effort import COMPONENT_ROUNDS, INITIAL_DESIGN_EFFECT, NOISE_MODEL_ROUNDS
-from rovval.diagnose.problem.cross_validation import Fold, FoldSums, cross_validate
+from rovval.diagnose.problem.cross_validation import Fold, by_fold, cross_validate
 from rovval.diagnose.problem.disturbance import (
     Disturbance,
     correlated,
@@ -82,8 +82,8 @@ def fit_noise_model(
     sensor, expected = _expected_variance(runs, linear, Prior({})), _expected_variance(runs, linear, tolerance)
     plain = tuple(replace(one, S=one.S[..., : len(columns)], columns=columns) for one in linear)
     first = equations_of_runs(runs, plain, expected, initial_state_sd)
-    design_effect = estimated_design_effect(first, cross_validate(FoldSums.of(first, folds), library, INITIAL_DESIGN_EFFECT).step)
-    best = cross_validate(FoldSums.of(first, folds), library, design_effect).step
+    design_effect = estimated_design_effect(first, cross_validate(by_fold(first, folds), library, INITIAL_DESIGN_EFFECT).step)
+    best = cross_validate(by_fold(first, folds), library, design_effect).step
     white = expected + _form_variance(runs, plain, expected, best)
     total = white * channel_factor
     if sum(windows.count for windows in runs) < FEW_WINDOWS:
@@ -121,7 +121,7 @@ def _library_fit(
 ) -> tuple[float, Array]:
     """Design effect of what the whole library leaves in this metric, and the step (k,) that fits the library there."""
     data = equations_of_runs(runs, linear, variance, nuisance_sd)
-    best = cross_validate(FoldSums.of(data, folds), library, before).step
+    best = cross_validate(by_fold(data, folds), library, before).step
     return estimated_design_effect(data, best), best
 
 

@@ -151,7 +151,7 @@ class Whitened:
 
 
 def normal_equations(
-    linear: Linearisation, ok: np.ndarray, variance: Array, spread: Array, further: Linearisation | None = None, held: np.ndarray | None = None
+    linear: Linearisation, ok: np.ndarray, variance: Array, spread: Array, further: Linearisation | None = None, groups: np.ndarray | None = None
 ) -> NormalEquations:
     """Normal equations of every window of ``linear``, or of all windows of each group as of one.
 
@@ -161,12 +161,12 @@ def normal_equations(
         variance: white part of their covariance (n, c).
         spread: prior standard deviation (s,) of the first s nuisances, which are marginalised; the others are left out.
         further: sensitivities of the same windows to further columns, behind these.
-        held: which windows are of which group (f, m), each of one.
+        groups: which windows are of which group (f, m), each of one.
     """
     columns = linear.columns if further is None else (*linear.columns, *further.columns)
-    f, k = len(linear.r) if held is None else len(held), len(columns)
+    f, k = len(linear.r) if groups is None else len(groups), len(columns)
     A, b, c = zeros(f, k, k), np.zeros((f, k)), np.zeros(f)
-    for w, g in enumerate(np.arange(f) if held is None else np.argmax(held, axis=0)):
+    for w, g in enumerate(np.arange(f) if groups is None else np.argmax(groups, axis=0)):
         root, q, x, y = _window(linear, w, ok, variance, spread)
         if further is not None:
             x = np.concatenate([x.T, further.S[w].reshape(len(root), -1).T * root]).T

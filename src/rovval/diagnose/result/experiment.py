@@ -15,7 +15,7 @@ from rovval.core.channels import VELOCITIES
 from rovval.core.data import Array, ClockReport, Reason, Run
 from rovval.diagnose.criteria import BUSY_LEAST, BUSY_QUANTILE, PRIOR_WIDTH
 from rovval.diagnose.decision.verdict import Decision
-from rovval.diagnose.problem.cross_validation import FoldSums, cross_validate, make_folds
+from rovval.diagnose.problem.cross_validation import by_fold, cross_validate, make_folds
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.normal_equations import normal_equations
 from rovval.diagnose.residuals.nuisances import initial_state_sd
@@ -101,7 +101,7 @@ def _misfit(problem: Problem, beta: Array, members: tuple[str, ...], manoeuvre: 
         return None
     variance = problem.gap.variance[: stretches.steps + 1][:, keep]
     data = normal_equations(linearise(stretches, base, columns), stretches.ok, variance, initial_state_sd(stretches))
-    ring = FoldSums.of(data, make_folds(np.zeros(len(data.c), dtype=int)))
+    ring = by_fold(data, make_folds(np.zeros(len(data.c), dtype=int)))
     left = [
         cross_validate(ring, Prior({s: PRIOR_WIDTH * plant.slots[s].parameter.typical for s in slots}), problem.design_effect).loss
         for name, slots in free.items()

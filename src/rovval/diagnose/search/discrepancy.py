@@ -21,7 +21,7 @@ from rovval.core.channels import AXES
 from rovval.core.data import Array
 from rovval.diagnose.criteria import GENERIC_SIZES, MATERIAL, MOST_FORCES
 from rovval.diagnose.inference.laplace import Posterior
-from rovval.diagnose.problem.cross_validation import FoldSums, cross_validate
+from rovval.diagnose.problem.cross_validation import cross_validate
 from rovval.diagnose.problem.problem import Problem, in_fine_metric
 from rovval.diagnose.residuals.external_forces import damps, generic_force_responses, typical_wrench
 from rovval.diagnose.residuals.normal_equations import Linearisation, NormalEquations, normal_equations
@@ -86,8 +86,8 @@ class GenericForces:
 
     def held_out_gain(self) -> float:
         """Share by which all forces reduce the squared error on held-out windows, everything else fixed; 0 where they do not."""
-        columns, held = self.data.columns[len(self.precision) :], FoldSums(self.data, self.data.A, self.data.b, self.data.c)
-        kept = [cross_validate(held, Prior(dict.fromkeys(columns, size)), self.tempering).loss for size in GENERIC_SIZES]
+        columns = self.data.columns[len(self.precision) :]
+        kept = [cross_validate(self.data, Prior(dict.fromkeys(columns, size)), self.tempering).loss for size in GENERIC_SIZES]
         return max(1.0 - min(kept) / float(self.data.c.sum()), 0.0)
 
     def beside_the_fit(self) -> tuple[Array, Array]:

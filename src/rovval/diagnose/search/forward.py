@@ -20,7 +20,7 @@ from rovval.diagnose.inference.gap import tolerated_share
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import refit_healthy
 from rovval.diagnose.inference.shrinkage import explainable_left, form_error
-from rovval.diagnose.problem.cross_validation import FoldSums, compare_held_out
+from rovval.diagnose.problem.cross_validation import by_fold, compare_held_out
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.residuals.ridge import Prior
@@ -204,7 +204,7 @@ def _ranking(problem: Problem, library: list[Hypothesis], best: Model, steps: Se
     """Every hypothesis with the reduction of the gap that it makes by itself, held out, coefficients as filed: the causes first, then the others by
     that, fitted by re-simulation for the first step's candidates, linearised for the rest."""
     priors = {h.label: prior_of(problem, h) for h in library}
-    _, fits = compare_held_out(FoldSums.of(problem.gap.total, problem.folds), Prior({}), priors, problem.design_effect)
+    _, fits = compare_held_out(by_fold(problem.gap.total, problem.folds), Prior({}), priors, problem.design_effect)
     gap, share = float(problem.gap.total.c.sum()), dict[str, float]()
     for h in library:
         share[h.name] = max(1.0 - fits[h.label].loss / gap, share.get(h.name, -np.inf))

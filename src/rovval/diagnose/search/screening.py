@@ -23,8 +23,7 @@ def linearised(problem: Problem, library: Iterable[Hypothesis], base: Posterior,
         return there
     asked = columns_of(list(library))
     data = equations_at(problem, base.beta, tuple(sorted({*asked.slots, *problem.tolerance.sd, *base.columns})), asked.displaced)
-    offset = np.array([base.beta[c] - problem.origin[c] if c < len(base.beta) else 0.0 for c in data.columns])
-    return replace(data, offset=offset)
+    return replace(data, offset=_offset(problem, data, base))
 
 
 def moved_to(problem: Problem, data: NormalEquations, base: Posterior) -> NormalEquations | None:
@@ -32,11 +31,16 @@ def moved_to(problem: Problem, data: NormalEquations, base: Posterior) -> Normal
     predicts, or what a step from there would gain, is not that of the simulation at ``base`` (`RELINEARISED_FROM`)."""
     if not set(base.columns) <= set(data.columns) or data.offset is None:
         return None
-    offset = np.array([base.beta[c] - problem.origin[c] if c < len(base.beta) else 0.0 for c in data.columns])
+    offset = _offset(problem, data, base)
     there = data.after(offset - data.offset)
     slope = there.b.sum(axis=0)[there.place(base.columns)] - base.total.b.sum(axis=0)
     off = abs(float(there.c.sum() - base.total.c.sum())) + float(slope @ base.solve(base.curvature, slope))
     return replace(there, offset=offset) if off <= RELINEARISED_FROM * problem.tempering else None
+
+
+def _offset(problem: Problem, data: NormalEquations, base: Posterior) -> Array:
+    """How far each column (k,) is from the mean of its prior at ``base``; those that are taken at another point are at it."""
+    return np.array([base.beta[c] - problem.origin[c] if c < len(base.beta) else 0.0 for c in data.columns])
 
 
 def screened(problem: Problem, data: NormalEquations, library: Iterable[Hypothesis], chosen: tuple[int, ...]) -> dict[str, float]:
