@@ -80,6 +80,17 @@ def test_a_command_is_held_and_not_longer_than_allowed():
     assert (run.reasons["n_cmd:A"][10:30] == Reason.GAP).all() and held[30] == 4.0
 
 
+@given(width=st.sampled_from([1100.0, 1899.7]), steps=st.lists(st.floats(0.004, 0.3), min_size=20, max_size=200), late=st.floats(0.0, 1e5))
+@settings(max_examples=60, deadline=None)
+def test_a_command_at_the_end_of_its_range_stays_there(width, steps, late):
+    """By rounding its mean was 1099.9999999998 us, and a log with saturated thrusters was refused as beyond its table."""
+    t = late + np.cumsum(np.array(steps))
+    every = np.arange(t[0], t[-1] + 0.1, 0.1)
+    held = align(log(u=(every, 0.0 * every), pwm__A=(t, np.where(np.arange(len(t)) % 3, width, 1500.0))))
+    ok = held.ok("pwm:A")
+    assert (np.minimum(1500.0, width) <= held.get("pwm:A")[ok]).all() and (held.get("pwm:A")[ok] <= np.maximum(1500.0, width)).all()
+
+
 def test_a_command_between_grid_points_acts_as_long_as_it_did():
     """Held from the grid point before it, a command at 5 Hz of its own clock would act 0.05 s late on average."""
     rng = np.random.default_rng(7)

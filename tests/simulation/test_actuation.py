@@ -54,8 +54,11 @@ def test_a_pulse_table_needs_no_speeds():
 
 
 def test_a_pulse_width_beyond_the_table_is_refused():
-    with pytest.raises(BadInput, match="outside the thruster table"):
-        recorded_actuation(driven(PULSES, 2000.0), HEAVY)
+    with pytest.raises(BadInput, match="outside the thruster table") as refused:
+        recorded_actuation(driven(PULSES, 2000.0, 3.0), HEAVY)
+    first, last = HEAVY.thrusters[0], HEAVY.thrusters[-1]
+    assert f"- {first}: 171 samples from 2000 to 2000 us, the first at t = 3.0 s" in refused.value.message and f"- {last}: " in refused.value.message
+    assert "pulse_table" in refused.value.hint and "--from" in refused.value.hint
 
 
 def test_rates_that_were_not_logged_start_as_the_attitude_turns_however_the_vehicle_stands():

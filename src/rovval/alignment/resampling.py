@@ -124,7 +124,8 @@ def _mean_until_next(t: Array, v: Array, grid: Array, dt: float, held: Array, co
     until = np.concatenate([[0.0], np.cumsum(v[:-1] * np.diff(t))])[i] + v[i] * (edges - t[i])
     whole = (codes == Reason.OK) & (np.append(codes[1:], Reason.AFTER_LAST) == Reason.OK)
     steady = i[1:] == i[:-1]  # and there the value itself, to the last bit
-    return np.where(whole & ~steady, np.diff(until) / dt, held)
+    mean = np.clip(np.diff(until) / dt, v.min(), v.max())  # which it leaves by rounding alone: what stands at the end of a range stays in it
+    return np.where(whole & ~steady, mean, held)
 
 
 def _outside(every: Array, bad: Codes, t: Array, grid: Array, tail_s: float) -> Codes:

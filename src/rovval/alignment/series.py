@@ -10,8 +10,6 @@ from rovval.core.errors import Finding
 
 STEPS_BRIDGED = 1.5  # of a slow channel's own period: its neighbours are joined, a lost sample is not made up
 SLOWEST_BRIDGED_S = 2.0  # period (s): a slower channel passes over the motion of an ROV, whose time constants are 2 to 3 s
-MOST_OUTSIDE = 0.5  # a channel that moves mostly outside its sane range is not what the profile says: its rest is no measurement either
-FILL_VALUES = 3  # distinct values: no more than these are what an instrument writes while it has nothing to say (-32.768, 9999)
 
 
 def longest_bridge(raw: RawLog, name: str) -> tuple[float, bool]:
@@ -51,8 +49,7 @@ def bad_samples(name: str, series: Series, stuck_s: float | None) -> tuple[Codes
         if runs:
             detail = f"{len(runs)} runs of equal values longer than {stuck_s:g} s, from t = {series.t[runs[0][0]]:.1f} s; masked"
             findings.append(Finding("stuck", name, detail))
-    outside = (series.values < row.low) | (series.values > row.high)
-    most = outside.mean() > MOST_OUTSIDE and len(np.unique(series.values[outside])) > FILL_VALUES
+    outside, most = series.outside(row)
     code[outside | most] = Reason.OUT_OF_RANGE
     if outside.any():
         low, high = series.values[outside].min(), series.values[outside].max()

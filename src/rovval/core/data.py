@@ -15,13 +15,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rovval.core.channels import Rule, channel
+from rovval.core.channels import Channel, Rule, channel
 from rovval.core.errors import BadInput, Finding
 from rovval.core.long_columns import at_rest, is_at_rest
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Codes = NDArray[np.uint8]
+MOST_OUTSIDE = 0.5  # share of the samples outside its sane range from which a channel is not what its source says (chosen)
+FILL_VALUES = 3  # distinct values: no more than these are what an instrument writes while it has nothing to say (-32.768, 9999)
 RATE_HZ = 10.0  # the design's common rate; Merlin logs at it (thesis 4.5)
 
 
@@ -64,6 +66,12 @@ class Series:
             raise BadInput(f"a channel has {self.values.shape} values at {self.t.shape} stamps")
         if not np.isfinite(self.values).all() or (np.diff(self.t) <= 0).any():
             raise BadInput("a channel's values must be finite and its stamps strictly increasing", "clean it in its reader")
+
+    def outside(self, row: Channel) -> tuple[Flags, bool]:
+        """Which samples (n,) are outside the sane range of a ``row`` of the channel table; and whether so many are, moving, that the channel is not what its
+        source says, another unit for one: its rest is no measurement either."""
+        outside = (self.values < row.low) | (self.values > row.high)
+        return outside, bool(outside.mean() > MOST_OUTSIDE and len(np.unique(self.values[outside])) > FILL_VALUES)
 
 
 @dataclass(frozen=True, slots=True)

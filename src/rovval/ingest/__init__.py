@@ -18,6 +18,7 @@ from functools import partial
 from pathlib import Path
 from typing import Protocol, cast
 
+from rovval.core.channels import channel
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, Finding, RovvalError, UsageProblem
 from rovval.core.progress import Progress, silent
@@ -29,7 +30,7 @@ from rovval.ingest.files.compression import is_compressed
 from rovval.ingest.files.dive_file import is_dive, load_dive, parts_of
 from rovval.ingest.profile import Profile, load_profile, profiles
 
-__all__ = ["Profile", "Reader", "formats_of", "load_profile", "plain", "profiles", "read", "reader", "reader_of", "readers"]
+__all__ = ["Profile", "Reader", "formats_of", "load_profile", "not_so", "plain", "profiles", "read", "reader", "reader_of", "readers"]
 OF_TEXT = ("csv_log", "json_lines", "nmea")  # readers of text: they read it compressed, too
 
 
@@ -82,9 +83,9 @@ def read(path: Path, profile: str | None = None, timezone: str | None = None, pr
     """The log of ``path`` in SI, forward-starboard-down and north-east-down, each channel at its own stamps.
 
     A dive file (``dive.toml``) is one log of all that it names. ``profile`` is a built-in name or a path to a TOML file; without it the one
-    built-in profile is taken whose required columns or topics the log has. ``timezone`` (``Europe/Berlin``, ``+02:00``) is that of stamps that
-    are date and time without a zone of their own; it goes before the profile's. Raises `BadInput` for a log that cannot be used or that fits
-    none or several profiles, `UsageProblem` for a profile that does not exist or is wrong.
+    built-in profile is taken whose required columns or topics the log has, of several in other units the one that suits its values. ``timezone``
+    (``Europe/Berlin``, ``+02:00``) is that of stamps that are date and time without a zone of their own; it goes before the profile's. Raises
+    `BadInput` for a log that cannot be used or that fits none or several profiles, `UsageProblem` for a profile that does not exist or is wrong.
     """
     path = Path(path)
     refuse_unusable(path)
@@ -140,6 +141,8 @@ def _the_one_that_fits(path: Path) -> Profile:
             near.append(f"\n  - {candidate.name} misses {len(gone)}: {shown}")
         else:
             fits.append(candidate)
+    if len(fits) > 1:
+        fits = [p for p in fits if not not_so(path, p)] or fits
     if len(fits) == 1:
         return fits[0]
     if fits:
@@ -147,6 +150,13 @@ def _the_one_that_fits(path: Path) -> Profile:
         raise BadInput(f"{path}: fits several profiles: {names}", "say which with --profile")
     hint = "give --profile: one of these, or a TOML file of your own"
     raise BadInput(f"{path}: fits no built-in profile" + "".join(near), hint)
+
+
+def not_so(path: Path, profile: Profile) -> tuple[str, ...]:
+    """The channels of ``profile`` that cannot be what it says by their values, as where one source writes radians in some logs and degrees in others."""
+    log = reader_of(path, profile).read(path, profile, silent)
+    rows = [(name, series.values, channel(name)) for name, series in log.channels.items() if series.outside(channel(name))[1]]
+    return tuple(f"{name} within {row.low:g} to {row.high:g} {row.unit} (holds {v.min():.4g} to {v.max():.4g})" for name, v, row in rows)
 
 
 def _of_profile(profile: Profile, able: Sequence[str]) -> list[str]:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from rovval.core.channels import VELOCITIES
 from rovval.core.data import Array, Flags, Run
-from rovval.core.errors import BadInput, Finding
+from rovval.core.errors import BadInput, Finding, all_at_once
 from rovval.core.frames import attitude_difference, rotation_from_euler
 from rovval.plant import Inputs
 from rovval.vehicle.model import Mixer, PulseTable, Vehicle
@@ -39,9 +39,8 @@ def recorded_actuation(run: Run, vehicle: Vehicle) -> Actuation:
         wanted = _wanted(family, vehicle)
         if wanted and all(run.measured(name) for name in wanted):
             known = np.all([run.ok(name) for name in wanted], axis=0)
-            values = run.stack(wanted)
             speed = np.zeros((len(run), len(vehicle.thrusters)))
-            speed[known], assumptions = convert(values[known], vehicle)  # what is not known is never looked up in a table
+            speed[known], assumptions = convert(run, wanted, known, vehicle)  # what is not known is never looked up in a table
             return Actuation(
                 inputs=Inputs(
                     dt=run.dt,
@@ -122,22 +121,40 @@ def _wanted(family: str, vehicle: Vehicle) -> tuple[str, ...]:
     return tuple(f"{family}:{name}" for name in vehicle.thrusters)
 
 
-def _speeds(values: Array, vehicle: Vehicle) -> tuple[Array, tuple[str, ...]]:
-    return values, ()
+def _speeds(run: Run, names: tuple[str, ...], known: Flags, vehicle: Vehicle) -> tuple[Array, tuple[str, ...]]:
+    return run.stack(names)[known], ()
 
 
-def _pulses(values: Array, vehicle: Vehicle) -> tuple[Array, tuple[str, ...]]:
+def _pulses(run: Run, names: tuple[str, ...], known: Flags, vehicle: Vehicle) -> tuple[Array, tuple[str, ...]]:
     table = vehicle.pulse_table
     assert table is not None
-    return _equivalent_speed(values, vehicle, table), (f"thrust from pulse width by the table at {table.voltage:g} V",)
+    pwm = _within(table, run.stack(names)[known], run, known, vehicle)
+    return _equivalent_speed(pwm, vehicle, table), (f"thrust from pulse width by the table at {table.voltage:g} V",)
 
 
-def _sticks(values: Array, vehicle: Vehicle) -> tuple[Array, tuple[str, ...]]:
+def _sticks(run: Run, names: tuple[str, ...], known: Flags, vehicle: Vehicle) -> tuple[Array, tuple[str, ...]]:
     mixer, table = vehicle.mixer, vehicle.pulse_table
     assert mixer is not None
     assert table is not None
     said = f"pulse widths from the pilot's sticks by the vehicle's mixer (manual mode), thrust by the table at {table.voltage:g} V"
-    return _equivalent_speed(mix(values, mixer), vehicle, table), (said,)
+    pwm = _within(table, mix(run.stack(names)[known], mixer), run, known, vehicle)
+    return _equivalent_speed(pwm, vehicle, table), (said,)
+
+
+def _within(table: PulseTable, pwm: Array, run: Run, known: Flags, vehicle: Vehicle) -> Array:
+    """The pulse widths (m, k) us of the grid points that are ``known``; raises BadInput where any is outside the table: nothing is extrapolated."""
+    low, high = table.pwm_us[0], table.pwm_us[-1]
+    outside, t = (pwm < low) | (pwm > high), run.t[known]
+    problems = [
+        f"{name}: {off.sum()} samples from {widths[off].min():g} to {widths[off].max():g} us, the first at t = {t[np.argmax(off)]:.1f} s"
+        for name, widths, off in zip(vehicle.thrusters, pwm.T, outside.T, strict=True) if off.any()
+    ]  # fmt: skip
+    if problems:
+        raise BadInput(
+            all_at_once(problems, f"run {run.id}: pulse widths outside the thruster table of {vehicle.name} ({low:g} to {high:g} us)"),
+            "extend pulse_table in the vehicle's file, mend the column that the profile reads, or leave that part out with --from and --to",
+        )
+    return pwm
 
 
 def mix(sticks: Array, mixer: Mixer) -> Array:
@@ -147,13 +164,7 @@ def mix(sticks: Array, mixer: Mixer) -> Array:
 
 
 def _equivalent_speed(pwm: Array, vehicle: Vehicle, table: PulseTable) -> Array:
-    """Speed (rev/s) at which the quadratic law of the table's thruster gives the table's thrust: the table stays exact, the law simple.
-
-    Raises BadInput for a pulse width outside the table: nothing is extrapolated.
-    """
-    low, high = table.pwm_us[0], table.pwm_us[-1]
-    if (outside := (pwm < low) | (pwm > high)).any():
-        raise BadInput(f"{int(outside.sum())} pulse widths outside the thruster table ({low:g} to {high:g} us), worst {pwm[outside].max():g}")
+    """Speed (rev/s) at which the quadratic law of the table's thruster gives the table's thrust: the table stays exact, the law simple."""
     thrust = np.interp(pwm, table.pwm_us, table.thrust)
     ahead, astern = table.k_pos or [t.k_pos for t in vehicle.thruster], table.k_neg or [t.k_neg for t in vehicle.thruster]
     gain = np.where(thrust >= 0, ahead, astern)

@@ -11,6 +11,7 @@ import rovval.ingest as ingest
 from rovval import vehicle
 from rovval.core.channels import channel
 from rovval.core.errors import BadInput, UsageProblem
+from rovval.ingest.inspection.inspect import inspect
 from rovval.ingest.profile import ATTITUDE, load_profile, parse_profile, profiles
 
 
@@ -129,6 +130,24 @@ def test_a_log_that_fits_several_profiles_is_refused_with_their_names(tmp_path, 
     monkeypatch.setattr(ingest, "load_profile", lambda n: parse_profile(table(name=n), n))
     with pytest.raises(BadInput, match="fits several profiles: one, two"):
         ingest.read(path)
+
+
+@pytest.mark.parametrize(("pitch", "fits"), [([-34.1, -20.0, -7.4, 12.0, 8.0, -9.0], "degrees"), ([-0.3, 0.1, 0.2, 0.4, -0.1, 0.0], None)])
+def test_of_profiles_in_other_units_the_one_that_suits_the_values_is_taken(pitch, fits, tmp_path, monkeypatch):
+    """Tens of radians of pitch are none; tenths of a degree may be."""
+    path = tmp_path / "p.csv"
+    path.write_text("t,pitch\n" + "".join(f"{0.1 * i},{value}\n" for i, value in enumerate(pitch)))
+    units = {"radians": "rad", "degrees": "deg"}
+    monkeypatch.setattr(ingest, "profiles", lambda: tuple(units))
+    monkeypatch.setattr(ingest, "load_profile", lambda n: parse_profile(table(name=n, channels={"theta": {"column": "pitch", "unit": units[n]}}), n))
+    found = inspect(path)
+    if fits:
+        assert ingest.read(path).profile == fits and found.fits == (fits,)
+        assert found.lacking["radians"] == ("theta within -7 to 7 rad (holds -34.1 to 12)",)
+    else:
+        assert set(found.fits) == set(units)
+        with pytest.raises(BadInput, match="fits several profiles"):
+            ingest.read(path)
 
 
 def test_several_names_of_a_topic_are_for_bags():

@@ -182,6 +182,13 @@ def test_an_open_gap_may_be_what_pushed_unlogged() -> None:
     assert "It may be a disturbance, an effect that comes and goes" in sentence(still_open(0.04, 0.26, disturbance={}))
 
 
+def test_a_force_that_nobody_logged_where_thrusters_hardly_push_is_told_in_times_theirs() -> None:
+    """On a real log "4232 % of the thrusters' own" stood there."""
+    force = {"unlogged_force": {"size": 42.32, "expected": 0.02, "alike": 0.1, "evidence": 4.0}}
+    said = sentence(diagnosis(detection=detection(0.1, 0.1) | force))
+    assert "nobody logged, 42 times as large as the thrusters' own there; the median is 2 % beside" in said
+
+
 @pytest.mark.parametrize(("evidence", "said"), [(4.0, True), (-2.0, False)])
 def test_a_force_that_nobody_logged_is_told_where_it_speaks_against_the_causes(evidence: float, said: bool) -> None:
     force = {"unlogged_force": {"size": 0.2, "expected": 0.02, "alike": 0.1, "evidence": evidence}}

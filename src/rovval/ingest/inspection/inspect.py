@@ -62,6 +62,8 @@ def _inspected(path: Path, progress: Progress) -> Inspection:
         mine = [p for p in profiles if p.format in (name, *ingest.reader(name).ALSO)]
         matches = sorted((match(p, contents) for p in mine), key=lambda m: (len(m.gone), -len(m.found)))
         lacking = {p.name: ingest.reader(name).missing(path, p) for p in mine}
+        if len(fit := [p for p in mine if not lacking[p.name]]) > 1:
+            lacking |= {p.name: ingest.not_so(path, p) for p in fit}
         stamps = {topic: tuple(readings(t)) for topic, t in contents.topics.items() if t.rows and not t.clocks}
         return Inspection(path, name, contents, stamps, tuple(matches), lacking)
     raise refused[0]

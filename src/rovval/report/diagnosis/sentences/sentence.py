@@ -112,8 +112,9 @@ def _unlogged(d: Diagnosis) -> str:
         return ""
     alike = f", and {per_cent(force.alike)} beside what only looks like causes" if force.alike is not None else ""
     of = "the causes act" if len(d.causes) > 1 else "the cause acts" if d.causes else "what comes nearest acts"
+    size = f"{per_cent(force.size)} of the thrusters' own" if force.size < 1.0 else f"{force.size:.2g} times as large as the thrusters' own there"
     return (
-        f"Where {of}, a force is left that nobody logged, {per_cent(force.size)} of the thrusters' own; the median is "
+        f"Where {of}, a force is left that nobody logged, {size}; the median is "
         f"{per_cent(force.expected)} beside right causes{alike}."
     )
 
