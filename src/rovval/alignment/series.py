@@ -49,7 +49,7 @@ def bad_samples(name: str, series: Series, stuck_s: float | None) -> tuple[Codes
         if runs:
             detail = f"{len(runs)} runs of equal values longer than {stuck_s:g} s, from t = {series.t[runs[0][0]]:.1f} s; masked"
             findings.append(Finding("stuck", name, detail))
-    outside, most = series.outside(row)
+    outside, most = series.outside(row), series.mostly_outside(row)
     code[outside | most] = Reason.OUT_OF_RANGE
     if outside.any():
         low, high = series.values[outside].min(), series.values[outside].max()

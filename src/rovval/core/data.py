@@ -67,11 +67,14 @@ class Series:
         if not np.isfinite(self.values).all() or (np.diff(self.t) <= 0).any():
             raise BadInput("a channel's values must be finite and its stamps strictly increasing", "clean it in its reader")
 
-    def outside(self, row: Channel) -> tuple[Flags, bool]:
-        """Which samples (n,) are outside the sane range of a ``row`` of the channel table; and whether so many are, moving, that the channel is not what its
-        source says, another unit for one: its rest is no measurement either."""
-        outside = (self.values < row.low) | (self.values > row.high)
-        return outside, bool(outside.mean() > MOST_OUTSIDE and len(np.unique(self.values[outside])) > FILL_VALUES)
+    def outside(self, row: Channel) -> Flags:
+        """Which samples (n,) are outside the sane range of a ``row`` of the channel table."""
+        return np.asarray((self.values < row.low) | (self.values > row.high))
+
+    def mostly_outside(self, row: Channel) -> bool:
+        """Whether so many are, moving, that the channel is not what its source says, in another unit for one: its rest is no measurement either."""
+        outside = self.outside(row)
+        return bool(outside.mean() > MOST_OUTSIDE and len(np.unique(self.values[outside])) > FILL_VALUES)
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,7 +30,7 @@ from rovval.ingest.files.compression import is_compressed
 from rovval.ingest.files.dive_file import is_dive, load_dive, parts_of
 from rovval.ingest.profile import Profile, load_profile, profiles
 
-__all__ = ["Profile", "Reader", "formats_of", "load_profile", "not_so", "plain", "profiles", "read", "reader", "reader_of", "readers"]
+__all__ = ["Profile", "Reader", "formats_of", "implausible", "load_profile", "plain", "profiles", "read", "reader", "reader_of", "readers"]
 OF_TEXT = ("csv_log", "json_lines", "nmea")  # readers of text: they read it compressed, too
 
 
@@ -142,7 +142,8 @@ def _the_one_that_fits(path: Path) -> Profile:
         else:
             fits.append(candidate)
     if len(fits) > 1:
-        fits = [p for p in fits if not not_so(path, p)] or fits
+        unlikely = implausible(path, fits)
+        fits = [p for p in fits if not unlikely[p.name]] or fits
     if len(fits) == 1:
         return fits[0]
     if fits:
@@ -152,10 +153,16 @@ def _the_one_that_fits(path: Path) -> Profile:
     raise BadInput(f"{path}: fits no built-in profile" + "".join(near), hint)
 
 
-def not_so(path: Path, profile: Profile) -> tuple[str, ...]:
-    """The channels of ``profile`` that cannot be what it says by their values, as where one source writes radians in some logs and degrees in others."""
-    log = reader_of(path, profile).read(path, profile, silent)
-    rows = [(name, series.values, channel(name)) for name, series in log.channels.items() if series.outside(channel(name))[1]]
+def implausible(path: Path, fits: Sequence[Profile]) -> dict[str, tuple[str, ...]]:
+    """Of several profiles that fit a log, by name, the channels that by their values cannot be what it says: one source may write radians in some logs and
+    degrees in others. None of profiles that take each channel in one unit, which values cannot tell apart; for these the log is not read."""
+    taken = {(name, source.unit) for p in fits for name, source in p.channels.items()}
+    differ = len(taken) > len({name for name, _ in taken})
+    return {p.name: _implausible(reader_of(path, p).read(path, p)) if differ else () for p in fits}
+
+
+def _implausible(log: RawLog) -> tuple[str, ...]:
+    rows = [(name, series.values, channel(name)) for name, series in log.channels.items() if series.mostly_outside(channel(name))]
     return tuple(f"{name} within {row.low:g} to {row.high:g} {row.unit} (holds {v.min():.4g} to {v.max():.4g})" for name, v, row in rows)
 
 

@@ -128,8 +128,8 @@ def _speeds(run: Run, names: tuple[str, ...], known: Flags, vehicle: Vehicle) ->
 def _pulses(run: Run, names: tuple[str, ...], known: Flags, vehicle: Vehicle) -> tuple[Array, tuple[str, ...]]:
     table = vehicle.pulse_table
     assert table is not None
-    pwm = _within(table, run.stack(names)[known], run, known, vehicle)
-    return _equivalent_speed(pwm, vehicle, table), (f"thrust from pulse width by the table at {table.voltage:g} V",)
+    said = f"thrust from pulse width by the table at {table.voltage:g} V"
+    return _equivalent_speed(run.stack(names)[known], run, known, vehicle, table), (said,)
 
 
 def _sticks(run: Run, names: tuple[str, ...], known: Flags, vehicle: Vehicle) -> tuple[Array, tuple[str, ...]]:
@@ -137,12 +137,11 @@ def _sticks(run: Run, names: tuple[str, ...], known: Flags, vehicle: Vehicle) ->
     assert mixer is not None
     assert table is not None
     said = f"pulse widths from the pilot's sticks by the vehicle's mixer (manual mode), thrust by the table at {table.voltage:g} V"
-    pwm = _within(table, mix(run.stack(names)[known], mixer), run, known, vehicle)
-    return _equivalent_speed(pwm, vehicle, table), (said,)
+    return _equivalent_speed(mix(run.stack(names)[known], mixer), run, known, vehicle, table), (said,)
 
 
-def _within(table: PulseTable, pwm: Array, run: Run, known: Flags, vehicle: Vehicle) -> Array:
-    """The pulse widths (m, k) us of the grid points that are ``known``; raises BadInput where any is outside the table: nothing is extrapolated."""
+def _refuse_outside(table: PulseTable, pwm: Array, run: Run, known: Flags, vehicle: Vehicle) -> None:
+    """Raise BadInput where a pulse width is outside the table, of each thruster: nothing is extrapolated."""
     low, high = table.pwm_us[0], table.pwm_us[-1]
     outside, t = (pwm < low) | (pwm > high), run.t[known]
     problems = [
@@ -154,7 +153,6 @@ def _within(table: PulseTable, pwm: Array, run: Run, known: Flags, vehicle: Vehi
             all_at_once(problems, f"run {run.id}: pulse widths outside the thruster table of {vehicle.name} ({low:g} to {high:g} us)"),
             "extend pulse_table in the vehicle's file, mend the column that the profile reads, or leave that part out with --from and --to",
         )
-    return pwm
 
 
 def mix(sticks: Array, mixer: Mixer) -> Array:
@@ -163,8 +161,10 @@ def mix(sticks: Array, mixer: Mixer) -> Array:
     return np.asarray(mixer.neutral_us + mixer.span_us * np.clip(demand, -1.0, 1.0))
 
 
-def _equivalent_speed(pwm: Array, vehicle: Vehicle, table: PulseTable) -> Array:
-    """Speed (rev/s) at which the quadratic law of the table's thruster gives the table's thrust: the table stays exact, the law simple."""
+def _equivalent_speed(pwm: Array, run: Run, known: Flags, vehicle: Vehicle, table: PulseTable) -> Array:
+    """Speed (rev/s), of pulse widths (m, k) us at the ``known`` grid points, at which the quadratic law of the table's thruster gives the table's thrust: the
+    table stays exact, the law simple."""
+    _refuse_outside(table, pwm, run, known, vehicle)
     thrust = np.interp(pwm, table.pwm_us, table.thrust)
     ahead, astern = table.k_pos or [t.k_pos for t in vehicle.thruster], table.k_neg or [t.k_neg for t in vehicle.thruster]
     gain = np.where(thrust >= 0, ahead, astern)

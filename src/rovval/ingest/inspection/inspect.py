@@ -63,7 +63,7 @@ def _inspected(path: Path, progress: Progress) -> Inspection:
         matches = sorted((match(p, contents) for p in mine), key=lambda m: (len(m.gone), -len(m.found)))
         lacking = {p.name: ingest.reader(name).missing(path, p) for p in mine}
         if len(fit := [p for p in mine if not lacking[p.name]]) > 1:
-            lacking |= {p.name: ingest.not_so(path, p) for p in fit}
+            lacking |= ingest.implausible(path, fit)
         stamps = {topic: tuple(readings(t)) for topic, t in contents.topics.items() if t.rows and not t.clocks}
         return Inspection(path, name, contents, stamps, tuple(matches), lacking)
     raise refused[0]
