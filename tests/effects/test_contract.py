@@ -122,6 +122,23 @@ def test_a_window_reproduces_the_log_that_its_own_effects_made():
         assert np.abs(window.nu - log.nu[:, 80:141]).max() < tolerance, (key, value)
 
 
+@pytest.mark.parametrize("key", ["time_offset[velocity].delay", "time_offset[attitude].delay", "time_offset[depth].delay", "velocity_filter_lag.tau"])
+def test_a_window_goes_over_without_a_jump_from_one_delay_to_the_next(key):
+    """At no delay at all, and at each whole sample of it, where another sample of the log is the first that counts: a jump there, of half a sensor's noise
+    before this was held, is a slope of its own in every linearisation across it, and the larger the smaller the step is."""
+    plant, rng = Plant(cases.merlin()), np.random.default_rng(3)
+    inputs, tiny = cases.random_inputs(rng, plant), 1e-7
+    nu, eta = cases.random_states(rng, 1)
+    delays = [d for d in (0.0, 0.1, 0.2, -0.1, -0.2) if d >= plant.slots[plant.index[key]].parameter.low]
+    beta = np.tile(plant.null, (2 * len(delays), 1))
+    beta[:, plant.index[key]] = [max(d + side * tiny, 0.0 if len(delays) < 5 else -np.inf) for d in delays for side in (-1, 1)]
+    many = np.ones((len(beta), 1))
+    out = plant.simulate(inputs, np.full(len(beta), 60), 30, nu * many, eta * many, beta)
+    motion = np.concatenate([out.nu, out.eta], axis=-1).reshape(len(delays), 2, 31, 12)
+    assert np.abs(motion[:, 1] - motion[:, 0]).max() < 100.0 * tiny  # m/s, rad/s, m and rad per second of delay
+    assert np.abs(motion[:, 1] - motion[:, 0]).max() > 1e-3 * tiny
+
+
 def test_sensors_of_many_lanes_are_those_of_one_lane_at_a_time():
     """Lanes side by side, apart and all at once, several effects on one of them; the motion handed in stays as it was."""
     plant, rng = Plant(cases.merlin()), np.random.default_rng(2)

@@ -83,34 +83,40 @@ def true_start(clock: Clock, start: Indices, measured: Array, delays: Sequence[D
 
 
 def _forward(clock: Clock, start: Indices, state: Array, one: Delay) -> Iterator[Path]:
-    """Lanes with a late sensor, from as many samples before the start as the delay has. A part of a sample, and the turn of an attitude that is not
-    late, are taken at their first rate; what else moves is held: stepped back, it errs by what the model misses, which grows that way (roll and
-    pitch of a BlueROV2)."""
+    """Lanes with a late sensor, from as many samples before the start as the delay has. The oldest sample adds as much of what it would add as the delay
+    has of it, so that the motion at the start goes over into what was measured there as the delay vanishes. The turn of an attitude that is not late is
+    taken back at its rate at the start; what else moves is held: stepped back, it errs by what the model misses, which grows that way (roll and pitch of a
+    BlueROV2)."""
     columns, turned = np.array(one.columns), np.array([c for c in ANGLES if c not in one.columns], dtype=np.int64)
     for steps, alike in _alike(one.seconds, clock.dt):
         lanes = alike[start[alike] >= steps]
         if len(lanes):
-            begin, first = start[lanes] - steps, state[lanes]
+            begin, part = start[lanes] - steps, (one.seconds[lanes] / clock.dt - (steps - 1))[:, None]
+            rate, _ = clock.step(lanes, start[lanes], state[lanes])
+            first = state[lanes]
+            first[:, turned] -= steps * rate[:, turned]
             added, _ = clock.step(lanes, begin, first)
-            first[:, columns] -= (steps - one.seconds[lanes] / clock.dt)[:, None] * added[:, columns]
-            first[:, turned] -= steps * added[:, turned]
-            out, stopped = clock.simulate(lanes, begin, first, steps)
-            yield lanes[stopped < 0], out[stopped < 0]
+            second = state[lanes] + part * added
+            second[:, turned] -= (steps - 1 + part) * rate[:, turned]
+            first[:, columns] -= (1.0 - part) * added[:, columns]
+            out, stopped = clock.simulate(lanes, begin + 1, second, steps - 1) if steps > 1 else (second[:, None], np.full(len(lanes), -1))
+            yield lanes[stopped < 0], np.concatenate([first[:, None], out], axis=1)[stopped < 0]
 
 
 def _back(clock: Clock, start: Indices, state: Array, one: Delay) -> Iterator[Path]:
-    """Lanes with an early sensor, stepped back from where it showed the motion that it wrote at the start."""
+    """Lanes with an early sensor, stepped back from where it showed the motion that it wrote at the start; of the last sample as much as the delay has."""
     columns = np.array(one.columns)
     for steps, alike in _alike(-one.seconds, clock.dt):
         lanes = alike[start[alike] + steps + 1 < clock.samples]
         if len(lanes):
-            added, ran = clock.step(lanes, start[lanes] + steps, state[lanes])
-            there = state[lanes]
-            there[:, columns] += (steps + one.seconds[lanes] / clock.dt)[:, None] * added[:, columns]
+            there, ran = state[lanes], np.ones(len(lanes), dtype=bool)
+            part = (-one.seconds[lanes] / clock.dt - (steps - 1))[:, None]
             for j in range(steps - 1, -1, -1):
                 goal = there.copy()
                 for _ in range(2):  # what leads to the goal in a step: by the step that begins in the goal, then by that of the first answer
                     added, still = clock.step(lanes, start[lanes] + j, there)
                     there[:, columns] = (goal - added)[:, columns]
                     ran = ran & still
+                if j == steps - 1:
+                    there = goal + part * (there - goal)
             yield lanes[ran], there[ran, None]

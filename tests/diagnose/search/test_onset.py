@@ -24,7 +24,7 @@ from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
-from rovval.diagnose.inference.map_fit import healthy_fit
+from rovval.diagnose.inference.map_fit import healthy_fit, posterior_at
 from rovval.diagnose.problem.problem import Problem, corrected_residuals, pose
 from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.residuals.ridge import Prior
@@ -165,7 +165,9 @@ def test_a_cause_from_some_moment_on_is_weighed_on_every_window(posed: tuple[Pro
     loss = named(library, "inflow_loss")
     always = fit_hypothesis(problem, problem.origin, loss.slots)
     throughout, never = (with_onset(problem, [loss], -1.0, Part(t, problem, always), alone) for t in (0.0, 1e6))
-    assert throughout.evidence + onset_cost(problem) == pytest.approx(always.evidence, rel=1e-3)
+    made_anew = posterior_at(problem, always.posterior.beta, always.posterior.columns, always.posterior.effect_count)  # all sensitivities made anew
+    assert throughout.evidence + onset_cost(problem) == pytest.approx(laplace_evidence(problem, made_anew), rel=1e-9)
+    assert throughout.evidence + onset_cost(problem) == pytest.approx(always.evidence, abs=0.5)
     assert never.evidence + onset_cost(problem) == pytest.approx(laplace_evidence(problem, alone), abs=1.0)
     there = pose((windows_from(windows, BEGINS),), columns_of(library), 0.05)
     begun = with_onset(problem, [loss], -1.0, Part(BEGINS, there, fit_hypothesis(there, always.beta, loss.slots)), alone)

@@ -31,6 +31,7 @@ import numpy as np
 from rovval.diagnose.criteria import (
     BETWEEN_CAUSES,
     GROUP_PROBABILITY,
+    MATERIAL,
     NAMED_FROM,
     NOT_FOUND,
     PRIOR_CAUSES,
@@ -336,11 +337,15 @@ def _coarser(mass: Mapping[Key, float]) -> dict[Key, float]:
 
 
 def _least(names: Names, best: Mapping[Names, Model], left: Left | None) -> str:
-    """The cause of a set that adds least to the others: that leaves most of what they leave of the gap, or, where nothing is known of that, adds least
-    evidence; the last that was added where the sets without it were not fitted."""
+    """The cause of a set that adds least to the others: that leaves most of what they leave of the gap, and of those that leave as much (to a `MATERIAL`
+    part), or where nothing is known of that, adds least evidence; the last that was added where the sets without it were not fitted."""
+    alike = sorted(names)
     if left is not None:
-        return max(sorted(names), key=lambda name: float(left.beyond(name, names).min()))
-    fitted = [name for name in names if names - {name} in best]
+        kept = {name: float(left.beyond(name, names).min()) for name in alike}
+        alike = [name for name in sorted(names, key=lambda name: -kept[name]) if kept[name] >= max(kept.values()) - MATERIAL]
+    fitted = [name for name in alike if names - {name} in best]
     if fitted:
-        return max(sorted(fitted), key=lambda name: best[names - {name}].evidence)
+        return max(fitted, key=lambda name: best[names - {name}].evidence)
+    if left is not None:
+        return alike[0]
     return best[names].causes[-1].name if names in best else max(names)

@@ -14,7 +14,8 @@ from rovval.core.data import Array
 from rovval.diagnose.residuals.nuisances import POSE_INDEX
 from rovval.diagnose.windows.windows import Windows
 
-STEP = 0.25  # finite-difference step as a share of a parameter's typical size
+STEP = 0.25  # finite-difference step as a share of a parameter's typical size, of central differences, whose error goes with its square
+STEP_ONE_SIDED = 0.05  # the same of one-sided ones, whose error goes with the step itself
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +75,7 @@ def perturbations(
         unit[index if index < 6 else POSE_INDEX[index]] = step
         lanes.append(Perturbation(beta, unit if index < 6 else still, still if index < 6 else unit, state=i, step=step))
     for column in columns:
-        up, down = _steps(windows, beta, column)
+        up, down = _steps(windows, beta, column, STEP)
         lanes.append(Perturbation(_moved(beta, [(column, beta[column] + down)]), still, still) if down else lanes[0])
         lanes.append(Perturbation(_moved(beta, [(column, beta[column] + up)]), still, still, column=column, step=up - down, against=len(lanes) - 1))
     bases = dict.fromkeys(_unchanged(windows, beta, directions), 0)
@@ -86,7 +87,7 @@ def perturbations(
         if d.at not in bases:
             bases[d.at] = len(lanes)
             lanes.append(Perturbation(there, still, still))
-        up, _ = _steps(windows, there, d.slot)
+        up, _ = _steps(windows, there, d.slot, STEP)
         lanes.append(Perturbation(_moved(there, [(d.slot, there[d.slot] + up)]), still, still, column=d.id, step=up, against=bases[d.at]))
     return lanes
 
@@ -104,15 +105,15 @@ def forward_differences(windows: Windows, beta: Array, columns: tuple[int, ...])
     """One-sided differences of the parameters of ``columns`` about ``beta`` (k,), away from a bound that ``beta`` lies on."""
     still, lanes = np.zeros(6), []
     for column in columns:
-        up, down = _steps(windows, beta, column)
+        up, down = _steps(windows, beta, column, STEP_ONE_SIDED)
         lanes.append(Perturbation(_moved(beta, [(column, beta[column] + (up or down))]), still, still, column=column, step=up or down))
     return lanes
 
 
-def _steps(windows: Windows, beta: Array, column: int) -> tuple[float, float]:
-    """Steps up and down of a parameter that stay within its bounds; 0 where a bound is in the way."""
+def _steps(windows: Windows, beta: Array, column: int, share: float) -> tuple[float, float]:
+    """Steps up and down of a parameter, a ``share`` of its typical size, that stay within its bounds; 0 where a bound is in the way."""
     parameter = windows.plant.slots[column].parameter
-    step = STEP * parameter.typical
+    step = share * parameter.typical
     up = step if beta[column] + step <= parameter.high else 0.0
     down = -step if beta[column] - step >= parameter.low else 0.0
     return (up, down) if up or down else (parameter.high - beta[column], 0.0)

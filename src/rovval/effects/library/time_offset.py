@@ -31,7 +31,7 @@ EFFECT = Effect(
         "t": "time since the run's start; s",
     },
     parameters=(
-        Parameter("tau", "s", -2.0, 2.0, 0.0, 0.1, "+-0.5 s (chosen)", tolerance=CLOCKS, error="delay"),
+        Parameter("tau", "s", -2.0, 2.0, 0.0, 0.2, "+-0.5 s (chosen)", tolerance=CLOCKS, error="delay"),
         Parameter("delay", "s", -1.5, 1.5, 0.0, 0.2, "+-0.5 s (chosen)", target="velocity", tolerance=CLOCKS, error="delay"),
         Parameter("delay", "s", -1.5, 1.5, 0.0, 0.2, "+-0.5 s (chosen)", target="attitude", tolerance=CLOCKS, error="delay"),
         # No tolerance: half a sample of it moves a depth by less than its check is held to see.
@@ -47,7 +47,7 @@ EFFECT = Effect(
         "Furgale 2013: temporal calibration of several sensors",
         "Klein and Morelli 2006: data compatibility of flight measurements",
     ),
-    far=(-8.0, -4.0, 4.0, 8.0),  # commands that came a second late and step from one level to the next show no useful slope (chosen)
+    far=(-4.0, -2.0, 2.0, 4.0),  # commands that came a second late and step from one level to the next show no useful slope (chosen)
     stage="delay",
 )
 FULL_KERNEL = True
