@@ -129,9 +129,10 @@ def test_a_window_goes_over_without_a_jump_from_one_delay_to_the_next(key):
     plant, rng = Plant(cases.merlin()), np.random.default_rng(3)
     inputs, tiny = cases.random_inputs(rng, plant), 1e-7
     nu, eta = cases.random_states(rng, 1)
-    delays = [d for d in (0.0, 0.1, 0.2, -0.1, -0.2) if d >= plant.slots[plant.index[key]].parameter.low]
+    least = plant.slots[plant.index[key]].parameter.low
+    delays = [d for d in (0.0, 0.1, 0.2, -0.1, -0.2) if d >= least]
     beta = np.tile(plant.null, (2 * len(delays), 1))
-    beta[:, plant.index[key]] = [max(d + side * tiny, 0.0 if len(delays) < 5 else -np.inf) for d in delays for side in (-1, 1)]
+    beta[:, plant.index[key]] = [max(d + side * tiny, least) for d in delays for side in (-1, 1)]
     many = np.ones((len(beta), 1))
     out = plant.simulate(inputs, np.full(len(beta), 60), 30, nu * many, eta * many, beta)
     motion = np.concatenate([out.nu, out.eta], axis=-1).reshape(len(delays), 2, 31, 12)

@@ -62,9 +62,10 @@ def true_start(clock: Clock, start: Indices, measured: Array, delays: Sequence[D
     for one in (d for d in delays if not set(d.columns) & set(POSITIONS)):
         columns, lanes = np.array(one.columns), np.flatnonzero(one.seconds)
         added, _ = clock.step(lanes, start[lanes], state[lanes])
-        straight = state[lanes]
+        straight, rate = state[lanes], np.zeros_like(state)
         straight[:, columns] += (one.seconds[lanes] / clock.dt)[:, None] * added[:, columns]
-        paths = [*_forward(clock, start, state, one), *_back(clock, start, state, one)]
+        rate[lanes] = added
+        paths = [*_forward(clock, start, state, rate, one), *_back(clock, start, state, one)]
         state[lanes] = straight
         for known, path in paths:
             state[np.ix_(known, columns)] = path[:, -1][:, columns]
@@ -82,22 +83,21 @@ def true_start(clock: Clock, start: Indices, measured: Array, delays: Sequence[D
     return state, before, after
 
 
-def _forward(clock: Clock, start: Indices, state: Array, one: Delay) -> Iterator[Path]:
+def _forward(clock: Clock, start: Indices, state: Array, rate: Array, one: Delay) -> Iterator[Path]:
     """Lanes with a late sensor, from as many samples before the start as the delay has. The oldest sample adds as much of what it would add as the delay
     has of it, so that the motion at the start goes over into what was measured there as the delay vanishes. The turn of an attitude that is not late is
-    taken back at its rate at the start; what else moves is held: stepped back, it errs by what the model misses, which grows that way (roll and pitch of a
-    BlueROV2)."""
+    taken back at its ``rate`` at the start, a sample's (B, 12); what else moves is held: stepped back, it errs by what the model misses, which grows that
+    way (roll and pitch of a BlueROV2)."""
     columns, turned = np.array(one.columns), np.array([c for c in ANGLES if c not in one.columns], dtype=np.int64)
     for steps, alike in _alike(one.seconds, clock.dt):
         lanes = alike[start[alike] >= steps]
         if len(lanes):
             begin, part = start[lanes] - steps, (one.seconds[lanes] / clock.dt - (steps - 1))[:, None]
-            rate, _ = clock.step(lanes, start[lanes], state[lanes])
-            first = state[lanes]
-            first[:, turned] -= steps * rate[:, turned]
+            first, turn = state[lanes], rate[np.ix_(lanes, turned)]
+            first[:, turned] -= steps * turn
             added, _ = clock.step(lanes, begin, first)
             second = state[lanes] + part * added
-            second[:, turned] -= (steps - 1 + part) * rate[:, turned]
+            second[:, turned] -= (steps - 1 + part) * turn
             first[:, columns] -= (1.0 - part) * added[:, columns]
             out, stopped = clock.simulate(lanes, begin + 1, second, steps - 1) if steps > 1 else (second[:, None], np.full(len(lanes), -1))
             yield lanes[stopped < 0], np.concatenate([first[:, None], out], axis=1)[stopped < 0]
