@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnose_case import bluerov2, posed, slot
+from diagnose_case import bluerov2, foreign, merlin, posed, slot
 
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
-from rovval.diagnose.inference.laplace import resampled_evidence
-from rovval.diagnose.inference.map_fit import healthy_fit, map_fit, map_refit, refit_healthy
+from rovval.diagnose.inference.laplace import laplace_evidence, resampled_evidence
+from rovval.diagnose.inference.map_fit import healthy_fit, map_fit, map_refit, posterior_at, refit_healthy
 from rovval.diagnose.problem.problem import Problem, pose
 from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.search.discrepancy import generic_forces
@@ -31,6 +31,17 @@ def test_the_beginning_first_ends_no_higher(tmp_path: Path):
     p = rolling(tmp_path)
     far, near = map_fit(p, p.origin, ()), healthy_fit(p)
     assert near.predicted_cost() <= 1.02 * far.predicted_cost()
+
+
+def test_the_evidence_of_a_fit_is_that_of_where_it_ends(tmp_path: Path):
+    """Thrusters of the independent plant that answer late, by a fit from far away: the sensitivities to coefficients within tolerance of where it began are off
+    by 40 in evidence where it ends."""
+    parts, _ = cut([foreign(tmp_path, (("thrust_lag", "", 1.0),), 41, 120.0, 0.02, mission="steps")], merlin(), "fossen", 10.0)
+    library = hypotheses(parts)[0]
+    p = pose(parts, columns_of(library), 0.05)
+    point = map_fit(p, p.origin, next(h for h in library if h.name == "thrust_lag").slots)
+    there = posterior_at(p, point.beta, point.columns, point.effect_count)
+    assert laplace_evidence(p, point) == pytest.approx(laplace_evidence(p, there), abs=0.1)
 
 
 def test_no_cause_gains_by_another_start():

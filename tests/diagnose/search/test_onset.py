@@ -156,7 +156,7 @@ def test_a_cause_that_never_begins_is_a_healthy_vehicle_with_its_own_tolerance(p
     assert set(drag.slots) <= set(problem.tolerance.sd)
     never, throughout = (with_onset(problem, [drag], -1.0, Part(t, problem, always), alone) for t in (1e6, 0.0))
     assert never.evidence + onset_cost(problem) == pytest.approx(laplace_evidence(problem, alone), abs=1.0)
-    assert throughout.evidence + onset_cost(problem) == pytest.approx(always.evidence, abs=5.0)  # sensitivities of tolerances made anew where it ended
+    assert throughout.evidence + onset_cost(problem) == pytest.approx(always.evidence, abs=1.0)
 
 
 def test_a_cause_from_some_moment_on_is_weighed_on_every_window(posed: tuple[Problem, Windows, list[Hypothesis], Posterior]) -> None:
@@ -166,7 +166,7 @@ def test_a_cause_from_some_moment_on_is_weighed_on_every_window(posed: tuple[Pro
     always = fit_hypothesis(problem, problem.origin, loss.slots)
     throughout, never = (with_onset(problem, [loss], -1.0, Part(t, problem, always), alone) for t in (0.0, 1e6))
     made_anew = posterior_at(problem, always.posterior.beta, always.posterior.columns, always.posterior.effect_count)  # all sensitivities made anew
-    assert throughout.evidence + onset_cost(problem) == pytest.approx(laplace_evidence(problem, made_anew), rel=1e-9)
+    assert throughout.evidence + onset_cost(problem) == pytest.approx(laplace_evidence(problem, made_anew), abs=0.5)  # the better of two starts
     assert throughout.evidence + onset_cost(problem) == pytest.approx(always.evidence, abs=0.5)
     assert never.evidence + onset_cost(problem) == pytest.approx(laplace_evidence(problem, alone), abs=1.0)
     there = pose((windows_from(windows, BEGINS),), columns_of(library), 0.05)

@@ -65,7 +65,8 @@ def fit_quickly(problem: Problem, start: Array, slots: tuple[int, ...], near: tu
 
 
 def _with_onset_searched(problem: Problem, point: Posterior, slots: tuple[int, ...]) -> Posterior:
-    """The posterior with onsets searched along the log, to which windows before them have no sensitivity; all else is then fitted again."""
+    """The posterior with onsets searched along the log, to which windows before them have no sensitivity; all else is then fitted again, and stays as it was
+    where that ends no better."""
     onsets = [s for s in slots if problem.plant.slots[s].parameter.role == "onset"]
     best = point
     for slot in onsets:
@@ -73,7 +74,7 @@ def _with_onset_searched(problem: Problem, point: Posterior, slots: tuple[int, .
             trial = moved_to(problem, best, slot, max(best.beta[slot] + shift, problem.plant.slots[slot].parameter.low))
             if trial.predicted_cost() < best.predicted_cost():
                 best = trial
-    return point if best is point else map_fit(problem, best.beta, slots)
+    return point if best is point else min(point, map_fit(problem, best.beta, slots), key=Posterior.cost)
 
 
 def _scored(problem: Problem, point: Posterior, slots: tuple[int, ...]) -> HypothesisFit:

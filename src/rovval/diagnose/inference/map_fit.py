@@ -17,7 +17,6 @@ from rovval.diagnose.effort import (
     MAP_STEPS,
     PROGRESSIVE_S,
     QUICK_STEPS,
-    RELINEARISED_FROM,
     RELINEARISED_TIMES,
     STEP_SHARES,
     STEP_WORTH,
@@ -33,7 +32,7 @@ def map_fit(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[
     """Fit ``slots`` and coefficients within tolerance jointly from ``start`` (p,), in ``rounds`` steps at most; the posterior at the optimum.
 
     Sensitivities to the slots are taken anew at every step. Those to coefficients within tolerance and to initial states are frozen: those of ``near``, or
-    of ``start``, and then taken anew `RELINEARISED_TIMES` times at most where the fit ends far from it.
+    of ``start``, and then of where each descent ends (`_followed`).
     """
     if near is not None:
         return _descended(problem, posterior_at(problem, start, _columns(problem, slots), len(slots), near), near, rounds)
@@ -91,13 +90,18 @@ def _columns(problem: Problem, slots: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def _followed(problem: Problem, point: Posterior, rounds: int) -> Posterior:
-    """The optimum from ``point``, its sensitivities taken anew `RELINEARISED_TIMES` times at most where it ends far from there."""
+    """The optimum from ``point``, with the sensitivities that it has there: where a descent ends they are made anew, and another follows where one more step
+    gains by them, `RELINEARISED_TIMES` times at most. Of the points so reached it is the best, each by its own sensitivities."""
+    best = point
     for _ in range(RELINEARISED_TIMES):
         reached = _descended(problem, point, point.whitened, rounds)
-        if point.cost() - reached.cost() < RELINEARISED_FROM * problem.tempering:
-            return reached
+        if reached is point:
+            break
         point = posterior_at(problem, reached.beta, point.columns, point.effect_count)
-    return _descended(problem, point, point.whitened, rounds)
+        best = min(best, point, key=Posterior.cost)
+        if point.cost() - point.predicted_cost() < STEP_WORTH * problem.tempering:
+            break
+    return best
 
 
 def _descended(problem: Problem, point: Posterior, slopes: tuple[Whitened, ...], rounds: int) -> Posterior:

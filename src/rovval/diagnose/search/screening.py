@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.effort import RELINEARISED_FROM
+from rovval.diagnose.effort import SCREENED_WITHIN
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of, prior_of, wide_prior
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem, equations_at
@@ -28,14 +28,14 @@ def linearised(problem: Problem, library: Iterable[Hypothesis], base: Posterior,
 
 def moved_to(problem: Problem, data: NormalEquations, base: Posterior) -> NormalEquations | None:
     """Normal equations of a library at the baseline ``base``, by the linearisation ``data`` about another; None where it does not hold there: the cost that it
-    predicts, or what a step from there would gain, is not that of the simulation at ``base`` (`RELINEARISED_FROM`)."""
+    predicts, or what a step from there would gain, is not that of the simulation at ``base`` (`SCREENED_WITHIN`)."""
     if not set(base.columns) <= set(data.columns) or data.offset is None:
         return None
     offset = _offset(problem, data, base)
     there = data.after(offset - data.offset)
     slope = there.b.sum(axis=0)[there.place(base.columns)] - base.total.b.sum(axis=0)
     off = abs(float(there.c.sum() - base.total.c.sum())) + float(slope @ base.solve(base.curvature, slope))
-    return replace(there, offset=offset) if off <= RELINEARISED_FROM * problem.tempering else None
+    return replace(there, offset=offset) if off <= SCREENED_WITHIN * problem.tempering else None
 
 
 def _offset(problem: Problem, data: NormalEquations, base: Posterior) -> Array:
