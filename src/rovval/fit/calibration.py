@@ -20,6 +20,7 @@ from rovval.core.version import __version__
 from rovval.diagnose.criteria import HELD_OUT_RUNS
 from rovval.diagnose.effort import PROGRESSIVE_S
 from rovval.diagnose.windows.noise import clean_channels
+from rovval.fit.apparent_sizes import apparent_sizes
 from rovval.fit.discrepancy import discrepancy
 from rovval.fit.estimate import Estimate, Problem, held_out_gain, maximum
 from rovval.fit.random_effects import tolerances
@@ -31,7 +32,13 @@ from rovval.plant.slots import slots
 from rovval.simulation import carried_effects, simulate
 from rovval.simulation.fitted_commands import Excess, excesses, fitted, largest
 from rovval.simulation.fitted_errors import kept
-from rovval.simulation.fitted_tolerances import fitted_discrepancy, fitted_tolerances, with_discrepancy, with_tolerances
+from rovval.simulation.fitted_tolerances import (
+    fitted_discrepancy,
+    fitted_tolerances,
+    with_discrepancy,
+    with_sizes,
+    with_tolerances,
+)
 from rovval.simulation.step import steps_a_sample
 from rovval.vehicle.model import Vehicle
 
@@ -165,9 +172,10 @@ def calibrate(runs: Sequence[Run], vehicle: Vehicle, *, model: str = "fossen", w
     left = _left(records, vehicle, chosen, model, by)
     own, apart = [one.run for one in records], [applied(vehicle, chosen, e.values) for e in by]
     known = tolerances(own, apart, model, window_s)
-    unmodelled = discrepancy(own, [with_tolerances(v, known) for v in apart], model, window_s)
+    apart = [with_tolerances(v, known) for v in apart]
+    unmodelled, sizes = discrepancy(own, apart, model, window_s), apparent_sizes(own, apart, model, window_s)
     calibrated = _remembering(applied(vehicle, chosen, estimate.values), records, left)
-    calibrated = with_discrepancy(with_tolerances(calibrated, known), unmodelled)
+    calibrated = with_sizes(with_discrepancy(with_tolerances(calibrated, known), unmodelled), sizes)
     errors = _errors(records, vehicle, calibrated, chosen, model, others)
     accepted = tuple(name for name, by_run in gains.items() if min(by_run) > 0)
     rows = tuple(_row(vehicle, one, estimate, i) for i, one in enumerate(chosen))

@@ -2,7 +2,7 @@
 
 The numbers stand in the vehicle file's table `[calibration]`, standard deviations all of them: of what every vehicle has to some degree and no file states,
 loss of thrust under way, say, one a parameter of such an effect (`effects.Effect.option`) in its unit; and of forces that no equation of the vehicle has,
-two an axis, N or N m (`fit.discrepancy`).
+two an axis, N or N m (`fit.discrepancy`); and of sizes that effects of the library only seem to have (`fit.apparent_sizes`).
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from rovval.vehicle.model import Vehicle
 
 TOLERANCE = "tolerance."  # before the parameter's key
 DISCREPANCY = "discrepancy."  # before the kind of force
+APPARENT = "apparent."  # before the parameter's key
 
 
 def fitted_tolerances(vehicle: Vehicle) -> Mapping[str, float]:
@@ -39,6 +40,16 @@ def kind_of_force(axis: str, damping: bool) -> str:
 def with_discrepancy(vehicle: Vehicle, found: Mapping[str, float]) -> Vehicle:
     """The vehicle with these in place of those that its file has, in four digits."""
     return _with(vehicle, DISCREPANCY, found)
+
+
+def fitted_sizes(vehicle: Vehicle) -> Mapping[str, float]:
+    """Standard deviations of apparent sizes by key of the parameter (``thruster_degraded[T2].loss``); empty where the vehicle's file does not say."""
+    return _known(vehicle, APPARENT)
+
+
+def with_sizes(vehicle: Vehicle, found: Mapping[str, float]) -> Vehicle:
+    """The vehicle with these in place of those that its file has, in four digits."""
+    return _with(vehicle, APPARENT, found)
 
 
 def _known(vehicle: Vehicle, kind: str) -> Mapping[str, float]:

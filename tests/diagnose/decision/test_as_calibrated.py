@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from diagnose_case import merlin, posed
-from scipy import stats
+from scipy import integrate, stats
 
 from rovval.diagnose.criteria import (
     CALIBRATED_SPREAD,
@@ -17,7 +17,7 @@ from rovval.diagnose.criteria import (
     PRIOR_HEALTHY,
     PRIOR_SOMETHING_ELSE,
 )
-from rovval.diagnose.decision.as_calibrated import odds_as_calibrated
+from rovval.diagnose.decision.as_calibrated import odds_as_calibrated, sizes_as_they_were
 from rovval.diagnose.decision.open_gap import open_gap
 from rovval.diagnose.decision.posterior import probabilities
 from rovval.diagnose.decision.resemblance import Left, gap_left, unlogged_where_they_act
@@ -58,6 +58,33 @@ def test_a_gap_as_large_as_it_was_is_the_vehicle_and_a_larger_one_is_not():
     odds = [odds_as_calibrated((grown,), PRIOR_CAUSES, 0.7) for grown in (0.3, 1.0, 2.0, 8.0, 30.0)]
     assert odds[0] > odds[1] > 1.0 > odds[3] > odds[4] and odds[3] < 0.2 and odds[4] < 1e-3
     assert odds_as_calibrated((1.0,), PRIOR_SOMETHING_ELSE, 0.7) > 5.0 * odds[1]  # of which there was less beforehand
+
+
+@pytest.mark.parametrize("freedom", [2.0, 4.0])
+def test_what_sizes_say_is_a_ratio_of_two_distributions(freedom: float):
+    """Student's t, over the same scaled by the root of a growth whose logarithm is exponential."""
+    for size in (0.0, 0.7, 3.0, 20.0):
+        wider, _ = integrate.quad(lambda y, x=size: np.exp(-1.5 * y) * stats.t.pdf(x * np.exp(-0.5 * y), freedom), 0.0, 60.0)
+        assert sizes_as_they_were((size,), freedom) == pytest.approx(stats.t.pdf(size, freedom) / wider, rel=1e-3)
+
+
+def test_a_cause_as_large_as_it_seemed_to_be_is_the_vehicle_and_a_larger_one_is_not():
+    """The sooner, the more runs say how large it seemed; and it may have come in any one of several."""
+    ratio = [sizes_as_they_were((size,), 4.0) for size in (0.0, 1.0, 3.0, 6.0, 12.0)]
+    assert ratio[0] > ratio[1] > 1.0 > ratio[2] > ratio[3] > ratio[4] and ratio[4] < 0.06
+    assert sizes_as_they_were((6.0,), 2.0) > ratio[3] > sizes_as_they_were((6.0,), 8.0)
+    assert ratio[3] < sizes_as_they_were((0.0, 6.0), 4.0) < 1.0
+    assert sizes_as_they_were((), 4.0) == 1.0
+
+
+@pytest.mark.parametrize("size", [0.5, 12.0])
+def test_causes_are_believed_where_they_are_larger_than_they_seemed(size: float):
+    prior = ModelPrior.of([Hypothesis(n, n, (), (), ()) for n in ("inflow_loss", "dvl_scale")])
+    causes = (Hypothesis("inflow_loss", "inflow_loss", (), (), ()),)
+    models = [Model((), None, 0.0, prior.log_mass(())), Model(causes, None, 80.0, prior.log_mass(causes))]
+    left = Left({LOSS: np.full(2, 0.2)}, {LOSS: (0.2, 1e-6)}, {LOSS: 1.0}, {"surge": 1.0}, sizes={LOSS: (size,)}, freedom=4.0)
+    found = probabilities(models, {}, 0.0, {}, {}, left=left)
+    assert found.healthy > found.causes if size < 1.0 else found.said == "causes"
 
 
 def test_something_else_is_at_work_on_one_axis_though_the_others_are_as_they_were():
@@ -113,6 +140,20 @@ def test_what_a_calibration_left_is_in_the_metric_of_the_gap():
     once, twice = (remembering(problem, {c: x / by for c, x in error.items()}) for by in (1.0, 2.0))
     [grown], [more] = (gap_left(one, models).grown_since(LOSS) for one in (once, twice))
     assert grown == pytest.approx(1.0, rel=0.35) and more > 3.0 * grown
+
+
+def test_sizes_are_beside_those_that_the_calibration_s_logs_seemed_to_have():
+    """In standard deviations of these and of the fit's own error; of a vehicle without them nothing is known."""
+    problem, _ = posed(("inflow_loss:loss=0.3",))
+    slots = tuple(i for i, s in enumerate(problem.plant.slots) if s.hypothesis == "inflow_loss")
+    fit = fit_hypothesis(problem, problem.origin, slots)
+    models = [Model((Hypothesis("inflow_loss", "inflow_loss", slots, (), ()),), fit, fit.evidence, 0.0)]
+    known = merlin().model_copy(update={"calibration": {"error.u": 0.01, "apparent.inflow_loss.loss": 0.1, "error_runs": 3.0}})
+    calibrated = replace(problem, runs=tuple(replace(windows, plant=Plant(known, "fossen")) for windows in problem.runs))
+    left = gap_left(calibrated, models)
+    [size] = left.sizes_since(LOSS)
+    assert 0.8 * fit.beta[slots[0]] / 0.1 < size < fit.beta[slots[0]] / 0.1 and left.freedom == 4.0
+    assert gap_left(problem, models).sizes_since(LOSS) == gap_left(remembering(problem, {"u": 0.1}), models).sizes_since(LOSS) == ()
 
 
 def test_an_unlogged_force_as_large_as_the_calibration_left_is_expected():

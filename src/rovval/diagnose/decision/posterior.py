@@ -39,7 +39,7 @@ from rovval.diagnose.criteria import (
     PRIOR_HEALTHY,
     PRIOR_SOMETHING_ELSE,
 )
-from rovval.diagnose.decision.as_calibrated import odds_as_calibrated
+from rovval.diagnose.decision.as_calibrated import odds_as_calibrated, sizes_as_they_were
 from rovval.diagnose.decision.constancy import Variation
 from rovval.diagnose.decision.resemblance import (
     Explained,
@@ -262,8 +262,10 @@ def _without_what_looks_alike(believed: Mapping[Entry, float], explained: Mappin
 
 
 def _as_calibrated(left: Left | None, names: Names, other: float) -> float:
-    """Odds of a vehicle that is as it was calibrated over a model with these causes, of prior mass ``other``."""
-    return odds_as_calibrated(left.grown_since(names), other, left.spread) if left else 0.0
+    """Odds of a vehicle that is as it was calibrated over a model with these causes, of prior mass ``other``, by how the gap and their sizes have grown."""
+    if left is None:
+        return 0.0
+    return odds_as_calibrated(left.grown_since(names), other, left.spread) * sizes_as_they_were(left.sizes_since(names), left.freedom)
 
 
 def _log_varying(model: Model, varying: Variation) -> tuple[float, dict[str, float]]:

@@ -65,10 +65,13 @@ from rovval.diagnose.inference.gap import (
     tolerated_by_part,
     tolerated_share,
 )
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 from rovval.diagnose.inference.shrinkage import NOTHING_LEFT, explainable_left, form_error, odds_of_left
 from rovval.diagnose.inference.unlogged_forces import ForceLeft, where_causes_act
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.search.model import Model, Names
+from rovval.simulation.fitted_errors import spread_of_errors
+from rovval.simulation.fitted_tolerances import fitted_sizes
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +89,8 @@ class Left:
         unlogged: of each set that was asked the force that nobody logged where it acts (`unlogged_where_they_act`).
         adding: the sets that add to generic forces where they act (`adds_to_forces`), of those that were asked.
         tolerated: shares (2,) of the gap that a healthy vehicle is expected to show by its tolerances, as ``shares``.
+        sizes: of each set how large its parameters are beside what they seemed to be in the calibration's logs (standard deviations); empty without.
+        freedom: degrees of freedom by which these standard deviations are known.
     """
 
     shares: Mapping[Names, Array]
@@ -97,6 +102,8 @@ class Left:
     unlogged: Mapping[Names, ForceLeft] = field(default_factory=dict)
     adding: frozenset[Names] = frozenset()
     tolerated: Array = field(default_factory=lambda: np.full(2, TINY))
+    sizes: Mapping[Names, tuple[float, ...]] = field(default_factory=dict)
+    freedom: float = 1.0
 
     def least(self, which: Callable[[Names], bool]) -> Array:
         """The least (2,) that is left by the sets ``which``; all of the gap where there is none."""
@@ -116,6 +123,11 @@ class Left:
             return (self.grown[best],) if best in self.grown else ()
         return tuple(self.grown_by_axis[axis] for axis in self.forced if axis in self.grown_by_axis) or tuple(self.grown_by_axis.values())
 
+    def sizes_since(self, names: Names) -> tuple[float, ...]:
+        """How large the parameters of causes are beside what they seemed to be in the calibration's logs, of the best of their parts; () where that is not
+        known."""
+        return self.sizes.get(self._best_part(names), ())
+
     def _best_part(self, names: Names) -> Names:
         """The part of ``names`` that leaves least; none where none was fitted."""
         return min((part for part in self.shares if part <= names), key=lambda part: float(self.shares[part].min()), default=frozenset())
@@ -134,14 +146,29 @@ def gap_left(problem: Problem, models: Iterable[Model]) -> Left:
     fits = [(m.names, m.fit) for m in models if m.fit]
     losses = [np.array([fit.dynamics_loss.sum(), fit.loss.sum()]) for _, fit in fits]
     shares, acting, gap = dict[Names, Array](), dict[Names, tuple[float, float]](), _Gap.of(problem)
-    grown, axes = dict[Names, float](), {part: gap.errors[part] / size for part, size in gap.calibrated.items() if size > 0.0}
+    grown, sizes = dict[Names, float](), dict[Names, tuple[float, ...]]()
+    axes = {part: gap.errors[part] / size for part, size in gap.calibrated.items() if size > 0.0}
     for (names, fit), share in zip(fits, explainable_left(problem, losses), strict=True):
         if names not in shares or share.min() < shares[names].min():
             acting[names] = gap.left_where_it_acts(fit.parts)
             if gap.calibrated:
-                grown[names] = gap.grown(fit.parts)
+                grown[names], sizes[names] = gap.grown(fit.parts), _beside_apparent(problem, fit)
         shares[names] = np.minimum(share, shares.get(names, np.inf))
-    return Left(shares, acting, grown, axes, spread=spread_as_calibrated(problem.plant.vehicle), tolerated=tolerated_share(problem))
+    vehicle = problem.plant.vehicle
+    return Left(
+        shares, acting, grown, axes, sizes=sizes, freedom=1.0 + spread_of_errors(vehicle)[1],
+        spread=spread_as_calibrated(vehicle), tolerated=tolerated_share(problem),
+    )  # fmt: skip
+
+
+def _beside_apparent(problem: Problem, fit: HypothesisFit) -> tuple[float, ...]:
+    """How large the fitted parameters are, in standard deviations of what they seem to be in the logs of the vehicle's calibration and of their own error."""
+    known, point = fitted_sizes(problem.plant.vehicle), fit.posterior
+    if not known:
+        return ()
+    error = np.sqrt(point.tempering * np.diag(np.linalg.inv(point.curvature)))
+    keys = [(problem.plant.slots[s].key, s, float(sd)) for s, sd in zip(fit.slots, error, strict=False)]
+    return tuple(abs(float(fit.beta[s] - problem.origin[s])) / float(np.hypot(known[key], sd)) for key, s, sd in keys if key in known)
 
 
 @dataclass(frozen=True, slots=True)
