@@ -22,6 +22,7 @@ def test_the_port_of_a_stream_reads_its_dynamic_pressure_as_depth():
     assert unobserve(nu[:, 0], log.eta[:, 0], {"scale": np.array([-0.027]), "pressure": np.array([1.0])})[1][0, 2] == pytest.approx(10.0)
 
 
+@pytest.mark.slow
 def test_another_plant_s_depth_sensor_is_named_with_its_factor(tmp_path: Path):
     """A scale of 0.06 times 1.3, and a port that sees the flow."""
     [cause] = diagnose([foreign(tmp_path, (("depth_port_error", "", 1.3),), 6012)], merlin()).causes
@@ -29,10 +30,12 @@ def test_another_plant_s_depth_sensor_is_named_with_its_factor(tmp_path: Path):
     assert cause.parameters["scale"].value == pytest.approx(0.078, abs=0.01)
 
 
+@pytest.mark.slow
 def test_a_velocity_log_s_factor_is_not_told_as_this():
     assert [c.effect for c in diagnose([own(("dvl_scale:scale=0.08",), 3, 300.0)], merlin()).causes] == ["dvl_scale"]
 
 
+@pytest.mark.slow
 def test_feet_are_told_as_a_factor():
     [cause] = diagnose([own(("depth_error:scale=2.28",), 3, 200.0)], merlin()).causes
     assert cause.effect == "depth_error" and cause.parameters["scale"].value == pytest.approx(2.28, abs=0.1)

@@ -36,11 +36,13 @@ def test_one_way_only_it_acts_that_way_only(axis: str, column: int):
     assert end[1][0] == pytest.approx(end[0][0], rel=1e-6) and abs(end[1][1]) < 0.97 * abs(end[0][1])
 
 
+@pytest.mark.slow
 def test_another_plant_s_net_that_opens_astern_is_named_with_its_side(tmp_path: Path):
     [cause] = diagnose([foreign(tmp_path, (("one_sided_drag", "", 1.3),), 31, 300.0)], merlin()).causes
     assert cause.effect == "drag_asymmetry[surge]" and cause.probability > 0.9
     assert cause.parameters["negative"].value == pytest.approx(1.3, abs=0.3) and cause.parameters["positive"].value == pytest.approx(0.0, abs=0.15)
 
 
+@pytest.mark.slow
 def test_drag_that_is_off_both_ways_is_not_told_as_this():
     assert [c.effect for c in diagnose([own(("quadratic_drag[surge]:scale=0.5",), 3, 300.0)], merlin()).causes] == ["quadratic_drag[surge]"]

@@ -20,6 +20,7 @@ def test_what_is_logged_is_the_rate_times_its_factor_and_back():
     assert unobserve(log.nu[:, 0], eta[:, 0], p)[0] == pytest.approx(nu[:, 0])
 
 
+@pytest.mark.slow
 def test_a_yaw_gyro_of_another_plant_that_reads_too_much_is_named_with_its_factor(tmp_path: Path):
     run = foreign(tmp_path, (), 31, 300.0)
     [cause] = diagnose([with_values(run, r=1.06 * run.get("r"))], merlin()).causes
@@ -27,5 +28,6 @@ def test_a_yaw_gyro_of_another_plant_that_reads_too_much_is_named_with_its_facto
     assert cause.parameters["r"].value == pytest.approx(0.06, abs=0.01)
 
 
+@pytest.mark.slow
 def test_a_bias_is_not_told_as_this():
     assert [c.effect for c in diagnose([own(("gyro_bias:r=0.02",), 3, 300.0)], merlin()).causes] == ["gyro_bias"]

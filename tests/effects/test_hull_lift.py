@@ -29,6 +29,7 @@ def test_the_standard_equations_are_products_of_velocities():
         )
 
 
+@pytest.mark.slow
 def test_another_plant_s_lift_is_named_whichever_way_it_goes(tmp_path: Path):
     """Its force goes with u v and u w, ahead and astern."""
     cause, *_ = diagnose([foreign(tmp_path, (("body_lift", "", 1.3),), 31)], merlin()).causes
@@ -36,6 +37,7 @@ def test_another_plant_s_lift_is_named_whichever_way_it_goes(tmp_path: Path):
     assert cause.parameters["astern"].value == pytest.approx(-1.0, abs=0.2)
 
 
+@pytest.mark.slow
 def test_it_is_named_with_its_size():
     [cause] = diagnose([own(("hull_lift:sway=0.6,heave=0.3,x=0.1",), 3, 300.0)], merlin()).causes
     assert cause.effect == "hull_lift" and cause.parameters["sway"].low < 0.6 < cause.parameters["sway"].high

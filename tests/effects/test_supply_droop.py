@@ -48,12 +48,14 @@ def test_a_thruster_loses_thrust_to_the_load_of_the_others():
     assert more == pytest.approx(1.0 / (1.0 + 0.3 * (1.0 + 1.5**3) / len(thrusters)), rel=0.05)
 
 
+@pytest.mark.slow
 def test_another_plant_s_supply_is_named_without_a_name_beside_it(tmp_path: Path):
     """Its thrust falls with the sum of the thrusts, half of it at a working load, and so with the square of the speeds."""
     [cause] = diagnose([foreign(tmp_path, (("power_limit", "", 1.0),), 31)], merlin()).causes
     assert cause.effect == "supply_droop" and cause.probability > 0.7
 
 
+@pytest.mark.slow
 def test_it_is_named_with_its_size_and_not_where_all_thrusters_are_weaker_by_one_factor():
     [cause] = diagnose([own(("supply_droop:droop=0.5",), 3, 300.0)], merlin()).causes
     droop = cause.parameters["droop"]

@@ -57,6 +57,7 @@ def test_a_closed_loop_counts_its_own_turns():
     assert np.array(rate) == pytest.approx(whole.nu[0, 1:, 5], abs=0.03)
 
 
+@pytest.mark.slow
 def test_another_plant_s_twisted_tether_is_named_with_its_stiffness(tmp_path: Path):
     log = tmp_path / "second.csv"
     flight = fly(LIBRARY / "merlin.toml", "pirouette", [Planted("twisted_tether", None, 1.0)], 7000, 200.0)
@@ -66,6 +67,7 @@ def test_another_plant_s_twisted_tether_is_named_with_its_stiffness(tmp_path: Pa
     assert cause.parameters["stiffness"].value == pytest.approx(flight.truth["effects"][0]["values"]["stiffness"], rel=0.1)
 
 
+@pytest.mark.slow
 def test_a_steady_moment_is_not_told_as_this():
     """Thrusters that point a little askew, or a propeller's torque."""
     causes = diagnose([own(("propeller_torque:common=0.05",), 3, 300.0)], merlin()).causes

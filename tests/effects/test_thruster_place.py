@@ -29,6 +29,7 @@ def test_it_is_a_file_with_the_places_moved():
     assert np.abs(by_the_effect.free.nu - nominal.free.nu)[:, 4].max() > 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("parameter", "size"), [("down", 0.3), ("ahead", 0.3)])
 def test_it_is_named(parameter: str, size: float):
     found = diagnose([own((f"thruster_place:{parameter}={size}",), 5, 200.0)], merlin())

@@ -12,7 +12,6 @@ from diagnose_case import merlin, own
 from rovval.core.data import Run
 from rovval.core.errors import BadInput
 from rovval.fit.calibration import Calibration, calibrate
-from rovval.fit.record import record
 from rovval.fit.unknowns import applied, unknowns
 from rovval.plant import Plant, parse_settings
 from rovval.report.fit import html, text
@@ -120,13 +119,17 @@ def test_correlations_are_those_of_a_covariance():
     assert close == {frozenset(pair[:2]) for pair in done().correlations}
 
 
-def test_every_log_that_cannot_be_used_is_told_and_none_at_all_is_refused():
+@pytest.mark.slow
+def test_every_log_that_cannot_be_used_is_told():
     short = dive(4, 15.0)
     found = calibrate([dive(1, 60.0), short], merlin())
     assert len(found.left_out) == 1
     assert short.id in found.left_out[0]
+
+
+def test_none_at_all_is_refused():
     with pytest.raises(BadInput, match="windows of 10 s"):
-        record(short, merlin(), 10.0)
+        calibrate([dive(4, 15.0)], merlin())
 
 
 def test_drag_that_a_file_leaves_out_is_there_with_a_first_guess():

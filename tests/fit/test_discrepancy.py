@@ -39,6 +39,7 @@ def test_sizes_of_each_group_are_found_with_the_scatter_of_a_sample():
     assert np.sqrt(variances(runs, np.ones(2), 0.0)) == pytest.approx(true, rel=3.0 / np.sqrt(2 * 120))
 
 
+@pytest.mark.slow
 def test_a_foreign_force_shows_on_the_axes_where_it_acts():
     none, some = found(), found(FOREIGN)
     assert list(none) == [*AXES, *(f"{axis} damping" for axis in AXES)]

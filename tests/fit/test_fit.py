@@ -77,6 +77,7 @@ def test_an_undetermined_parameter_is_named_and_left():
     assert "cannot determine" in text(done.document)
 
 
+@pytest.mark.slow
 def test_a_log_is_asked_for_the_misfit_at_hand_not_for_a_typical_size():
     """Of this log a typical size of the drag would show with two standard errors: of none that is off it says little, of three times the file's enough."""
     for scale in (0.0, 2.0):
@@ -131,6 +132,7 @@ def test_unknown_names_are_refused_at_once_with_near_ones():
         chosen(Plant(merlin()), [])
 
 
+@pytest.mark.slow
 def test_on_the_independent_plant(tmp_path):
     run = foreign(tmp_path, (("thruster_degraded", "HFP", 1.0),), 11, 120.0)
     done = fit([run], merlin(), ["thrust"])

@@ -54,6 +54,7 @@ def test_the_file_remembers_them_and_a_new_calibration_replaces_them():
     assert fitted_tolerances(merlin()) == {}
 
 
+@pytest.mark.slow
 def test_a_diagnosis_blames_nobody_for_what_the_calibration_s_own_logs_had():
     run = own(("inflow_loss:loss=0.3",), 5, 100.0)
     assert [c.effect for c in diagnose([run], merlin()).causes] == ["inflow_loss"]

@@ -70,9 +70,10 @@ def test_a_document_follows_the_thesis_figure_by_figure(tmp_path):
     assert (tmp_path / "two" / "scenario-2-fossen.rrd").stat().st_size > 1000
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "model"),
-    [("merlin", "fossen"), *(pytest.param(*both, marks=pytest.mark.slow) for both in (("merlin", "uuv"), ("minerva", "fossen"), ("bluerov2", "uuv")))],
+    [("merlin", "fossen"), ("merlin", "uuv"), ("minerva", "fossen"), ("bluerov2", "uuv")],
 )
 def test_scenario_3_closes_the_loop_round_way_points(name, model):
     checks = json.loads(run("scenario", "3", "--vehicle", name, "--model", model, "--json").stdout)["checks"]

@@ -59,6 +59,7 @@ def test_ballast_is_fitted_as_its_publishers_fitted_it():
     assert -7.0 < tuned["value"] < -3.5
 
 
+@slow
 def test_ballast_is_named():
     """By `diagnose`, with its sign and size, in heave; the log holds four windows of free motion."""
     document = diagnose([open_run(real("bluerov2_ballast/ff_nb1.bag"))], vehicle.load("bluerov2_heavy")).document()

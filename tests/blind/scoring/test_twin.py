@@ -25,11 +25,13 @@ def log(folder: Path, *effects: Planted) -> Path:
     return folder / "log.csv"
 
 
+@pytest.mark.slow
 def test_a_log_without_effects_is_its_own_twin(tmp_path: Path):
     found = made_by_effect(log(tmp_path), str(MERLIN), FLOWN, ASKED)
     assert found["seen"] == pytest.approx(0.0, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_strong_effect_has_made_most_of_the_gap(tmp_path: Path):
     found = made_by_effect(log(tmp_path, Planted("dry_friction", None, 2.0)), str(MERLIN), FLOWN, ASKED)
     assert found["seen"] > SEEN and found["sure"] > SURE

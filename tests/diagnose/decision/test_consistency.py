@@ -24,6 +24,7 @@ def test_a_rate_that_contradicts_its_angle_is_said_and_no_coefficient_is_blamed(
     assert "psi and r contradict each other by" in document["sentence"]
 
 
+@pytest.mark.slow
 def test_a_faulty_sensor_of_the_library_is_no_contradiction():
     document = diagnose([own(("gyro_bias:r=0.02", "thruster_degraded[HFP]:loss=0.5"), 5, 160.0)], merlin()).document()
     assert {c["effect"] for c in document["causes"]} == {"gyro_bias", "thruster_degraded[HFP]"} and not document["log"]

@@ -49,6 +49,7 @@ def test_the_best_of_the_models_counts():
     assert open_gap(problem, [healthy, healthy]) == open_gap(problem, [healthy])
 
 
+@pytest.mark.slow
 def test_bumps_that_no_model_has_are_no_healthy_vehicle(bumped: Diagnosis):
     """The probabilities say what the verdict says."""
     assert bumped.verdict == "unknown" and not bumped.causes

@@ -16,11 +16,12 @@ from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.windows.multiple_shooting import cut
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("effect", "name"),
     [
         ("waves:amplitude=1,period=9.3,direction=2.6,phase=-2.0", "waves"),
-        pytest.param("current_varying:north=0.15,east_cosine=-0.1,period=83", "current_varying", marks=pytest.mark.slow),
+        ("current_varying:north=0.15,east_cosine=-0.1,period=83", "current_varying"),
     ],
 )
 def test_what_swings_is_found_whatever_its_period_and_phase(effect, name):

@@ -70,7 +70,8 @@ def test_a_spring_is_found_in_the_forces_that_are_missing():
     assert replace(lack, b=-lack.b).explained(onset, point, radius)[0] == 0.0
 
 
-@pytest.mark.parametrize(("effect", "seed"), [pytest.param("tether_snag", 8, marks=pytest.mark.slow), ("compass_deviation", 6)])
+@pytest.mark.slow
+@pytest.mark.parametrize(("effect", "seed"), [("tether_snag", 8), ("compass_deviation", 6)])
 def test_what_catches_the_tether_or_turns_the_compass_is_named(effect, seed, tmp_path: Path):
     """Of the independent plant: a softened spring from the fairlead, and a compass with two harmonics and the thrusters' own field."""
     document = diagnose([foreign(tmp_path, ((effect, "", 1.4),), seed, 240.0, 0.03)], merlin()).document()

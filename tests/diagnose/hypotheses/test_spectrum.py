@@ -39,6 +39,7 @@ def test_a_healthy_log_has_no_line():
     assert oscillation(p, point) is None
 
 
+@pytest.mark.slow
 def test_a_sea_of_several_trains_is_a_narrow_band_and_a_drag_is_none():
     sea = "waves:amplitude=0.7,period=6.0,direction=1.0,cosine_2=0.5,period_2=6.6,sine_3=0.5,period_3=5.4"
     p, _ = posed((sea,))

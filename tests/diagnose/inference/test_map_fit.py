@@ -26,6 +26,7 @@ def rolling(folder: Path) -> Problem:
     return pose(parts, columns_of(hypotheses(parts)[0]), 0.05)
 
 
+@pytest.mark.slow
 def test_the_beginning_first_ends_no_higher(tmp_path: Path):
     """A vehicle that rolls freely on a log of the independent plant: a fit of whole windows from far away stops in the first valley."""
     p = rolling(tmp_path)

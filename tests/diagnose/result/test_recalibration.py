@@ -147,6 +147,7 @@ def test_a_real_vehicle_whose_file_is_off_in_everything_is_said_to_be():
         assert after[axis].rmse < 0.7 * before[axis].rmse, axis
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("planted", [(), ("inflow_loss:loss=0.3",), ("quadratic_drag[surge]:scale=0.6",)])
 def test_a_healthy_log_and_one_cause_are_not_a_matter_of_calibration(planted: tuple[str, ...]):
     found = diagnosed(planted)

@@ -30,6 +30,7 @@ def test_a_coefficient_surely_off_is_named_though_the_gap_is_another_axis():
     assert document["shrinkage"]["axes"]["sway"] > 0.4 and "heave" in document["sentence"].lower()
 
 
+@pytest.mark.slow
 def test_what_tolerances_alone_make_is_no_cause():
     document = diagnose([own(("reverse_asymmetry:scale=0.1", "rpm_scale:scale=0.06"), 5, 240.0)], merlin()).document()
     assert document["causes"] == [] and document["within_tolerance"] is None

@@ -26,6 +26,7 @@ def test_a_negative_amplitude_is_half_a_turn(before: float, after: float):
     assert start[phase] == pytest.approx(after) and start[amplitude] == pytest.approx(0.7)
 
 
+@pytest.mark.slow
 def test_what_an_effect_includes_is_searched_for_from_its_fit():
     """A hose that pulls at the bow and is not dragged: with the one initial point at the stern, the pull alone is found from where the drag's fit has it."""
     problem, library = posed(("tether_tension:north=-145,east=105,down=-15,x=1.9,z=-0.3",), seconds=120.0)

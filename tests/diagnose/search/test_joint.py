@@ -49,6 +49,7 @@ def test_the_leading_sets_are_worth_what_a_careful_fit_of_them_is():
     assert not found["added_mass[roll]"].careful
 
 
+@pytest.mark.slow
 def test_what_stands_in_for_a_cause_is_fitted_in_its_place():
     """A set with a wrong name for one of two causes: the right name is found in its place by the screen about the set, though no search met it."""
     problem, library = posed(("inflow_loss:loss=0.3", "buoyancy_error:force=60"))

@@ -148,6 +148,7 @@ def named(library: list[Hypothesis], name: str) -> Hypothesis:
     return next(h for h in library if h.name == name)
 
 
+@pytest.mark.slow
 def test_a_cause_that_never_begins_is_a_healthy_vehicle_with_its_own_tolerance(posed: tuple[Problem, Windows, list[Hypothesis], Posterior]) -> None:
     """A coefficient that the cause takes is as free before it as any other."""
     problem, _, library, alone = posed

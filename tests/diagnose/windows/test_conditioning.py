@@ -68,7 +68,8 @@ def test_commands_that_repeat_and_a_vehicle_at_rest_are_no_pings():
     assert ping_period(resting) == (1, 0)
 
 
-@pytest.mark.parametrize(("effects", "verdict"), [((), "no_gap"), pytest.param(("thruster_degraded[HFP]:loss=0.5",), "explained", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize(("effects", "verdict"), [((), "no_gap"), (("thruster_degraded[HFP]:loss=0.5",), "explained")])
 def test_held_velocities_are_no_filter_and_hide_no_cause(effects: tuple[str, ...], verdict: str):
     document = written(diagnose([held(own(effects, 5, 160.0), 8, 0.02)], merlin()))
     assert document["sentence"].endswith("Of the log: u, v, w hold their values between pings, a new one every 0.8 s, and were drawn between these.")
