@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +12,7 @@ from numpy.typing import NDArray
 from rovval.vehicle.model import Vehicle, allocation
 
 Array = NDArray[np.float64]
+Triple = tuple[float, float, float]
 
 JET_SPREAD = 0.1  # tan of the half-angle of a jet's core (Brix, Manoeuvring Technical Manual 1993: 10 % of the way travelled)
 TANDEM = 0.75  # loss of a thruster in line behind another: 1 - t = 0.75^((x/D)^(2/3)), ABS DP guide; t is the share left
@@ -32,11 +35,19 @@ def jets(vehicle: Vehicle) -> Jets:
     """Whose jet every thruster stands in. A jet leaves against the thrust, spreads, and weakens as the tandem rule says; beyond the
     core it falls off as a Gaussian. Where no free jet reaches a thruster, its nearest neighbour is taken whichever way it turns
     (jets bend along the hull, and the tandem rule knows distance alone); of several as near, each has its part."""
-    position = np.array([t.position for t in vehicle.thruster])
+    smallest = SMALLEST_DIAMETER * max(vehicle.body.size)
+    return _jets(tuple((t.position, t.direction, t.diameter or smallest) for t in vehicle.thruster))
+
+
+@lru_cache(maxsize=16)  # the vehicles that a calibration tries mostly have their thrusters in one place
+def _jets(thrusters: tuple[tuple[Triple, Triple, float], ...]) -> Jets:
+    """The same of thrusters at their places, pushing their ways, and of these diameters."""
+    position, way = np.array([place for place, _, _ in thrusters]), np.array([way for _, way, _ in thrusters])
+    way, diameter = way / np.linalg.norm(way, axis=1, keepdims=True), [diameter for _, _, diameter in thrusters]
     pairs: list[tuple[int, int]] = []
     weights: list[Array] = []
     for i, place in enumerate(position):
-        weight = _reaching(vehicle, position, i)
+        weight = _reaching(position, way, diameter, i)
         if weight.max(initial=0.0) < REACHED:
             distance = np.where(np.arange(len(position)) == i, np.inf, np.linalg.norm(position - place, axis=1))
             near = np.isfinite(distance) & (distance <= NEAREST * distance.min())
@@ -46,16 +57,18 @@ def jets(vehicle: Vehicle) -> Jets:
         upstream = np.flatnonzero(weight.max(axis=1) > FAINT)
         pairs += [(int(j), i) for j in upstream]
         weights += list(weight[upstream])
-    return Jets(np.array(pairs, dtype=np.int64).reshape(-1, 2), np.array(weights, dtype=float).reshape(-1, 2))
+    found = Jets(np.array(pairs, dtype=np.int64).reshape(-1, 2), np.array(weights, dtype=float).reshape(-1, 2))
+    found.pairs.setflags(write=False)
+    found.weights.setflags(write=False)
+    return found
 
 
-def _reaching(vehicle: Vehicle, position: Array, i: int) -> Array:
+def _reaching(position: Array, way: Array, diameter: Sequence[float], i: int) -> Array:
     """Share (k, 2) of the thrust of thruster ``i`` that the free jet of each other takes, turning ahead and astern."""
     share = np.zeros((len(position), 2))
-    for j, way in enumerate(allocation(vehicle)[:3].T):
-        diameter = vehicle.thruster[j].diameter or SMALLEST_DIAMETER * max(vehicle.body.size)
+    for j in range(len(position)):
         if j != i:
-            share[j] = [_share(position[i] - position[j], -sign * way, diameter) for sign in (1.0, -1.0)]
+            share[j] = [_share(position[i] - position[j], -sign * way[j], diameter[j]) for sign in (1.0, -1.0)]
     return share
 
 

@@ -159,4 +159,4 @@ def _geometry(vehicle: Vehicle) -> tuple[Array, Indices, Array]:
     for i, t in enumerate(vehicle.thruster):
         advance = (*t.advance_pos, *t.advance_neg) if t.diameter > 0 else (0.0,) * 6
         rows.append([*t.position, *advance, *side[i], t.diameter or 1.0])
-    return np.array(rows).reshape(-1), jets.pairs, jets.weights
+    return np.array(rows).reshape(-1), jets.pairs.copy(), jets.weights.copy()  # the kernel is compiled for arrays that may be written

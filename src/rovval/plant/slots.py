@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from types import MappingProxyType
 
 import numpy as np
@@ -50,17 +51,23 @@ def sizes(vehicle: Vehicle) -> Mapping[str, float]:
     )
 
 
-def targets(effect: effects.Effect, vehicle: Vehicle) -> tuple[str, ...]:
-    """Axes, groups of axes, or thrusters that the effect's parameters belong to; one empty name for an effect that has neither."""
-    return {"": ("",), "axis": (*effect.axes, *effect.groups), "thruster": vehicle.thrusters}[effect.per]
+def targets(effect: effects.Effect, thrusters: tuple[str, ...]) -> tuple[str, ...]:
+    """Axes, groups of axes, or ``thrusters`` that the effect's parameters belong to; one empty name for an effect that has neither."""
+    return {"": ("",), "axis": (*effect.axes, *effect.groups), "thruster": thrusters}[effect.per]
 
 
 def slots(vehicle: Vehicle, model: str) -> tuple[Slot, ...]:
     """Every slot of the library for a vehicle."""
-    found, factor = [], sizes(vehicle)
+    return _slots(vehicle.thrusters, tuple(sizes(vehicle).items()), model)
+
+
+@lru_cache(maxsize=16)  # the vehicles that a calibration tries are mostly of one size
+def _slots(thrusters: tuple[str, ...], factors: tuple[tuple[str, float], ...], model: str) -> tuple[Slot, ...]:
+    """Every slot for a vehicle with these ``thrusters`` that is larger than the reference vehicle by the ``factors``."""
+    found, factor = [], dict(factors)
     for name in effects.names():
         effect = effects.load(name)
-        for target in targets(effect, vehicle):
+        for target in targets(effect, thrusters):
             for parameter in effect.parameters:
                 hypothesis = _hypothesis(name, target or parameter.target)
                 sized = grown(parameter, factor[parameter.sized])
