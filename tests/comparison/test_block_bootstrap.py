@@ -18,6 +18,7 @@ def autoregressive(memory: float, n: int, seed: int) -> Array:
     return np.asarray(lfilter([1.0], [1.0, -memory], steps)[400:])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("memory", "n"), [(0.0, 600), (0.7, 1800), (0.9, 1800)])
 def test_nine_of_ten_intervals_hold_the_truth(memory: float, n: int):
     """Of errors with mean 0.3 and standard deviation 1: mean error 0.3, rmse sqrt(1.09). Of 1000 series each 0.87 to 0.92; of 400 chance moves that by

@@ -64,6 +64,7 @@ def test_the_file_remembers_it_beside_the_tolerances_and_a_new_calibration_repla
     assert fitted_discrepancy(merlin()) == {}
 
 
+@pytest.mark.slow
 def test_what_the_calibration_had_is_no_evidence_of_something_else():
     run, worth = own(FOREIGN, 5, 100.0), list[float]()
     for vehicle in (merlin(), with_discrepancy(merlin(), found(FOREIGN))):

@@ -71,6 +71,7 @@ def test_a_step_that_is_no_longer_asked_for_leaves_the_record_when_the_others_ar
     assert list(json.loads(record.read_text())["steps"]) == ["simulate"]
 
 
+@pytest.mark.slow
 def test_a_tolerance_stands_on_the_page_of_each_run_and_an_edited_one_makes_that_page_anew(site):
     def pages(limit: str) -> list[str]:
         path = batch_case.write_pipeline(site, f'tolerances = ["{limit}"]', steps='["simulate", "compare"]')

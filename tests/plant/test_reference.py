@@ -38,6 +38,7 @@ def test_kernel_agrees_with_the_oracle_for_every_effect(model, hold):
     compare(Plant(cases.merlin(), model, substeps=2), seed=hold, hold=hold, steps=5 if model == "uuv" else 20)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("hold", [False, True])
 def test_the_kernel_of_an_engine_that_takes_added_mass_as_a_force_agrees_with_the_oracle(hold):
     """uuv without effects, at its own step of 2 ms; windows that begin in mid-log, with what its thrusters remember."""

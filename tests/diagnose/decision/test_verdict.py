@@ -36,6 +36,7 @@ def test_a_withheld_effect_is_unknown_and_said_where(planted: str, axes: set[str
     assert document["left"]["axes"][0] in axes and "nothing in the library" in document["left"]["text"]
 
 
+@pytest.mark.slow
 def test_a_cause_without_which_the_named_set_is_as_probable_is_not_named():
     """A search that met the true cause in company alone: a gyro's bias stands beside it, and is worth nothing there."""
     problem, _ = posed(("inflow_loss:loss=0.3",))

@@ -11,7 +11,7 @@ from rovval.diagnose.hypotheses.spectrum import oscillation, spectral_lines, wav
 from rovval.diagnose.inference.map_fit import map_fit
 
 
-@pytest.mark.parametrize("period", [7.7, 12.4])
+@pytest.mark.parametrize("period", [7.7, pytest.param(12.4, marks=pytest.mark.slow)])
 def test_the_period_of_waves_is_the_strongest_line(period):
     p, _ = posed((f"waves:amplitude=1,period={period},direction=2.6,phase=-2.0",))
     (best, share), *others = spectral_lines(p, map_fit(p, p.origin, ()))
@@ -19,7 +19,10 @@ def test_the_period_of_waves_is_the_strongest_line(period):
     assert share > 0.3 and all(share > 2 * other for _, other in others)
 
 
-@pytest.mark.parametrize(("period", "direction", "amplitude"), [(5.0, 0.8, 2.0), (4.0, -2.4, 3.0), (6.0, 2.6, 1.5)])
+@pytest.mark.parametrize(
+    ("period", "direction", "amplitude"),
+    [(5.0, 0.8, 2.0), *(pytest.param(*sea, marks=pytest.mark.slow) for sea in ((4.0, -2.4, 3.0), (6.0, 2.6, 1.5)))],
+)
 def test_a_vehicle_under_way_meets_waves_at_another_period_than_theirs(period, direction, amplitude):
     """Whose direction is right finds their own; without a position none is looked for."""
     p, _ = posed((f"waves:amplitude={amplitude},period={period},direction={direction},phase=1",))

@@ -25,6 +25,7 @@ def test_a_second_cause_does_not_lead_the_first_away():
     assert {c["effect"] for c in document["causes"]} == {"waves", "cg_offset"}, document["sentence"]
 
 
+@pytest.mark.slow
 def test_two_causes_that_offset_each_other_are_both_found():
     """Weaker thrust and less drag: the speed is as before, only the way there differs."""
     document = diagnose([own(("rpm_scale:scale=-0.25", "quadratic_drag[surge]:scale=-0.7", "linear_drag[surge]:scale=-0.7"), 5, 300.0)], merlin()).document()

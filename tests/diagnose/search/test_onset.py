@@ -180,6 +180,7 @@ def test_a_cause_from_some_moment_on_is_weighed_on_every_window(posed: tuple[Pro
     assert begun.fit.posterior.dynamics_loss().sum() < always.posterior.dynamics_loss().sum()
 
 
+@pytest.mark.slow
 def test_a_set_that_is_named_of_a_larger_one_begins_when_that_does(posed: tuple[Problem, Windows, list[Hypothesis], Posterior]) -> None:
     """The loss is in every set that was found from its beginning on, and none of what is beside it is likelier at work than not: the loss alone, which was
     not fitted, is named from the same second on."""

@@ -143,6 +143,7 @@ def test_the_frame_says_which_vehicle_it_is(tmp_path):
         read(tlog(tmp_path / "unknown.tlog", parameters={}))
 
 
+@pytest.mark.slow
 def test_the_upright_motors_of_a_published_log_push_together():
     """Outputs 5 to 8 of 200 us each: they cancelled to the last microsecond, so that heave had no input."""
     run = open_run(real("ardusub/small.tlog"))

@@ -4,6 +4,7 @@ import json
 
 import batch_case
 import polars as pl
+import pytest
 from typer.testing import CliRunner
 
 from rovval.cli.app import app
@@ -63,6 +64,7 @@ def test_two_pipelines_share_an_archive(tmp_path):
     assert sorted(rows["pipeline"]) == ["one", "two"] and rows["sha256"].n_unique() == 1
 
 
+@pytest.mark.slow
 def test_a_dive_that_is_unusual_for_its_vehicle_exceeds_a_tolerance_of_the_pipeline(tmp_path):
     """Two dives of one kind, and one whose log says another speed than it drove at; half a sigma, since two dives tell little."""
     for number in range(2):
