@@ -12,20 +12,16 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
 import batch_case
-import catalogue_case
-import duckdb
 import fault_case
 import pytest
 
 from rovval.pipeline import batch
 from rovval.pipeline.execution.worker import Outcome
 from rovval.pipeline.planning.plan import Task
-from rovval.storage import catalogue
 
 pytestmark = pytest.mark.benchmark
 
@@ -33,7 +29,6 @@ FEW, MANY = 10, int(os.environ.get("ROVVAL_BENCH_LOGS", "10000"))
 SIDE_BY_SIDE = 300  # logs of the comparisons of workers and Dask: the start of a worker, some 4 s, must not decide them
 SECONDS = 10.0  # of a log: one window of a comparison
 STEPS = '["ingest", "simulate", "compare"]'
-ASKED = 6.0  # times what DuckDB takes for the same rows
 WITHIN, AGAIN_S_PER_1000, TWO_WORKERS, DASK_WITHIN, MEMORY_MB_PER_1000 = 0.10, 1.0, 1.8, 0.15, 10.0  # what the batch is held to
 PEAK = "import re, sys; from rovval.pipeline import batch; from pathlib import Path; batch.run(Path(sys.argv[1]), workers=1)\n"
 PEAK += "print(re.search(r'VmHWM:\\s+(\\d+) kB', open('/proc/self/status').read())[1])"
@@ -77,25 +72,6 @@ def test_cost_of_a_log_from_few_to_many(tmp_path, in_this_process):
     grown = (held[MANY] - held[FEW]) / (MANY - FEW) * 1000
     print(f"the parent's memory: {held[FEW]:.0f} MB at {FEW} logs, {held[MANY]:.0f} MB at {MANY}: {grown:.1f} MB per 1,000 logs")
     assert many < least * (1 + WITHIN) and again / MANY * 1000 < AGAIN_S_PER_1000 and grown < MEMORY_MB_PER_1000
-
-
-def test_ten_thousand_runs_asked_beside_duckdb(tmp_path):
-    """The rows that a condition holds of, as Python's own values, by the catalogue and by DuckDB from the same files."""
-    catalogue.update(tmp_path, [catalogue_case.row(n, vehicle=f"v{n % 5}", surge=0.00002 * n) for n in range(10_000)], catalogue_case.NOW)
-    condition = "vehicle = 'v3' and surge > 0.1"
-    ask = f"select * from read_parquet('{tmp_path}/catalogue/**/*.parquet', hive_partitioning=true) where current and {condition}"
-
-    def least(rows: Callable[[], Sequence[Any]]) -> float:
-        took = []
-        for _ in range(5):
-            began = time.process_time()
-            assert len(rows()) == 1000
-            took.append(time.process_time() - began)
-        return min(took)
-
-    ours, theirs = least(lambda: catalogue.find(tmp_path, condition, datetime(2020, 1, 1))), least(lambda: duckdb.execute(ask).fetchall())
-    print(f"\n1,000 of 10,000 runs: {ours:.2f} s of CPU, by DuckDB {theirs:.2f} s: {ours / theirs:.2f} times (at most {ASKED:g})")
-    assert ours < ASKED * theirs
 
 
 def peak(folder: Path) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from datetime import datetime
 
 import duckdb
@@ -105,10 +106,11 @@ def test_what_is_no_condition_is_refused_with_the_columns_there_are(tmp_path, wh
     assert "surge, sway" in refused.value.hint and where in refused.value.message
 
 
-def test_ten_thousand_runs_are_asked_as_few_are(tmp_path):
-    """How long it takes: `tests/benchmarks/bench_batch.py`."""
+def test_ten_thousand_runs_are_answered_in_under_a_second(tmp_path):
     catalogue.update(tmp_path, [row(n, vehicle=f"v{n % 5}", surge=0.00002 * n) for n in range(10_000)], NOW)
-    assert len(catalogue.find(tmp_path, "vehicle = 'v3' and surge > 0.1", datetime(2030, 1, 1))) == 1000
+    began = time.process_time()
+    found = catalogue.find(tmp_path, "vehicle = 'v3' and surge > 0.1", datetime(2030, 1, 1))
+    assert len(found) == 1000 and time.process_time() - began < 1.0
 
 
 def test_a_disk_that_takes_no_more_is_a_refusal_and_the_table_of_before_stays(tmp_path, no_more_than):

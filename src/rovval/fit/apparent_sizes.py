@@ -14,12 +14,11 @@ from typing import NamedTuple
 import numpy as np
 
 from rovval.core.data import Array, Run
-from rovval.core.errors import BadInput
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
-from rovval.diagnose.problem.problem import Problem, pose
-from rovval.diagnose.windows.multiple_shooting import cut
-from rovval.fit.random_effects import SLOP, variances
+from rovval.diagnose.problem.problem import Problem
+from rovval.diagnose.residuals.ridge import eliminated
+from rovval.fit.random_effects import posed, variances
 from rovval.vehicle.model import Vehicle
 
 
@@ -46,12 +45,10 @@ def apparent_sizes(runs: Sequence[Run], vehicles: Sequence[Vehicle], model: str,
 
 def _asked(run: Run, vehicle: Vehicle, model: str, window_s: float) -> dict[str, _Asked]:
     """What a run asks of each parameter that has a size, by its key; none where too little can be simulated."""
-    try:
-        windows, _ = cut([run], vehicle, model, window_s)
-        library, _ = hypotheses(windows)
-        problem = pose(windows, columns_of(library), SLOP)
-    except BadInput:
+    problem = posed(run, vehicle, model, window_s, lambda windows: columns_of(hypotheses(windows)[0]))
+    if problem is None:
         return {}
+    library, _ = hypotheses(problem.runs)
     sized = dict.fromkeys(s for h in library for s in h.slots if s in problem.likelihood.total.columns and not problem.plant.slots[s].parameter.places)
     curvature, slope = _of_each(problem, tuple(sized))
     parameters = [problem.plant.slots[s] for s in sized]
@@ -64,8 +61,8 @@ def _of_each(problem: Problem, slots: tuple[int, ...]) -> tuple[Array, Array]:
     A, b = data.A.sum(axis=0) / problem.tempering, data.b.sum(axis=0) / problem.tempering
     found = np.empty((len(slots), 2))
     for i, slot in enumerate(slots):
-        own, others = data.place((slot,)), data.place(tuple(s for s in tolerance if s != slot))
-        beside = A[np.ix_(others, others)] + np.diag([1.0 / tolerance[s] ** 2 for s in tolerance if s != slot])
-        taken = np.linalg.solve(beside, A[np.ix_(others, own)])[:, 0]
-        found[i] = A[own[0], own[0]] - A[own[0], others] @ taken, b[own[0]] - b[others] @ taken
+        others = tuple(s for s in tolerance if s != slot)
+        place, precision = data.place((slot, *others)), np.array([1.0 / tolerance[s] ** 2 for s in others])
+        left, toward = eliminated(A[np.ix_(place, place)], b[place], np.arange(1, len(place)), np.diag(precision), np.zeros(len(others)))
+        found[i] = left[0, 0], toward[0]
     return found[:, 0], found[:, 1]

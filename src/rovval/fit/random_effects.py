@@ -9,7 +9,7 @@ other vehicles: of a number its tolerance, of an effect its typical size.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -21,6 +21,7 @@ from rovval.core.errors import BadInput
 from rovval.diagnose.problem.problem import Problem, pose
 from rovval.diagnose.residuals.perturbations import Columns
 from rovval.diagnose.windows.multiple_shooting import cut
+from rovval.diagnose.windows.windows import Windows
 from rovval.plant.slots import Slot
 from rovval.simulation.fitted_tolerances import with_tolerances
 from rovval.vehicle.model import Vehicle
@@ -64,12 +65,18 @@ def _asked(run: Run, vehicle: Vehicle, model: str, window_s: float) -> _Asked | 
     return _Asked(tuple(slots[s].key for s in columns), np.isin(columns, every), prior, curvature, slope)
 
 
-def posed(run: Run, vehicle: Vehicle, model: str, window_s: float) -> Problem | None:
-    """The estimation problem of a run in the numbers of a vehicle that have a tolerance and in what every vehicle has; None where too little can be
-    simulated."""
+def of_every_vehicle(windows: Sequence[Windows]) -> Columns:
+    """The columns of what every vehicle has."""
+    return Columns(every_vehicle_has(windows[0].plant.slots))
+
+
+def posed(
+    run: Run, vehicle: Vehicle, model: str, window_s: float, columns: Callable[[Sequence[Windows]], Columns] = of_every_vehicle
+) -> Problem | None:
+    """The estimation problem of a run in the numbers of a vehicle that have a tolerance and in other ``columns``; None where too little can be simulated."""
     try:
         windows, _ = cut([run], vehicle, model, window_s)
-        return pose(windows, Columns(every_vehicle_has(windows[0].plant.slots)), SLOP)
+        return pose(windows, columns(windows), SLOP)
     except BadInput:
         return None
 

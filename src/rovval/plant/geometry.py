@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from rovval.vehicle.model import Vehicle, allocation
 
 Array = NDArray[np.float64]
-Triple = tuple[float, float, float]
 
 JET_SPREAD = 0.1  # tan of the half-angle of a jet's core (Brix, Manoeuvring Technical Manual 1993: 10 % of the way travelled)
 TANDEM = 0.75  # loss of a thruster in line behind another: 1 - t = 0.75^((x/D)^(2/3)), ABS DP guide; t is the share left
@@ -35,15 +34,15 @@ def jets(vehicle: Vehicle) -> Jets:
     """Whose jet every thruster stands in. A jet leaves against the thrust, spreads, and weakens as the tandem rule says; beyond the
     core it falls off as a Gaussian. Where no free jet reaches a thruster, its nearest neighbour is taken whichever way it turns
     (jets bend along the hull, and the tandem rule knows distance alone); of several as near, each has its part."""
-    smallest = SMALLEST_DIAMETER * max(vehicle.body.size)
-    return _jets(tuple((t.position, t.direction, t.diameter or smallest) for t in vehicle.thruster))
+    smallest, ways = SMALLEST_DIAMETER * max(vehicle.body.size), allocation(vehicle)[:3].T.tolist()
+    return _jets(tuple((t.position, tuple(way), t.diameter or smallest) for t, way in zip(vehicle.thruster, ways, strict=True)))
 
 
 @lru_cache(maxsize=16)  # the vehicles that a calibration tries mostly have their thrusters in one place
-def _jets(thrusters: tuple[tuple[Triple, Triple, float], ...]) -> Jets:
-    """The same of thrusters at their places, pushing their ways, and of these diameters."""
+def _jets(thrusters: tuple[tuple[tuple[float, ...], tuple[float, ...], float], ...]) -> Jets:
+    """The same of thrusters at their places, pushing their ways (unit vectors), and of these diameters."""
     position, way = np.array([place for place, _, _ in thrusters]), np.array([way for _, way, _ in thrusters])
-    way, diameter = way / np.linalg.norm(way, axis=1, keepdims=True), [diameter for _, _, diameter in thrusters]
+    diameter = [diameter for _, _, diameter in thrusters]
     pairs: list[tuple[int, int]] = []
     weights: list[Array] = []
     for i, place in enumerate(position):

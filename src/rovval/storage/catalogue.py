@@ -140,9 +140,10 @@ def _read(file: Path, columns: Sequence[str] = tuple(COLUMNS)) -> pl.DataFrame:
     vehicle, year = (part.name.partition("=")[2] for part in (file.parent.parent, file.parent))
     try:
         named = {"vehicle": unquote(vehicle), "year": int(year)}
-        table = pl.read_parquet(io.BytesIO(file.read_bytes()), hive_partitioning=False, columns=[name for name in columns if name not in PARTITIONS])
+        table = pl.scan_parquet(io.BytesIO(file.read_bytes()), hive_partitioning=False)
+        whole = table.select(pl.lit(named[name], COLUMNS[name]).alias(name) if name in named else name for name in columns).collect()
         schema = pl.Schema({name: COLUMNS[name] for name in columns})
-        return table.with_columns(*(pl.lit(value).alias(name) for name, value in named.items())).select(list(columns)).cast(schema)
+        return whole if whole.schema == schema else whole.cast(schema)
     except (OSError, ValueError, pl.exceptions.PolarsError) as error:
         raise BadInput(f"{file}: damaged: {str(error).splitlines()[0]}", "`rovval archive repair` sets it aside, and the next batch writes it anew") from None
 

@@ -166,8 +166,8 @@ def _beside_apparent(problem: Problem, fit: HypothesisFit) -> tuple[float, ...]:
     known, point = fitted_sizes(problem.plant.vehicle), fit.posterior
     if not known:
         return ()
-    error, moved = np.sqrt(point.tempering * np.diag(np.linalg.inv(point.curvature))), point.columns[: point.effect_count]
-    keys = [(problem.plant.slots[s].key, s, float(sd)) for s, sd in zip(moved, error[: len(moved)], strict=True)]
+    moved = point.columns[: point.effect_count]
+    keys = [(problem.plant.slots[s].key, s, float(sd)) for s, sd in zip(moved, point.effect_sd(), strict=True)]
     return tuple(abs(float(fit.beta[s] - problem.origin[s])) / float(np.hypot(known[key], sd)) for key, s, sd in keys if key in known)
 
 

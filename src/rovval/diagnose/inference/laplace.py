@@ -96,6 +96,11 @@ class Posterior:
         step = self.solve(self.curvature, self.descent, self.tangent_only)
         return losses(self.dynamics, np.arange(len(step)), step, np.ones(len(self.dynamics.c), dtype=bool))
 
+    def effect_sd(self) -> Array:
+        """Standard deviation (effect_count,) of each of the effects' parameters, all others beside it."""
+        inverse = np.linalg.solve(self.curvature, np.eye(len(self.columns), self.effect_count))
+        return np.asarray(np.sqrt(self.tempering * np.diag(inverse)))
+
     def _below(self, among: np.ndarray) -> float:
         """Cost after one linear step in the columns ``among`` (k,)."""
         slope = self.descent
@@ -127,12 +132,10 @@ def laplace_evidence(problem: Problem, point: Posterior) -> float:
 def heavy_tails(problem: Problem, point: Posterior) -> float:
     """Twice the log of the mean ratio, over the posterior of each of the effects' sized parameters, of the prior in which effects are compared (Student's t,
     `PRIOR_FREEDOM`) to the wide normal one in which they are fitted (`PRIOR_WIDTH`): what the evidence gains by the other prior."""
-    H, own = point.curvature, range(point.effect_count)
     parameters = [problem.plant.slots[s].parameter for s in point.columns[: point.effect_count]]
-    size = point.predicted_departure()
-    sd = np.sqrt(problem.tempering * np.diag(np.linalg.solve(H, np.eye(len(H), len(own)))))
+    size, sd = point.predicted_departure(), point.effect_sd()
     total, z = 0.0, np.linspace(-6.0, 6.0, 241)  # standard deviations of the posterior: finer than any feature of the ratio
-    for i, p in ((i, p) for i, p in zip(own, parameters, strict=True) if not p.places):
+    for i, p in ((i, p) for i, p in enumerate(parameters) if not p.places):
         at = (size[i] + sd[i] * z) / p.typical
         log_ratio = stats.t.logpdf(at, PRIOR_FREEDOM) - stats.norm.logpdf(at, scale=PRIOR_WIDTH)
         total += 2.0 * float(special.logsumexp(log_ratio + stats.norm.logpdf(z)) + np.log(z[1] - z[0]))
