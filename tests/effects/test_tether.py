@@ -31,30 +31,38 @@ def test_a_pull_leads_to_its_point_from_any_depth():
 
 
 def test_the_pull_of_a_tether_that_is_dragged_is_a_steady_pull_at_its_attachment():
-    pull = "north=200,east=-80,down=60,x=-0.7,z=-0.4"
+    pull = "north=200,east=-80,down=60,nearness=0.03,depth=28,x=-0.7,z=-0.4"
     at_rest = begun(f"tether_drag:{pull}", (3.0, 4.0, 30.0))
     np.testing.assert_allclose(at_rest, begun(f"tether_tension:{pull}", (3.0, 4.0, 30.0)), rtol=0, atol=1e-9)
     assert begun(f"tether_drag:coefficient=800,{pull}", (3.0, 4.0, 30.0))[0] == pytest.approx(at_rest[0], rel=0.02)
 
 
-def drag_of(v: Array, pull: Array, across: float = 1.0) -> Array:
-    """Force (3,) of a tether of 100 N s2/m2 on a level vehicle that moves with ``v`` (3,), without its steady ``pull`` (3,)."""
-    asked = (100.0, 0.0, *pull, across, 0.0, 0.0, 0.0, *v, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-    return np.array(tether_drag.wrench(*asked)[:3]) - pull
+def drag_of(v: Array, pull: Array, nearness: float = 0.0, place: tuple[float, float, float] = (0.0, 0.0, 0.0), weight: float = 0.0) -> Array:
+    """Force (3,) of a tether of 100 N s2/m2 at a level vehicle at ``place`` (m) that moves with ``v`` (3,), with its ``pull`` (3,) at the origin."""
+    asked = (100.0, 0.0, *pull, nearness, 0.0, weight, 0.0, 0.0, 0.0, *place, *v, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+    return np.array(tether_drag.wrench(*asked)[:3])
 
 
-def test_a_tether_of_known_direction_drags_across_it_and_hardly_along_it():
+def test_a_tether_drags_across_the_line_and_hardly_along_it():
     """Morison: |F| = c |v'|^2 against v', the velocity across the line; along a line that pulls with 60 N next to nothing."""
     pull, along = np.array([36.0, 0.0, -48.0]), np.array([0.6, 0.0, -0.8])
-    assert np.abs(drag_of(along, pull)).max() < 1e-3
+    assert np.abs(drag_of(along, pull) - pull).max() < 0.03
     sideways = np.array([0.8, 0.0, 0.6])
-    np.testing.assert_allclose(drag_of(0.5 * sideways, pull), -25.0 * sideways, rtol=1e-9)
-    np.testing.assert_allclose(drag_of(0.5 * sideways + 2.0 * along, pull), -25.0 * sideways, rtol=2e-3, atol=1e-2)
+    np.testing.assert_allclose(drag_of(0.5 * sideways, pull) - pull, -25.0 * sideways, rtol=1e-9)
+    np.testing.assert_allclose(drag_of(0.5 * sideways + 2.0 * along, pull) - pull, -25.0 * sideways, rtol=2e-3, atol=1e-2)
 
 
-def test_a_tether_of_no_direction_drags_alike_whichever_way_it_moves():
+def test_a_line_that_leads_to_a_point_pushes_a_vehicle_aside_that_passes_it():
+    """The point is 10 m north of the origin: 10 m east of there the line leads north-west, so that a vehicle that goes north with 1 m/s is dragged by
+    c sin 45 of the speed across the line, south and west alike."""
+    force = drag_of(np.array([1.0, 0.0, 0.0]), np.array([30.0, 0.0, 0.0]), nearness=0.1, place=(0.0, 10.0, 0.0))
+    line = 30.0 * np.array([1.0, -1.0, 0.0]) / np.sqrt(2.0)
+    np.testing.assert_allclose(force - line, 100.0 * np.sqrt(0.5) * np.array([-0.5, -0.5, 0.0]), rtol=2e-3, atol=1e-9)
+
+
+def test_a_tether_of_no_direction_drags_alike_whichever_way_it_moves_and_hangs_down_by_its_weight():
     rng = np.random.default_rng(47)
     for v in rng.normal(size=(20, 3)):
         like = -100.0 * np.linalg.norm(v) * v
         np.testing.assert_allclose(drag_of(v, np.zeros(3)), like, rtol=1e-12)
-        np.testing.assert_allclose(drag_of(v, np.array([40.0, 20.0, 10.0]), across=0.0), like, rtol=1e-9)
+        np.testing.assert_allclose(drag_of(v, np.zeros(3), weight=8.0), like + np.array([0.0, 0.0, 8.0]), rtol=1e-12)

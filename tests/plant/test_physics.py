@@ -262,10 +262,12 @@ def test_a_tether_damps_a_turn_by_its_arm_and_never_gives_power():
     nu, (ax, az) = rng.normal(size=(200, 6)), rng.uniform(-2, 2, size=(2, 200))
     u, v, w, p, q, r = nu.T
     level = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-    given = np.stack(tether_drag.wrench(30.0, 2.0, 0.0, 0.0, 0.0, 1.0, ax, az, 10.0, u, v, w, p, q, r, *level), axis=-1)
+    line, place = (0.0,) * 6, (0.0,) * 3
+    given = np.stack(tether_drag.wrench(*(30.0, 2.0, *line, ax, az, 10.0, *place, u, v, w, p, q, r, *level)), axis=-1)
     speed = np.linalg.norm(nu[:, :3] + np.cross(nu[:, 3:], np.stack([ax, 0 * ax, az], axis=-1)), axis=1)
     assert np.allclose((given * nu).sum(axis=1), -50.0 * speed**3, rtol=1e-12, atol=0)
-    assert tether_drag.wrench(30.0, 0.0, 0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5, *level)[5] == pytest.approx(-30.0 * 0.25)
+    turning = (0.0, 0.0, 0.0, 0.0, 0.0, 0.5)
+    assert tether_drag.wrench(*(30.0, 0.0, *line, -1.0, 0.0, 0.0, *place, *turning, *level))[5] == pytest.approx(-30.0 * 0.25)
     plant = Plant(cases.merlin())
     turns = []
     for setting in ("x=0", "x=-1"):
@@ -282,7 +284,7 @@ def test_a_pull_keeps_its_size_and_points_to_where_it_is_held():
 
     def given(size: float, near: float) -> np.ndarray:
         n, e, d = size * pull
-        return np.stack(tether_tension.wrench(n, e, d, near, 0.0, 0.0, 0.0, x, y, z, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)[:3], axis=-1)
+        return np.stack(tether_tension.wrench(n, e, d, near, 0.0, 0.0, 0.0, 0.0, x, y, z, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)[:3], axis=-1)
 
     size = float(np.linalg.norm(pull))
     towards = pull / (size * nearness) - np.stack([x, y, z], axis=-1)

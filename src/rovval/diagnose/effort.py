@@ -47,6 +47,8 @@ TRAIN_START = 0.1  # of a typical size: amplitude of further trains at first (a 
 WAVE_DOPPLER = 0.15  # relative shift of frequency within which they are: omega v / g is 0.14 at 0.9 m/s and a period of 4 s
 SPRING_STARTS = 4  # springs that the fit of what holds the vehicle begins from (chosen)
 SPRING_APART_S = 10.0  # s between their onsets, at least (chosen)
+LINE_BEARINGS, LINE_RISES, LINE_LENGTHS = 8, (0.0, 0.6, 1.2), (0.5, 2.0)  # bearings, rises (rad) and lengths (of the track's reach) of lines tried (chosen)
+LINE_STARTS, LINE_EVALUATIONS = 2, 600  # of these that the fit of a line begins from, and evaluations of its loss each time (chosen)
 SPRING_EVIDENT_SHARE = 0.2  # of the gap, from which a spring is fitted in any case (opened sets: eight snags 0.22 to 0.82; of 82 others three)
 
 # -- search and decision: prior masses, what is fitted, something else ---------------------------------------------------------------

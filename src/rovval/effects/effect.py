@@ -145,6 +145,7 @@ class Effect:
     - ``lasts``: it grows for as long as it lasts, so that one that began before the log is still told from its like by that.
     - ``onset_of``: the effect that it is from an onset on.
     - ``held``: it pulls towards a point as a tether does that is caught there, so that its search begins where a spring would hold the vehicle, too.
+    - ``towed``: it brakes across the line along which it pulls, so that its search begins where such a line is seen in the forces that are missing, too.
     - ``continues``: the effect that imitates it as far as that goes, and which it exceeds (a dead thruster is one that is half reversed).
     - ``includes``: the effect that it is where its own size is nothing; parameters of the same name are the same. That one is searched for from there, too.
     - ``family``: the name by which `rovval fit` tunes it along with others of its kind.
@@ -178,6 +179,7 @@ class Effect:
     lasts: bool = False
     onset_of: str = ""
     held: bool = False
+    towed: bool = False
     continues: str = ""
     includes: str = ""
     family: Family = ""

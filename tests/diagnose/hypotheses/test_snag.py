@@ -14,7 +14,8 @@ from rovval.diagnose import diagnose
 from rovval.diagnose.effort import SPRING_EVIDENT_SHARE
 from rovval.diagnose.hypotheses.initial_points import Hints
 from rovval.diagnose.hypotheses.library import hypotheses
-from rovval.diagnose.hypotheses.snag import MissingWrench, fitted_spring
+from rovval.diagnose.hypotheses.missing_wrench import MissingWrench
+from rovval.diagnose.hypotheses.snag import explained, fitted_spring
 from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.vehicle import load
 
@@ -60,14 +61,14 @@ def test_a_spring_is_found_in_the_forces_that_are_missing():
     wrench = np.concatenate([force, np.cross(tie, force)], axis=-1).reshape(20, 12)
     shape = rng.normal(size=(20, 12, 12))
     A = shape @ shape.swapaxes(1, 2)
-    lack = MissingWrench(A, np.einsum("wij,wj->wi", A, wrench), t, place, rotation)
+    lack = MissingWrench(A, np.einsum("wij,wj->wi", A, wrench), t, place, rotation, np.zeros((*t.shape, 6)))
     worth, found = fitted_spring(lack, onset, place[6, 0, 0], 1.0)
     assert worth == pytest.approx(float(np.einsum("wi,wij,wj->", wrench, A, wrench)), rel=0.01)
     want = {"north": 2.0, "east": -1.0, "down": 6.0, "radius": radius, "stiffness": stiffness, "x": -0.6, "z": -0.1, "onset": onset}
     assert {name: found[name] for name in want} == pytest.approx(want, rel=0.1, abs=0.15)
     away = np.linalg.norm(point - place[t >= onset], axis=-1)
     assert found["pull"] == pytest.approx(float(stiffness * np.maximum(away - radius, 0.0).mean()), rel=0.2)
-    assert replace(lack, b=-lack.b).explained(onset, point, radius)[0] == 0.0
+    assert explained(replace(lack, b=-lack.b), onset, point, radius)[0] == 0.0
 
 
 @pytest.mark.slow

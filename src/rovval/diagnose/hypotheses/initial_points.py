@@ -26,6 +26,7 @@ from rovval.diagnose.effort import (
 )
 from rovval.diagnose.hypotheses.hypothesis import START_SCALE, Hypothesis, columns_of, displaced, from_nothing
 from rovval.diagnose.hypotheses.snag import from_pulls, from_springs, mid_log_spring
+from rovval.diagnose.hypotheses.towed_line import from_line
 from rovval.diagnose.problem.prior import prior_mean
 from rovval.diagnose.windows.windows import Windows
 from rovval.plant import Plant
@@ -40,11 +41,13 @@ class Hints:
             what does not travel.
         changes_s: times (s since the first run's start) at which its windows begin to err more, or less.
         springs: what may hold the vehicle, as parameters of `tether_snag`, with the ``share`` of the gap that it takes.
+        line: what the vehicle may drag along (`towed_line`).
     """
 
     periods: Mapping[float | None, Sequence[float]] = field(default_factory=dict)
     changes_s: Sequence[float] = ()
     springs: Sequence[Mapping[str, float]] = ()
+    line: Mapping[str, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,9 +76,11 @@ def initial_points(target: Target, windows: Sequence[Windows], hints: Hints, nex
         far = _away_from_no_effect(target, next_id)
         plain = [replace(h, at=tuple(placed.items())) for h in (*_from_no_effect(target, placed), *_one_at_a_time(target))]
         levers = _with_levers(target, placed, next_id + len(far))
-        held = [(s, depth) for s, depth in placed.items() if effect.held and target.parameter(s).role == "level"]
-        pulls = from_pulls(plant, name, slots, hints.springs, held[0][1], next_id + len(columns_of([*far, *levers]).displaced)) if held else []
-        return [*plain, *far, *levers, *pulls]
+        after = next_id + len(columns_of([*far, *levers]).displaced)
+        depth = next((value for s, value in placed.items() if target.parameter(s).role == "level"), None)
+        pulls = from_pulls(plant, name, slots, hints.springs, depth, after) if effect.held and depth is not None else []
+        towed = [from_line(plant, name, slots, hints.line, depth, after)] if effect.towed and hints.line and depth is not None else []
+        return [*plain, *far, *levers, *pulls, *towed]
     free = tuple(s for s in slots if s not in grids and s not in placed and target.parameter(s).name not in effect.refines) or (START_SCALE,)
     points = [dict(zip(grids, point, strict=True)) for point in product(*grids.values())]
     most = WHOLE_STARTS if free == (START_SCALE,) else MOST_STARTS

@@ -11,8 +11,10 @@ from rovval.core.channels import channel
 from rovval.diagnose.hypotheses.change_points import gap_change_points
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of
 from rovval.diagnose.hypotheses.initial_points import Hints, Target, initial_points
+from rovval.diagnose.hypotheses.missing_wrench import missing_wrench
 from rovval.diagnose.hypotheses.snag import springs
 from rovval.diagnose.hypotheses.spectrum import spectral_lines, wave_periods
+from rovval.diagnose.hypotheses.towed_line import towed_line
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.windows.windows import Windows
@@ -73,11 +75,13 @@ def _lowest(windows: Sequence[Windows], name: str) -> float:
 
 def initialised(problem: Problem, library: Sequence[Hypothesis], healthy: Posterior) -> list[Hypothesis]:
     """The hypotheses of a library with the initial points that the log suggests: what oscillates at the periods of the residual about ``healthy``, the
-    vehicle with its coefficients within tolerance; what begins during the log where that begins to err; a spring that holds the vehicle where the missing
-    forces point."""
+    vehicle with its coefficients within tolerance; what begins during the log where that begins to err; a spring that holds the vehicle, and
+    a line that it drags along, where the missing forces point."""
     names = {h.name for h in library}
-    held = springs(problem) if any(h.effect.has("anchor") for h in library) else []
-    hints = Hints(_periods(problem, names, healthy), gap_change_points(problem), held)
+    lack = missing_wrench(problem.runs[0], problem.nominal[0], problem.origin, problem.gap.variance)
+    held = springs(problem, lack) if any(h.effect.has("anchor") for h in library) else []
+    towed = towed_line(lack) if any(h.effect.towed for h in library) else None
+    hints = Hints(_periods(problem, names, healthy), gap_change_points(problem), held, towed)
     fresh, _ = hypotheses(problem.runs, hints=hints)
     return [h for h in fresh if h.name in names]
 

@@ -1,91 +1,42 @@
 """Initial points of a spring that holds the vehicle to a point, such as a tether that has snagged.
 
-No slope leads from no effect to a spring that holds a vehicle, and each place is a local minimum of its own. So the force and moment that each half
-of a window lacks are worked out first, in the linearised model; then a spring towards a point, slack within a radius, is fitted to them from
-every half on. Its stiffness and where on the vehicle it is tied enter linearly and are eliminated (variable projection; Golub and Pereyra 1973).
-The best few springs are where fits by simulation begin.
+No slope leads from no effect to a spring that holds a vehicle, and each place is a local minimum of its own. So a spring towards a point, slack within a
+radius, is fitted to the forces and moments that each half of a window lacks (`missing_wrench`), from every half on. Its stiffness and where on the vehicle it
+is tied enter linearly and are eliminated (variable projection; Golub and Pereyra 1973). The best few springs are where fits by simulation begin.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import minimize
 
-from rovval.core.channels import AXES
 from rovval.core.data import Array
-from rovval.core.frames import rotation_from_euler
 from rovval.diagnose.criteria import SPRING_LEAST_STIFFNESS
 from rovval.diagnose.effort import SPRING_APART_S, SPRING_EVIDENT_SHARE, SPRING_STARTS
 from rovval.diagnose.hypotheses.hypothesis import START_SCALE, Hypothesis, displaced
-from rovval.diagnose.hypotheses.spectrum import interpolated
-from rovval.diagnose.problem.disturbance import segment_indicators
+from rovval.diagnose.hypotheses.missing_wrench import MissingWrench
 from rovval.diagnose.problem.problem import Problem
-from rovval.diagnose.residuals.external_forces import force_sensitivities, typical_wrench
-from rovval.diagnose.residuals.normal_equations import Linearisation, normal_equations
-from rovval.diagnose.residuals.nuisances import initial_state_sd
 from rovval.diagnose.windows.windows import Windows
 from rovval.plant import Plant
 
-HALVES = 2  # of a window, in each of which what is missing is one constant force and moment
-EVERY_S = 0.5  # s between the places along a half at which the spring pulls
 RADII = (0.2, 0.5, 0.8)  # radii tried, as shares of how far the vehicle gets from the point
 EVALUATIONS, PASSES = 150, 2  # of the loss of a spring, and how often it is fitted, each time from where the one before is tied
 LEAST_DISTANCE = 1.0  # m: a point that is nearer to the log's origin leads a pull in no one direction
-LEVER_X = np.array([[0, 0, 0], [0, 0, -1], [0, 1, 0]])  # moment of a force that acts 1 m ahead of the origin
-LEVER_Z = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 0]])  # and of one that acts 1 m below it
 
 Spring = dict[str, float]  # parameters by the names of the effect `tether_snag`, "pull" (N): its mean, and "share": of the gap, that it takes by its stretch
 
 
-@dataclass(frozen=True, slots=True)
-class MissingWrench:
-    """The force and moment, in body axes, that the halves of m windows lack.
-
-    Attributes:
-        A: (m, 12, 12) information on them: the first half's six components (N, N m), then the second's.
-        b: (m, 12) score at none.
-        t: (m, 2, s) times (s since the run's start) of s places in each half.
-        place: (m, 2, s, 3) the vehicle's position there (m; north, east, down).
-        rotation: (m, 2, s, 3, 3) from body axes to north, east, down.
-    """
-
-    A: Array
-    b: Array
-    t: Array
-    place: Array
-    rotation: Array
-
-    def explained(self, onset: float, point: Array, radius: float) -> tuple[float, Array]:
-        """What a spring towards ``point`` (m), slack within ``radius`` (m), from ``onset`` (s) on takes from the loss at its best stiffness and levers.
-
-        Returns:
-            That reduction, and (3,) the stiffness (N/m) and the stiffness times its levers ahead and below (N); zeros where it would have to push.
-        """
-        to = point - self.place
-        away = np.linalg.norm(to, axis=-1)
-        pull = np.where(self.t >= onset, np.maximum(away - radius, 0.0) / np.maximum(away, 1e-9), 0.0)
-        force = np.einsum("wht,whtij,whti->whj", pull, self.rotation, to) / pull.shape[-1]
-        none = np.zeros_like(force)
-        parts = [np.concatenate(pair, axis=-1) for pair in ((force, none), (none, force @ LEVER_X.T), (none, force @ LEVER_Z.T))]
-        each = np.stack(parts, axis=-1).reshape(*self.b.shape, len(parts))
-        along, size = np.einsum("wi,wia->a", self.b, each), np.einsum("wia,wij,wjb->ab", each, self.A, each, optimize=True)
-        best = np.linalg.lstsq(size, along, rcond=1e-12)[0]
-        return (float(along @ best), best) if best[0] > 0 else (0.0, np.zeros(len(parts)))
-
-
-def springs(problem: Problem) -> list[Spring]:
-    """The springs that explain most of what the first run's windows lack at the nominal vehicle, the best first.
+def springs(problem: Problem, lack: MissingWrench) -> list[Spring]:
+    """The springs that explain most of what the first run's windows ``lack`` at the nominal vehicle, the best first.
 
     Each has the parameters of `tether_snag` (north, east, down, radius, x, z in m, stiffness in N/m, onset in s since the run's start) and the ``share``
     of the gap that it takes by its stretch: 0 for one so soft that it might as well pull evenly (`SPRING_LEAST_STIFFNESS`).
     """
-    windows = problem.runs[0]
-    lack = missing_wrench(windows, problem.nominal[0], problem.origin, problem.gap.variance)
     onsets, places = lack.t[:, :, 0].reshape(-1), np.asarray(lack.place[:, :, 0].reshape(-1, 3))
-    first = [max(((lack.explained(t, p, r)[0], r) for r in _radii(lack, t, p)), default=(0.0, 0.0)) for t, p in zip(onsets, places, strict=True)]
+    first = [max(((explained(lack, t, p, r)[0], r) for r in _radii(lack, t, p)), default=(0.0, 0.0)) for t, p in zip(onsets, places, strict=True)]
     found = list[tuple[float, Spring]]()
     for i in np.argsort([-reduction for reduction, _ in first]):
         if len(found) < SPRING_STARTS and first[i][0] > 0 and all(abs(onsets[i] - spring["onset"]) >= SPRING_APART_S for _, spring in found):
@@ -95,20 +46,20 @@ def springs(problem: Problem) -> list[Spring]:
     return [spring | {"share": share if spring["stiffness"] >= SPRING_LEAST_STIFFNESS else 0.0} for share, spring in shares]
 
 
-def missing_wrench(windows: Windows, linear: Linearisation, beta: Array, variance: Array) -> MissingWrench:
-    """What the halves of a run's windows lack of parameters ``beta``, by the residuals ``linear`` there, weighted by ``variance`` (samples, channels)."""
-    wrench = typical_wrench([windows])
-    forces = [(axis, on * size) for on in segment_indicators(windows, HALVES) for axis, size in zip(AXES, wrench, strict=True)]
-    answers = force_sensitivities(windows, beta, forces)
-    seen = normal_equations(replace(linear, S=answers, columns=tuple(range(answers.shape[-1]))), windows.ok, variance, initial_state_sd(windows))
-    unit = np.tile(1.0 / wrench, HALVES)
-    edges = np.linspace(0, windows.steps + 1, HALVES + 1)
-    samples = max(round((windows.steps + 1) / HALVES * windows.run.dt / EVERY_S), 1)
-    along = edges[:-1, None] + (edges[1] - edges[0]) * (np.arange(samples) + 0.5) / samples
-    t = (windows.start[:, None, None] + along) * windows.run.dt
-    place = np.stack([interpolated(windows, c, t) for c in ("x", "y", "z")], axis=-1)
-    rotation = rotation_from_euler(np.stack([interpolated(windows, c, t) for c in ("phi", "theta", "psi")], axis=-1))
-    return MissingWrench(seen.A * np.outer(unit, unit), seen.b * unit, t, place, rotation)
+def explained(lack: MissingWrench, onset: float, point: Array, radius: float) -> tuple[float, Array]:
+    """What a spring towards ``point`` (m), slack within ``radius`` (m), from ``onset`` (s) on takes from the loss of what is missing at its best stiffness and
+    levers.
+
+    Returns:
+        That reduction, and (3,) the stiffness (N/m) and the stiffness times its levers ahead and below (N); zeros where it would have to push.
+    """
+    to = point - lack.place
+    away = np.linalg.norm(to, axis=-1)
+    pull = np.where(lack.t >= onset, np.maximum(away - radius, 0.0) / np.maximum(away, 1e-9), 0.0)
+    force = np.einsum("wht,whtij,whti->whj", pull, lack.rotation, to) / pull.shape[-1]
+    size, along = lack.normal(lack.levered(force))
+    best = np.asarray(np.linalg.lstsq(size, along, rcond=1e-12)[0], dtype=np.float64)
+    return (float(along @ best), best) if best[0] > 0 else (0.0, np.zeros_like(best))
 
 
 def _radii(lack: MissingWrench, onset: float, point: Array) -> Array:
@@ -125,11 +76,11 @@ def fitted_spring(lack: MissingWrench, onset: float, point: Array, radius: float
         tied = replace(lack, place=lack.place + lack.rotation @ tie)
 
         def loss(x: Array, tied: MissingWrench = tied) -> float:
-            return -tied.explained(onset, x[:3], abs(float(x[3])))[0]
+            return -explained(tied, onset, x[:3], abs(float(x[3])))[0]
 
         at = minimize(loss, at, method="Nelder-Mead", options={"maxfev": EVALUATIONS, "initial_simplex": _simplex(at)}).x
         at[3] = abs(at[3])
-        reduction, best = tied.explained(onset, at[:3], float(at[3]))
+        reduction, best = explained(tied, onset, at[:3], float(at[3]))
         tie = np.array([best[1], 0.0, best[2]]) / best[0] if reduction > 0 else np.zeros(3)
     names = ("north", "east", "down", "radius", "stiffness", "x", "z", "onset", "pull")
     away = np.linalg.norm(at[:3] - lack.place[lack.t >= onset], axis=-1)

@@ -20,7 +20,7 @@ from rovval.diagnose.effort import WAVE_DOPPLER, WAVE_LINES, WAVE_TRAINS
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.normal_equations import Linearisation
-from rovval.diagnose.windows.windows import Windows
+from rovval.diagnose.windows.windows import Windows, interpolated
 
 VELOCITY = ("u", "v", "w")
 TIME_CONSTANT_S = 3.0  # s, of the body: a third of a window of 10 s (`windows`)
@@ -143,15 +143,6 @@ def _of_run(windows: Windows, linear: Linearisation) -> _Velocities:
     u, v, w = np.moveaxis(np.where(ok[..., None], linear.r[:, ::every, at], 0.0), -1, 0)
     world = np.stack([np.cos(psi) * u - np.sin(psi) * v, np.sin(psi) * u + np.cos(psi) * v, w], axis=-1)
     return _Velocities(t, _start_eliminated(t, ok, world), ok, np.stack([x, y, z], axis=-1))
-
-
-def interpolated(windows: Windows, channel: str, t: Array) -> Array:
-    """A channel of the windows' run at times ``t`` (s since its start), gaps bridged; zeros where it was not measured."""
-    good = np.flatnonzero(windows.run.ok(channel)) if windows.run.measured(channel) else np.zeros(0, dtype=int)
-    if not len(good):
-        return np.zeros(t.shape)
-    values = windows.run.get(channel)[good]
-    return np.asarray(np.interp(t / windows.run.dt, good, np.unwrap(values) if channel == "psi" else values))
 
 
 def _start_eliminated(t: Array, ok: Flags, x: Array) -> Array:

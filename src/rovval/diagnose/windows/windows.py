@@ -114,6 +114,15 @@ def predicted_channels(windows: Windows, which: NDArray[np.int64], nu: Array, et
     return predicted
 
 
+def interpolated(windows: Windows, channel: str, t: Array) -> Array:
+    """A channel of the windows' run at times ``t`` (s since its start), gaps bridged; zeros where it was not measured."""
+    good = np.flatnonzero(windows.run.ok(channel)) if windows.run.measured(channel) else np.zeros(0, dtype=int)
+    if not len(good):
+        return np.zeros(t.shape)
+    values = windows.run.get(channel)[good]
+    return np.asarray(np.interp(t / windows.run.dt, good, np.unwrap(values) if channel == "psi" else values))
+
+
 def channel_difference(windows: Windows, a: Array, b: Array, out: Array | None = None) -> Array:
     """a - b (..., c) by channel, angles wrapped to (-pi, pi]; rotation vectors are no longer than that. It is written to ``out`` where that is given."""
     out = np.asarray(np.subtract(a, b, out=out))
