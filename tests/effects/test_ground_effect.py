@@ -40,6 +40,21 @@ def test_near_the_bottom_drag_in_heave_brakes_and_a_gain_lifts():
     assert w["gain=300"] < w["gain=1e-9"] < w["gain=-300"] and 0.0 < w["drag=5"] < w["gain=1e-9"]
 
 
+def test_a_vehicle_that_passes_over_the_bottom_is_drawn_to_it_by_the_square_of_its_speed():
+    """Z = suction exp(-h / height) (u^2 + v^2): the first tenth of a second, alike ahead and sideways, and nothing at rest."""
+    plant, at = Plant(cases.merlin()), np.zeros((4, 6))
+    nu = np.array([[0.0] * 6, [0.4, *[0.0] * 5], [0.8, *[0.0] * 5], [0.0, 0.4, *[0.0] * 4]])
+    at[:, 2] = 20.0
+
+    def fallen(setting: str) -> Array:
+        beta = np.tile(parse_settings(plant, [f"ground_effect:{setting},height=0.5,seabed=20.5"]), (4, 1))
+        return np.asarray(plant.simulate(Inputs(0.1, np.zeros((2, 7)), False), np.zeros(4, dtype=int), 1, nu, at, beta).nu[:, 1, 2])
+
+    drawn = fallen("suction=300") - fallen("gain=1e-9")
+    assert abs(drawn[0]) < 1e-6 and drawn[1] > 1e-4
+    assert drawn[2] == pytest.approx(4.0 * drawn[1], rel=0.05) and drawn[3] == pytest.approx(drawn[1], rel=0.1)
+
+
 def test_a_bottom_never_takes_drag_away():
     """A negative share would be a slip of the hull along the vertical, and imitates a trim that is off."""
     with pytest.raises(UsageProblem, match=r"ground_effect\.drag = -0\.5, allowed 0 to 30"):
