@@ -215,16 +215,12 @@ def test_the_true_heading_is_found_at_the_corners_of_every_deviation_card():
     np.testing.assert_allclose(wrap(eta[:, 5:] - psi), 0.0, atol=1e-12)
 
 
-
-
 def test_what_a_dead_band_takes_is_made_up_beyond_it_and_no_more():
-    """A band of the drive takes its width of the speed all along, one of thrust its own of the thrust; one of low flow is caught up with at 1.5 widths where
-    catch is 2, and none gives more than there is."""
+    """A band of the drive takes its width all along; one of low flow is caught up with at 1 + 1 / catch widths, and never gives more than there is."""
     n = np.linspace(-10.0, 10.0, 401)
-    drive, thrust, flow = (thruster_deadband.acting(2.0, catch, n) for catch in (0.0, 1.0, 2.0))
+    drive, flow = thruster_deadband.acting(2.0, 0.0, n), thruster_deadband.acting(2.0, 0.5, n)
     np.testing.assert_allclose(drive, np.sign(n) * np.maximum(np.abs(n) - 2.0, 0.0), atol=1e-12)
-    np.testing.assert_allclose(thrust * np.abs(thrust), np.sign(n) * np.maximum(n**2 - 4.0, 0.0), atol=1e-9)
-    inside, beyond = np.abs(n) <= 2.0, np.abs(n) >= 3.0
+    inside, beyond = np.abs(n) <= 2.0, np.abs(n) >= 6.0
     assert (flow[inside] == 0.0).all() and np.abs(flow[beyond] - n[beyond]).max() < 1e-12
-    assert (np.abs(flow) <= np.abs(n) + 1e-12).all() and (np.abs(flow) >= np.abs(thrust) - 1e-12).all()
+    assert (np.abs(flow) <= np.abs(n) + 1e-12).all() and (np.abs(flow) >= np.abs(drive) - 1e-12).all()
     np.testing.assert_array_equal(thruster_deadband.acting(0.0, 0.0, n), n)

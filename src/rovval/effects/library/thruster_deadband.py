@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rovval.effects.arithmetic import Number, positive, sqrt
+from rovval.effects.arithmetic import Number, positive
 from rovval.effects.effect import Effect, Parameter, Tolerance
 from rovval.effects.lanes import Array, Lanes
 from rovval.vehicle.model import Vehicle
@@ -23,16 +23,16 @@ EFFECT = Effect(
     name="thruster_deadband",
     title="Dead band of the thrusters",
     place="input",
-    equation="n <- sgn(n) min(sqrt(max(|n| - width, 0) (|n| - width + 2 catch width)), |n|) on the acting speed of every thruster: the speed beyond the band "
-    "at catch 0, the thrust beyond the band's at 1 (n^2 - width^2, Bessa 2006), and all of the speed again from some on at more.",
-    symbols={"n": "shaft speed; rev/s", "width": "half width of the band; rev/s", "catch": "how soon the speed is caught up with; 1"},
+    equation="n <- sgn(n) min((1 + catch) max(|n| - width, 0), |n|) on the acting speed of every thruster; with catch, what is missing at the edge of the "
+    "band is made up beyond it.",
+    symbols={"n": "shaft speed; rev/s", "width": "half width of the band; rev/s", "catch": "slope beyond the band, less one; 1"},
     parameters=(
         Parameter(
             "width", "rev/s", 0.0, 60.0, 0.0, 2.5, "0 to 12 % of full command (chosen); T200: 300 rpm (Blue Robotics T200); searched to full speed", "speed",
             starts=(1.0, 4.0), tolerance=CURVED,
         ),
         Parameter(
-            "catch", "1", 0.0, 30.0, 0.0, 1.0, "0: a dead band of the drive, all along; 1: of thrust; more: of low flow, caught up with at some widths",
+            "catch", "1", 0.0, 30.0, 0.0, 1.0, "0: a dead band of the drive, all along; else one of low flow, caught up with at 1 + 1 / catch widths",
             tolerance=CURVED,
         ),
     ),
@@ -53,6 +53,5 @@ def rows(lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
 
 def acting(width: Number, catch: Number, n: Number) -> Number:
     """Speed that acts: what is beyond the band, and no more than there is."""
-    more = (2.0 * catch - 1.0) * width
-    ahead, astern = sqrt(positive(n - width) * positive(n + more)), sqrt(positive(-n - width) * positive(more - n))
+    ahead, astern = (1.0 + catch) * positive(n - width), (1.0 + catch) * positive(-n - width)
     return ahead - positive(ahead - positive(n)) - astern + positive(astern - positive(-n))
