@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rovval.diagnose.criteria import PRIOR_WIDTH
@@ -84,6 +84,13 @@ def displaced(plant: Plant, label: str, slots: tuple[int, ...], free: tuple[int,
     directions = tuple(DisplacedColumn(next_id + i, at, slot) for i, slot in enumerate(free))
     sd = tuple(PRIOR_WIDTH * (plant.slots[s].parameter.typical if s != START_SCALE else START_SCALE_TYPICAL) for s in free)
     return Hypothesis(label.partition("@")[0], label, slots, tuple(d.id for d in directions), sd, at, directions)
+
+
+def at_full_size(plant: Plant, label: str, slots: tuple[int, ...], values: Mapping[str, float], next_id: int) -> Hypothesis:
+    """A hypothesis that begins with all of an effect at once: its parameters where ``values`` has them by name, held within their bounds."""
+    own = [(slot, plant.slots[slot].parameter) for slot in slots]
+    at = tuple((slot, p.within(values[p.name])) for slot, p in own if p.name in values)
+    return displaced(plant, label, slots, (START_SCALE,), at, next_id)
 
 
 def wide_prior(problem: Problem, slots: Sequence[int]) -> Prior:

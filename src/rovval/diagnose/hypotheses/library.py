@@ -12,9 +12,9 @@ from rovval.diagnose.hypotheses.change_points import gap_change_points
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of
 from rovval.diagnose.hypotheses.initial_points import Hints, Target, initial_points
 from rovval.diagnose.hypotheses.missing_wrench import missing_wrench
-from rovval.diagnose.hypotheses.snag import springs
+from rovval.diagnose.hypotheses.snag import Spring, springs
 from rovval.diagnose.hypotheses.spectrum import spectral_lines, wave_periods
-from rovval.diagnose.hypotheses.towed_line import towed_line
+from rovval.diagnose.hypotheses.towed_line import Line, towed_line
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.windows.windows import Windows
@@ -78,12 +78,18 @@ def initialised(problem: Problem, library: Sequence[Hypothesis], healthy: Poster
     vehicle with its coefficients within tolerance; what begins during the log where that begins to err; a spring that holds the vehicle, and
     a line that it drags along, where the missing forces point."""
     names = {h.name for h in library}
-    lack = missing_wrench(problem.runs[0], problem.nominal[0], problem.origin, problem.gap.variance)
-    held = springs(problem, lack) if any(h.effect.has("anchor") for h in library) else []
-    towed = towed_line(lack) if any(h.effect.towed for h in library) else None
-    hints = Hints(_periods(problem, names, healthy), gap_change_points(problem), held, towed)
+    hints = Hints(_periods(problem, names, healthy), gap_change_points(problem), *_held_and_towed(problem, library))
     fresh, _ = hypotheses(problem.runs, hints=hints)
     return [h for h in fresh if h.name in names]
+
+
+def _held_and_towed(problem: Problem, library: Sequence[Hypothesis]) -> tuple[list[Spring], Line | None]:
+    """Springs that may hold the vehicle, and the line that it may drag along, by the forces that are missing; as far as effects of the library ask for them."""
+    held, towed = any(h.effect.has("anchor") for h in library), any(h.effect.towed for h in library)
+    if not held and not towed:
+        return [], None
+    lack = missing_wrench(problem.runs[0], problem.nominal[0], problem.origin, problem.gap.variance)
+    return springs(problem, lack) if held else [], towed_line(lack) if towed else None
 
 
 def _periods(problem: Problem, names: set[str], healthy: Posterior) -> dict[float | None, Sequence[float]]:

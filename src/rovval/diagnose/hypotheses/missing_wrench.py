@@ -5,6 +5,7 @@ What no slope leads to, a spring that holds the vehicle or a line along which a 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,6 +21,7 @@ from rovval.diagnose.windows.windows import Windows, interpolated
 
 HALVES = 2  # of a window, in each of which what is missing is one constant force and moment
 EVERY_S = 0.5  # s between the places along a half at which a force is looked at
+LEAST_DISTANCE = 1.0  # m: a point that is nearer leads a pull in no one direction
 LEVER_X = np.array([[0, 0, 0], [0, 0, -1], [0, 1, 0]])  # moment of a force that acts 1 m ahead of the origin
 LEVER_Z = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 0]])  # and of one that acts 1 m below it
 
@@ -70,3 +72,12 @@ def missing_wrench(windows: Windows, linear: Linearisation, beta: Array, varianc
     rotation = rotation_from_euler(np.stack([interpolated(windows, c, t) for c in ("phi", "theta", "psi")], axis=-1))
     velocity = np.stack([interpolated(windows, c, t) for c in ("u", "v", "w", "p", "q", "r")], axis=-1)
     return MissingWrench(seen.A * np.outer(unit, unit), seen.b * unit, t, place, rotation, velocity)
+
+
+def pull_towards(point: Mapping[str, float], strength: float, depth: float) -> dict[str, float]:
+    """A pull of some ``strength`` (N) towards a ``point`` (north, east, down; m) by the names that a tether's effects have for it: its components (N) at the
+    log's origin at a ``depth`` (m), and one over how far it is from there to the point (1/m)."""
+    to = np.array([point["north"], point["east"], point["down"] - depth])
+    far = max(float(np.linalg.norm(to)), LEAST_DISTANCE)
+    north, east, down = (strength * to / far).tolist()
+    return {"north": north, "east": east, "down": down, "nearness": 1.0 / far, "depth": depth}

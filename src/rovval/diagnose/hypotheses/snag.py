@@ -16,15 +16,14 @@ from scipy.optimize import minimize
 from rovval.core.data import Array
 from rovval.diagnose.criteria import SPRING_LEAST_STIFFNESS
 from rovval.diagnose.effort import SPRING_APART_S, SPRING_EVIDENT_SHARE, SPRING_STARTS
-from rovval.diagnose.hypotheses.hypothesis import START_SCALE, Hypothesis, displaced
-from rovval.diagnose.hypotheses.missing_wrench import MissingWrench
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis, at_full_size
+from rovval.diagnose.hypotheses.missing_wrench import MissingWrench, pull_towards
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.windows.windows import Windows
 from rovval.plant import Plant
 
 RADII = (0.2, 0.5, 0.8)  # radii tried, as shares of how far the vehicle gets from the point
 EVALUATIONS, PASSES = 150, 2  # of the loss of a spring, and how often it is fitted, each time from where the one before is tied
-LEAST_DISTANCE = 1.0  # m: a point that is nearer to the log's origin leads a pull in no one direction
 
 Spring = dict[str, float]  # parameters by the names of the effect `tether_snag`, "pull" (N): its mean, and "share": of the gap, that it takes by its stretch
 
@@ -95,25 +94,16 @@ def _simplex(at: Array) -> Array:
 
 def from_springs(plant: Plant, name: str, slots: tuple[int, ...], found: Sequence[Mapping[str, float]], next_id: int) -> list[Hypothesis]:
     """One hypothesis for each spring that was ``found``: its fit begins with all of that spring at once."""
-    own = [(slot, plant.slots[slot].parameter) for slot in slots]
-    at = [tuple((slot, float(np.clip(spring[p.name], p.low, p.high))) for slot, p in own if p.name in spring) for spring in found]
-    begun = [displaced(plant, f"{name}@{i}", slots, (START_SCALE,), one, next_id + i) for i, one in enumerate(at)]
+    begun = [at_full_size(plant, f"{name}@{i}", slots, spring, next_id + i) for i, spring in enumerate(found)]
     return [replace(h, evident=spring.get("share", 0.0) >= SPRING_EVIDENT_SHARE) for h, spring in zip(begun, found, strict=True)]
 
 
 def from_pulls(plant: Plant, name: str, slots: tuple[int, ...], found: Sequence[Mapping[str, float]], depth: float, next_id: int) -> list[Hypothesis]:
     """One hypothesis of a steady pull towards the point of each spring that was ``found``, as strong as that pulls on average, its components those at the
     log's origin at a ``depth`` (m): what has held the vehicle since before the log began has no onset, and may well be no spring."""
-    begun = list[Hypothesis]()
-    for i, spring in enumerate(one for one in found if one.get("pull", 0.0) > 0.0):
-        to = np.array([spring["north"], spring["east"], spring["down"] - depth])
-        far = max(float(np.linalg.norm(to)), LEAST_DISTANCE)
-        values = dict(zip(("north", "east", "down"), (spring["pull"] * to / far).tolist(), strict=True))
-        values |= {"nearness": 1.0 / far, "depth": depth, "x": spring["x"], "z": spring["z"]}
-        own = [(slot, plant.slots[slot].parameter) for slot in slots]
-        at = tuple((slot, float(np.clip(values[p.name], p.low, p.high))) for slot, p in own if p.name in values)
-        begun.append(displaced(plant, f"{name}@held{i}", slots, (START_SCALE,), at, next_id + i))
-    return begun
+    pulling = [spring for spring in found if spring.get("pull", 0.0) > 0.0]
+    values = [{**spring, **pull_towards(spring, spring["pull"], depth)} for spring in pulling]
+    return [at_full_size(plant, f"{name}@held{i}", slots, one, next_id + i) for i, one in enumerate(values)]
 
 
 def mid_log_spring(windows: Sequence[Windows], plant: Plant, slots: tuple[int, ...]) -> Spring:

@@ -16,12 +16,11 @@ from scipy.optimize import minimize
 
 from rovval.core.data import Array
 from rovval.diagnose.effort import LINE_BEARINGS, LINE_EVALUATIONS, LINE_LENGTHS, LINE_RISES, LINE_STARTS
-from rovval.diagnose.hypotheses.hypothesis import START_SCALE, Hypothesis, displaced
-from rovval.diagnose.hypotheses.missing_wrench import MissingWrench
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis, at_full_size
+from rovval.diagnose.hypotheses.missing_wrench import LEAST_DISTANCE, MissingWrench, pull_towards
 from rovval.plant import Plant
 
 LEAST_PULL = 3.0  # N: a line begins with as much, where the forces have less, since a pull of next to nothing tells no direction
-LEAST_LENGTH = 1.0  # m: a point that is nearer leads a line in no one direction
 DOWN = np.array([0.0, 0.0, 1.0])
 
 Line = dict[str, float]  # by the names of the effect `tether_drag`, but for north, east and down, which are of the point that it leads to (m)
@@ -63,7 +62,7 @@ def fitted_line(lack: MissingWrench, point: Array, reach: float) -> tuple[float,
         return -explained(lack, x[:3], _tie(x))[0]
 
     first = np.array([*point, 0.0, 0.0])
-    corners = first + np.vstack([np.zeros(5), np.diag([0.5 * reach] * 3 + [LEAST_LENGTH] * 2)])
+    corners = first + np.vstack([np.zeros(5), np.diag([0.5 * reach] * 3 + [LEAST_DISTANCE] * 2)])
     best = minimize(loss, first, method="Nelder-Mead", options={"maxfev": LINE_EVALUATIONS, "initial_simplex": corners}).x
     reduction, (drag, weight, pull) = explained(lack, best[:3], _tie(best))
     names = ("north", "east", "down", "x", "z", "coefficient", "weight", "pull")
@@ -72,20 +71,14 @@ def fitted_line(lack: MissingWrench, point: Array, reach: float) -> tuple[float,
 
 def from_line(plant: Plant, name: str, slots: tuple[int, ...], line: Mapping[str, float], depth: float, next_id: int) -> Hypothesis:
     """The hypothesis whose fit begins with all of a ``line`` at once, its pull as it is at the log's origin at a ``depth`` (m)."""
-    to = np.array([line["north"], line["east"], line["down"] - depth])
-    far = max(float(np.linalg.norm(to)), LEAST_LENGTH)
-    pull = dict(zip(("north", "east", "down"), (max(line["pull"], LEAST_PULL) * to / far).tolist(), strict=True))
-    values = {**line, **pull, "nearness": 1.0 / far, "depth": depth}
-    own = [(slot, plant.slots[slot].parameter) for slot in slots]
-    at = tuple((slot, p.within(values[p.name])) for slot, p in own if p.name in values)
-    return displaced(plant, f"{name}@line", slots, (START_SCALE,), at, next_id)
+    return at_full_size(plant, f"{name}@line", slots, {**line, **pull_towards(line, max(line["pull"], LEAST_PULL), depth)}, next_id)
 
 
 def _track(lack: MissingWrench) -> tuple[Array, float]:
     """The middle of where the vehicle was (m), and how far it gets from there."""
     place = lack.place.reshape(-1, 3)
     middle = np.asarray(np.median(place, axis=0))
-    return middle, max(float(np.quantile(np.linalg.norm(place - middle, axis=1), 0.9)), LEAST_LENGTH)
+    return middle, max(float(np.quantile(np.linalg.norm(place - middle, axis=1), 0.9)), LEAST_DISTANCE)
 
 
 def _way(bearing: float, rise: float) -> Array:
@@ -96,7 +89,7 @@ def _way(bearing: float, rise: float) -> Array:
 def _forces(lack: MissingWrench, point: Array, tie: Array) -> list[Array]:
     """Mean forces (m, 2, 3), body axes, in the halves of the windows, of a line from ``tie`` to ``point``: a drag of 1 N s2/m2, a weight and a pull of 1 N."""
     to = point - lack.place - lack.rotation @ tie
-    to = to / np.maximum(np.linalg.norm(to, axis=-1, keepdims=True), LEAST_LENGTH)
+    to = to / np.maximum(np.linalg.norm(to, axis=-1, keepdims=True), LEAST_DISTANCE)
     along, down = (np.einsum("whtij,whti->whtj", lack.rotation, way) for way in (to, np.broadcast_to(DOWN, to.shape)))
     velocity = lack.velocity[..., :3] + np.cross(lack.velocity[..., 3:], tie)
     across = velocity - (velocity * along).sum(axis=-1, keepdims=True) * along
