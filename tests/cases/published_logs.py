@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ import numpy as np
 from real_answers import Answer, Question, ask
 from real_data import real
 
-from rovval import vehicle
+from rovval import load, vehicle
 from rovval.core.data import Run
 from rovval.effects.lanes import reference_speed
 from rovval.fit.calibration import calibrate
@@ -24,9 +24,10 @@ from rovval.vehicle.write import to_toml
 WITH_BALLAST, POWERED = ("ff_b1", "ff_b2"), tuple(f"exp1_{i}" for i in range(1, 6))
 YAW, YAW_DRAG = ("yaw_1", "yaw_2", "yaw_3"), ("linear_drag[yaw]", "quadratic_drag[yaw]")
 INFLOW = "thrust.flow[inflow_loss.loss]"
+PART_S, PARTS, LEAST_S = 300.0, 3, 20.0  # of the outside plant's logs; what begins in the last seconds of a part shows in none of its windows
 YAW_WINDOW_S = 4.0  # the shortest of the logs has thruster inputs for some 15 s
 SAME = {  # families of the outside plant, and what the library calls the same by its README: its effects act on all thrusters and axes concerned
-    "added_mass": ("added_mass[surge]", "added_mass[sway]", "added_mass[heave]"),
+    "added_mass": ("added_mass[surge]", "added_mass[sway]", "added_mass[heave]", "added_mass[translation]"),
     "rpm_scale": ("rpm_scale", "voltage_sag"),
     "tether_drag": ("tether_drag", "tether_tension"),
     "stick_slip": ("dragged_load",),  # dry friction of the whole vehicle
@@ -73,9 +74,9 @@ def _lost_to_inflow(runs: Sequence[Run], of: Vehicle, loss: float) -> float:
     """Moment about z (N m s) that thrusters lose per rate of turn, which moves them through the water: loss k n_ref |n| of each (`effects`: inflow_loss) times
     the square of its lever."""
     lever = np.array([np.cross(one.position, one.direction)[2] for one in of.thruster])
-    gain = 0.5 * 60.0**2 * np.array([one.k_pos + one.k_neg for one in of.thruster])
-    speed = np.concatenate([np.abs(simulate(run, of).thruster_speed) for run in runs])
-    return float(loss * reference_speed(of) * (np.nanmean(speed, axis=0) * gain * lever**2).sum())
+    ahead, astern = (60.0**2 * np.array([getattr(one, gain) for one in of.thruster]) for gain in ("k_pos", "k_neg"))
+    speed = np.concatenate([simulate(run, of).thruster_speed for run in runs])
+    return float(loss * reference_speed(of) * (np.nanmean(np.abs(speed) * np.where(speed < 0.0, astern, ahead), axis=0) * lever**2).sum())
 
 
 @cache
@@ -101,4 +102,19 @@ def outside_plant(minutes: float) -> tuple[Answer, ...]:
             piece = " and ".join(one["family"] for one in effects) or "healthy"
             path: Path = real(f"outside_plant/{name}.csv.gz")
             asked.append(Question(piece, (path,), nominal, _right(effects)))
+    return ask(tuple(asked))
+
+
+def outside_parts() -> tuple[Answer, ...]:
+    """Parts of all logs of the outside plant, of `PART_S` and up to twice as much, three of a log at most; what begins after a part is not in it."""
+    nominal, asked = to_toml(vehicle.load("merlin")), list[Question]()
+    for name, truth in sorted(_truth().items()):
+        seconds = 60.0 * truth["minutes"]
+        count = max(1, int(seconds // PART_S))
+        for i in range(count) if count <= PARTS else (0, count // 2, count - 1):
+            start, end = i * seconds / count, (i + 1) * seconds / count
+            effects = [one for one in truth["effects"] if one["onset_s"] < end - LEAST_S] if truth["affected_axes"] else []
+            piece = f"{start:.0f} to {end:.0f} s: " + (" and ".join(one["family"] for one in effects) or "healthy")
+            read = partial(load, start_s=start, end_s=end)
+            asked.append(Question(piece, (real(f"outside_plant/{name}.csv.gz"),), nominal, _right(effects), read))
     return ask(tuple(asked))

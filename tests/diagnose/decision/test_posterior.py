@@ -172,6 +172,22 @@ def test_a_force_that_nobody_logged_tells_something_else_from_causes_and_from_a_
     assert (asked.unexplained > before.unexplained) == (likelier == "more")
 
 
+@pytest.mark.parametrize(("evidence", "judged_by"), [(-10.0, "own"), (30.0, "beside")])
+def test_the_force_about_a_healthy_vehicle_is_judged_beside_a_cause_only_where_that_is_likelier(evidence: float, judged_by: str):
+    """A cause that the log denies does not take the force away; one that it asks for does."""
+    loss, none, prior = frozenset({"inflow_loss"}), frozenset[str](), ModelPrior.of([Hypothesis(n, n, (), (), ()) for n in NAMES])
+    cause = (Hypothesis("inflow_loss", "inflow_loss", (), (), ()),)
+    models = [Model((), None, 0.0, prior.log_mass(())), Model(cause, None, evidence, prior.log_mass(cause))]
+
+    def something_else_over_healthy(own: float, beside: float) -> float:
+        force = {none: ForceLeft(own, FORCE_RIGHT, FORCE_ALIKE), loss: ForceLeft(beside, FORCE_RIGHT, FORCE_ALIKE)}
+        found = probabilities(models, {none: -100.0}, 6.0, {}, {}, left=Left({loss: np.full(2, 0.1)}, {loss: (0.1, SMALL)}, unlogged=force))
+        return found.unexplained / found.healthy
+
+    large_own, large_beside = something_else_over_healthy(1.0, 0.0), something_else_over_healthy(0.0, 1.0)
+    assert (large_own > large_beside) == (judged_by == "own")
+
+
 def test_where_one_of_two_causes_is_something_else_the_other_is_still_at_work():
     pair: dict[tuple[str, ...], float] = {("thrust_lag",): 60.0, ("thrust_lag", "dvl_scale"): 90.0}
     found = belief(pair, varying=Variation(-10.0, {"thrust_lag": -10.0, "dvl_scale": 60.0}))

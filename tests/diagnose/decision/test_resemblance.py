@@ -31,6 +31,7 @@ from rovval.diagnose.decision.resemblance import (
     evidence_by_force,
     gap_left,
     looks_like_form_error,
+    unlogged_about_healthy,
     unlogged_where_they_act,
     what_is_left,
 )
@@ -120,6 +121,14 @@ def test_what_a_calibration_left_and_what_wanders_is_expected_to_leave_a_force()
     assert unlogged_where_they_act(problem, beside, nominal, wanders=True) == pytest.approx((0.1, FORCE_RIGHT + VARIATIONS[0] * 0.5, FORCE_ALIKE))
 
 
+def test_the_force_about_a_healthy_vehicle_is_judged_where_it_is():
+    """On the axes that hold it, whatever the others are spared."""
+    problem, _ = posed(("inflow_loss:loss=0.3",))
+    pushed = dict.fromkeys(("surge", "sway", "heave", "roll", "pitch", "yaw"), 0.0) | {"surge": 0.1}
+    assert unlogged_about_healthy(problem, pushed) == pytest.approx((0.1, FORCE_RIGHT, FORCE_ALIKE))
+    assert unlogged_about_healthy(problem, dict.fromkeys(pushed, 0.0)) == pytest.approx((0.0, FORCE_RIGHT, FORCE_ALIKE))
+
+
 def test_both_distributions_are_distributions():
     """Odds over a grid of shares, times the density where causes are right, integrate to the prior odds: the uniform density is one."""
     share = (np.arange(2000) + 0.5) / 2000.0
@@ -193,8 +202,8 @@ def test_what_a_fit_leaves_is_measured_on_held_out_windows():
 
 
 def test_causes_are_judged_where_they_act():
-    """Thrust is lost, and a tether pulls down as well: the loss leaves the gap in heave as it is, and closes that in surge."""
-    problem, _ = posed(("inflow_loss:loss=0.1", "tether_tension:down=60"))
+    """Thrust is lost, and the buoyancy is off as well: the loss leaves the gap in heave as it is, and closes that in surge."""
+    problem, _ = posed(("inflow_loss:loss=0.1", "buoyancy_error:force=60"))
     slots = tuple(i for i, s in enumerate(problem.plant.slots) if s.hypothesis == "inflow_loss")
     fit = fit_hypothesis(problem, problem.origin, slots)
     names = frozenset({"inflow_loss"})

@@ -230,8 +230,8 @@ def _explained(names: Names, left: Left | None, forces: float, wanders: bool) ->
 
 
 def _weigh_what_is_left(known: dict[Entry, float], explained: Mapping[Names, Explained], left: Left | None) -> None:
-    """Add to the log posteriors ``known`` the evidence of what sets of causes leave. Of a vehicle without causes the force that nobody logged is judged where
-    those act that are the most probable."""
+    """Add to the log posteriors ``known`` the evidence of what sets of causes leave. Of a vehicle without causes the force that nobody logged is judged beside
+    the most probable model, itself or causes, where these act."""
     for kind, names in known:
         if names and kind in (*CAUSES, FORM):
             known[kind, names] += explained[names].evidence

@@ -20,7 +20,8 @@ another (`adds_to_forces`).
 Forces that nobody logged are a nuisance of every model, as large as the log shows them, so that the likelihood alone never calls them too large. Beside right
 causes they are what pilots and seas make, some per cent of the thrusters' own (`FORCE_RIGHT`); beside what only looks like them they take over the rest of what
 it really is (`FORCE_ALIKE`). Both are log-logistic: now and then a pilot, a sea or a real vehicle leaves many times as much, and no force by itself decides.
-About a healthy vehicle there is as little as beside right causes, so that it tells these two from something else and not from each other.
+About a healthy vehicle there is as little as beside right causes, so that it tells these two from something else and not from each other: it is judged
+once for both, beside the most probable of all models.
 
 Shares are of the errors above the noise of the sensors. Whether causes are of the library is judged where they act: by what they leave of the gap on each
 axis, and of the parity residuals, which faults of sensors close, the mean of these weighted with how much of each they close or open; what they open speaks as
@@ -86,7 +87,8 @@ class Left:
         grown_by_axis: the same of each axis, whatever acts there.
         forced: the axes on which the few generic forces act that explain most of what a healthy vehicle leaves.
         spread: by how much a vehicle that is as it was calibrated may show so (`gap.spread_as_calibrated`).
-        unlogged: of each set that was asked the force that nobody logged where it acts (`unlogged_where_they_act`).
+        unlogged: of each set that was asked the force that nobody logged where it acts (`unlogged_where_they_act`), and of no cause that about the healthy
+            vehicle (`unlogged_about_healthy`).
         adding: the sets that add to generic forces where they act (`adds_to_forces`), of those that were asked.
         tolerated: shares (2,) of the gap that a healthy vehicle is expected to show by its tolerances, as ``shares``.
         sizes: of each set how large its parameters are beside what they seemed to be in the calibration's logs (standard deviations); empty without.
@@ -219,11 +221,22 @@ def unlogged_where_they_act(problem: Problem, left: Mapping[str, float], nominal
     """The unlogged force that is ``left`` where causes act, by axis, of that beside the ``nominal`` vehicle, and its median where they are right: what pilots,
     seas and equations leave (`FORCE_RIGHT`), and, of a cause that ``wanders`` by nature, its variation (`VARIATIONS`); and where they only look so
     (`FORCE_ALIKE`). What a calibration left is beside either."""
-    gap = _Gap.of(problem)
-    kept = {axis: nominal[axis] * min(gap.calibrated.get(axis, 0.0) / max(gap.errors[axis], TINY), 1.0) ** 0.5 for axis in left}
-    calibrated, at_first = (where_causes_act(size, left, nominal) for size in (kept, nominal))
+    calibrated, at_first = (where_causes_act(size, left, nominal) for size in (_calibration_left(problem, nominal), nominal))
     right = FORCE_RIGHT + (VARIATIONS[0] * at_first if wanders else 0.0)
     return ForceLeft(where_causes_act(left, left, nominal), right + calibrated, FORCE_ALIKE + calibrated)
+
+
+def unlogged_about_healthy(problem: Problem, left: Mapping[str, float]) -> ForceLeft:
+    """The same of a healthy vehicle, beside which there is as much ``left``, by axis: where all that takes it away would act."""
+    nothing = dict.fromkeys(left, 0.0)
+    size, calibrated = (where_causes_act(one, nothing, left) for one in (left, _calibration_left(problem, left)))
+    return ForceLeft(size, FORCE_RIGHT + calibrated, FORCE_ALIKE + calibrated)
+
+
+def _calibration_left(problem: Problem, force: Mapping[str, float]) -> dict[str, float]:
+    """The part of the ``force`` about a vehicle without causes that a calibration left, by axis; none without calibration."""
+    gap = _Gap.of(problem)
+    return {axis: size * min(gap.calibrated.get(axis, 0.0) / max(gap.errors[axis], TINY), 1.0) ** 0.5 for axis, size in force.items()}
 
 
 def evidence_by_force(left: ForceLeft) -> float:
@@ -262,9 +275,9 @@ def what_is_left(names: Names, left: Left | None, beside: bool = False, as_calib
 
 
 def little_force(names: Names, left: Left | None) -> float:
-    """Log Bayes factor of a vehicle about which nothing else is at work over something else, by the force that nobody logged where the causes ``names`` act; 0
-    where it is not known, or they close nothing and so act nowhere."""
-    if left is None or names not in left.unlogged or left.where_they_act(names)[0] >= 1.0:
+    """Log Bayes factor of a vehicle about which nothing else is at work over something else, by the force that nobody logged where the causes ``names`` act, or
+    about the vehicle without causes; 0 where it is not known, or they close nothing and so act nowhere."""
+    if left is None or names not in left.unlogged or (names and left.where_they_act(names)[0] >= 1.0):
         return 0.0
     return -0.5 * evidence_by_force(left.unlogged[names])
 

@@ -17,7 +17,7 @@ from rovval.diagnose.decision.indications import Indications, indications
 from rovval.diagnose.decision.miscalibration import file_evidence
 from rovval.diagnose.decision.open_gap import evidence_of_something_else, left_open, open_gap
 from rovval.diagnose.decision.posterior import Probabilities, probabilities, something_beside
-from rovval.diagnose.decision.resemblance import adds_to_forces, gap_left, unlogged_where_they_act
+from rovval.diagnose.decision.resemblance import adds_to_forces, gap_left, unlogged_about_healthy, unlogged_where_they_act
 from rovval.diagnose.decision.unexplained import Accounted, Unexplained, accounted, unexplained, unexplained_by_any
 from rovval.diagnose.effort import NEGLIGIBLE, SETS_WEIGHED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
@@ -146,11 +146,13 @@ def _compared(problem: Problem, selection: Selection, before: Mapping[Names, Wei
     alone = forces_beside(problem, selection.healthy)
     file, met, nominal = file_evidence(problem, selection), list(selection.models), unlogged_forces(problem)
     gap = open_gap(problem, [selection.healthy, *(m.fit.posterior for m in met if m.fit)])
+    unlogged_alone = unlogged_forces(problem, selection.healthy)
+    about_healthy = {frozenset[str](): unlogged_about_healthy(problem, unlogged_alone)} if unlogged_alone else {}
     weighed, weigh, exchanged = dict[Names, Weighed](), _leading(problem, selection), {selection.best.names}
     while True:
         weighed |= {m.names: _weighed(problem, m, m.fit, nominal, before) for m in weigh if m.fit}
         adding = frozenset(names for names, one in weighed.items() if adds_to_forces(alone.fine, one.beside.fine))
-        unlogged = {names: one.unlogged for names, one in weighed.items() if one.unlogged}
+        unlogged = about_healthy | {names: one.unlogged for names, one in weighed.items() if one.unlogged}
         left = replace(gap_left(problem, met), forced=alone.axes, unlogged=unlogged, adding=adding)
         beside, varying = {names: one.beside.evidence for names, one in weighed.items()}, {names: one.varying for names, one in weighed.items()}
         belief = probabilities(met, file, alone.evidence, beside, varying, evidence_of_something_else(gap), left)

@@ -22,7 +22,7 @@ from rovval.diagnose.inference.gap import parity_errors, weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, only_places
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import posterior_at
-from rovval.diagnose.problem.problem import Problem, corrected_of, corrected_residuals, gap_equations_of
+from rovval.diagnose.problem.problem import Problem, corrected_of, corrected_residuals, equations_with_frozen, gap_equations_of
 from rovval.diagnose.residuals.normal_equations import NormalEquations, Whitened
 from rovval.diagnose.residuals.ridge import Prior, eliminated, free_columns
 from rovval.diagnose.residuals.sensitivities import linearise
@@ -97,8 +97,12 @@ def windows_from(windows: Windows, time: float) -> Windows:
 
 
 def with_onset(problem: Problem, causes: Sequence[Hypothesis], log_prior: float, part: Part, healthy: Posterior) -> Model:
-    """The model in which ``causes`` fitted to a part of the log are at work from its beginning on, and a healthy vehicle is before, on every window."""
-    point, evidence = _best_switched(problem, part.fit, part.since, healthy)
+    """The model in which ``causes`` fitted to a part of the log are at work from its beginning on, and a healthy vehicle is before, on every window; from
+    where the linearisation is made it takes one more step, and gains nothing by that linearisation alone."""
+    switch, point, evidence = _best_switched(problem, part.fit, part.since, healthy)
+    stepped = switch.stepped(problem, point).at(np.concatenate(_before(problem, part.since)))
+    if stepped.cost() < point.cost():
+        point, evidence = stepped, min(evidence, laplace_evidence(problem, stepped))
     fit = replace(_on_every_window(problem, part.fit, part.since), posterior=point, evidence=evidence)
     return Model(tuple(causes), fit, evidence - onset_cost(problem), log_prior, careful=True, part=part)
 
@@ -106,7 +110,7 @@ def with_onset(problem: Problem, causes: Sequence[Hypothesis], log_prior: float,
 def evidence_with_onset(problem: Problem, fit: HypothesisFit, time: float, healthy: Posterior) -> float:
     """Twice the log Bayes factor over the nominal vehicle, on every window, of the causes of a ``fit`` at work from ``time`` (s) on and of a healthy vehicle
     before; that they begin in one window rather than another is not paid for. Quickly: sensitivities to all but the causes are those of the two fits."""
-    return _best_switched(problem, fit, time, healthy, (fit.posterior.whitened or None, healthy.whitened or None))[1]
+    return _best_switched(problem, fit, time, healthy, (fit.posterior.whitened or None, healthy.whitened or None))[2]
 
 
 def moved_onset(problem: Problem, late: HypothesisFit, time: float, healthy: Posterior) -> float:
@@ -119,16 +123,16 @@ def moved_onset(problem: Problem, late: HypothesisFit, time: float, healthy: Pos
     return best if evidence[best] > evidence.get(time, -np.inf) - 2.0 * log(NEGLIGIBLE) else time
 
 
-def _best_switched(problem: Problem, late: HypothesisFit, time: float, healthy: Posterior, known: Known = ANEW) -> tuple[Posterior, float]:
-    """The posterior of the causes of ``late`` at work from ``time`` (s) on, and its evidence, less what its start gains over the ``healthy`` fit without any
-    cause: every fit is local, and a cause must not gain by another start alone."""
+def _best_switched(problem: Problem, late: HypothesisFit, time: float, healthy: Posterior, known: Known = ANEW) -> tuple[_Switch, Posterior, float]:
+    """The linearisation in which the causes of ``late`` at work from ``time`` (s) on have the most evidence, their posterior, and that evidence, less what its
+    start gains over the ``healthy`` fit without any cause: every fit is local, and a cause must not gain by another start alone."""
     switches, nothing, never = _switches(problem, late, healthy, known), laplace_evidence(problem, healthy), np.ones(problem.window_count, dtype=bool)
     first = np.concatenate(_before(problem, time))
     points = [one.at(first) for one in switches]
     started = [max(laplace_evidence(problem, one.at(never)) - nothing, 0.0) for one in switches]
     evidence = [laplace_evidence(problem, point) - gained for point, gained in zip(points, started, strict=True)]
     best = int(np.argmax(evidence))
-    return points[best], evidence[best]
+    return switches[best], points[best], evidence[best]
 
 
 def _switches(problem: Problem, late: HypothesisFit, healthy: Posterior, known: Known) -> list[_Switch]:
@@ -181,6 +185,19 @@ class _Switch:
         taken = tuple(i for i, slot in enumerate(own) if slot in problem.tolerance.sd)
         return cls(begun, before, taken, np.array([problem.tolerance.sd[own[i]] for i in taken]))
 
+    def stepped(self, problem: Problem, point: Posterior) -> _Switch:
+        """Linearised anew where one more step leads to from ``point``, a posterior of this linearisation; the same where a simulation stops there."""
+        step, k, own = np.where(point.tangent_only, 0.0, point.solve(point.curvature, point.descent)), len(self.begun.columns), self.begun.effect_count
+        rest = [*self.begun.columns[own:], *(self.begun.columns[i] for i in self.taken)]
+        points = [
+            (self.begun, _moved(problem, self.begun.beta, self.begun.columns, step[:k])),
+            (self.before, _moved(problem, self.before.beta, rest, step[own:])),
+        ]
+        if any(equations_with_frozen(problem, beta, one.whitened) is None for one, beta in points):
+            return self
+        begun, before = (posterior_at(problem, beta, one.columns, one.effect_count) for one, beta in points)
+        return replace(self, begun=begun, before=before)
+
     def at(self, first: Flags) -> Posterior:
         """The causes at work but in the windows ``first`` (m,)."""
         begun, taken, k = self.begun, list(self.taken), len(self.begun.columns)
@@ -205,3 +222,11 @@ class _Switch:
             departure=np.concatenate([begun.departure, self.before.departure[taken]]),
             bound_side=np.concatenate([begun.bound_side, none]), tangent_only=np.concatenate([begun.tangent_only, none > 0]),
         )  # fmt: skip
+
+
+def _moved(problem: Problem, beta: Array, columns: Sequence[int], step: Array) -> Array:
+    """Parameters ``beta`` (p,) with a ``step`` (k,) in ``columns``, within their bounds."""
+    moved = beta.copy()
+    for slot, own in zip(columns, step, strict=True):
+        moved[slot] = problem.plant.slots[slot].parameter.within(beta[slot] + own)
+    return moved

@@ -16,12 +16,12 @@ EFFECT = Effect(
     name="inflow_loss",
     title="Axial inflow loss",
     place="input",
-    equation="T <- T - loss k n_ref |n| u_a / (1 m/s).",
+    equation="T <- T - loss k n_ref |n| u_a / (1 m/s): a straight line of the thrust coefficient over the advance ratio, in all four quadrants.",
     symbols={
         "T": "thrust of a thruster, along its axis; N",
         "n": "shaft speed; rev/s",
         "u_a": "velocity of the vehicle through the water at the thruster, along its thrust; m/s",
-        "k": "mean of the thruster's gains ahead and astern; N s2",
+        "k": "the thruster's gain in the direction in which it turns; N s2",
         "n_ref": "shaft speed at which all thrusters hold the vehicle at 1 m/s ahead; rev/s",
         "loss": "share of thrust lost at n_ref and 1 m/s",
     },
@@ -40,15 +40,16 @@ EFFECT = Effect(
         "Kim and Chung 2006: thrust by the advance ratio",
     ),
 )
-ROWS = ("slope",)
+ROWS = ("slope", "lean")
 
 
 def rows(lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
-    """Thrust lost per speed of thruster and inflow, N s2 / m, per thruster."""
-    gain = 0.5 * 60.0**2 * np.array([t.k_pos + t.k_neg for t in lanes.vehicle.thruster])
-    return {"slope": p["loss"][:, None] * gain * (reference_speed(lanes.vehicle) / REFERENCE)}
+    """Thrust lost per speed of thruster and inflow, N s2 / m, per thruster: the mean of ahead and astern, and what ahead has more."""
+    ahead, astern = (np.array([getattr(t, gain) for t in lanes.vehicle.thruster]) for gain in ("k_pos", "k_neg"))
+    per_gain = p["loss"][:, None] * (0.5 * 60.0**2 * reference_speed(lanes.vehicle) / REFERENCE)
+    return {"slope": per_gain * (ahead + astern), "lean": per_gain * (ahead - astern)}
 
 
-def thrust(slope: Number, T: Number, n: Number, ua: Number) -> Number:
+def thrust(slope: Number, lean: Number, T: Number, n: Number, ua: Number) -> Number:
     """Thrust under way."""
-    return T - slope * abs(n) * ua
+    return T - (slope * abs(n) + lean * n) * ua
