@@ -216,9 +216,11 @@ def test_the_true_heading_is_found_at_the_corners_of_every_deviation_card():
 
 
 def test_what_a_dead_band_takes_is_made_up_beyond_it_and_no_more():
-    """A band of the drive takes its width all along; one of low flow is caught up with at 1 + 1 / catch widths, and never gives more than there is."""
+    """A band of the drive takes its width all along; one of low flow is caught up with at 1 + 1 / catch widths, and never gives more than there is; one of
+    thrust takes the thrust at its edge."""
     n = np.linspace(-10.0, 10.0, 401)
-    drive, flow = thruster_deadband.acting(2.0, 0.0, n), thruster_deadband.acting(2.0, 0.5, n)
+    drive, flow, thrust = (thruster_deadband.acting(2.0, catch, n) for catch in (0.0, 0.5, -1.0))
+    np.testing.assert_allclose(thrust, np.sign(n) * np.sqrt(np.maximum(n**2 - 2.0**2, 0.0)), atol=1e-7)
     np.testing.assert_allclose(drive, np.sign(n) * np.maximum(np.abs(n) - 2.0, 0.0), atol=1e-12)
     inside, beyond = np.abs(n) <= 2.0, np.abs(n) >= 6.0
     assert (flow[inside] == 0.0).all() and np.abs(flow[beyond] - n[beyond]).max() < 1e-12

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rovval.effects.arithmetic import Number, positive
+from rovval.effects.arithmetic import Number, positive, sqrt
 from rovval.effects.effect import Effect, Parameter, Tolerance
 from rovval.effects.lanes import Array, Lanes
 from rovval.vehicle.model import Vehicle
@@ -23,17 +23,22 @@ EFFECT = Effect(
     name="thruster_deadband",
     title="Dead band of the thrusters",
     place="input",
-    equation="n <- sgn(n) min((1 + catch) max(|n| - width, 0), |n|) on the acting speed of every thruster; with catch, what is missing at the edge of the "
-    "band is made up beyond it.",
-    symbols={"n": "shaft speed; rev/s", "width": "half width of the band; rev/s", "catch": "slope beyond the band, less one; 1"},
+    equation="n <- sgn(n) min(sqrt((1 + max(catch, 0))^2 m^2 + 2 max(-catch, 0) width m), |n|), m = max(|n| - width, 0), on the acting speed of every "
+    "thruster. What is missing at the edge of the band stays missing in speed (catch 0), is made up beyond it (above), or is missing in thrust: "
+    "n^2 - width^2 at catch -1.",
+    symbols={
+        "n": "shaft speed; rev/s",
+        "width": "half width of the band; rev/s",
+        "catch": "how what is missing at the edge of the band is made up: above 0 slope of the speed beyond it, less one; below 0 share of it in thrust; 1",
+    },
     parameters=(
         Parameter(
             "width", "rev/s", 0.0, 60.0, 0.0, 2.5, "0 to 12 % of full command (chosen); T200: 300 rpm (Blue Robotics T200); searched to full speed", "speed",
-            starts=(1.0, 4.0), tolerance=CURVED,
+            starts=(1.0, 4.0, 16.0), tolerance=CURVED,
         ),
         Parameter(
-            "catch", "1", 0.0, 30.0, 0.0, 1.0, "0: a dead band of the drive, all along; else one of low flow, caught up with at 1 + 1 / catch widths",
-            tolerance=CURVED,
+            "catch", "1", -4.0, 30.0, 0.0, 1.0, "0: a dead band of the drive, all along; above: of low flow, soon caught up with; -1: of thrust (Bessa 2006)",
+            starts=(-1.0, 0.0), tolerance=CURVED,
         ),
     ),
     signature="small commands do nothing: hunting about a hover, weak answers to small steps",
@@ -47,11 +52,13 @@ SHARED = True
 
 
 def rows(lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
-    """The width, and how soon it is made up for."""
-    return {"width": p["width"], "catch": p["catch"]}
+    """The width, and how it is made up for."""
+    return {name: p[name] for name in ROWS}
 
 
 def acting(width: Number, catch: Number, n: Number) -> Number:
     """Speed that acts: what is beyond the band, and no more than there is."""
-    ahead, astern = (1.0 + catch) * positive(n - width), (1.0 + catch) * positive(-n - width)
+    steep, more = (1.0 + positive(catch)) * (1.0 + positive(catch)), 2.0 * positive(-catch) * width
+    past, back = positive(n - width), positive(-n - width)
+    ahead, astern = sqrt(past * (steep * past + more)), sqrt(back * (steep * back + more))
     return ahead - positive(ahead - positive(n)) - astern + positive(astern - positive(-n))
