@@ -82,6 +82,7 @@ def test_causes_that_add_to_the_forces_where_they_act_are_rather_something_else(
     known = left(a_b=0.3)
     fewer, more = (none_of_the_library(AB, replace(known, adding=frozenset(sets))) for sets in ([], [AB]))
     assert more / (1.0 - more) == pytest.approx(SHOWS_BESIDE[1] / NOT_FOUND * fewer / (1.0 - fewer))
+    assert none_of_the_library(AB, replace(known, adding=frozenset({AB})), beside=True) == more, "what adds to them shows beside them: it is counted once"
     assert none_of_the_library(AB, replace(known, adding=frozenset({frozenset("a")}))) == fewer, "of another set it says nothing"
 
 

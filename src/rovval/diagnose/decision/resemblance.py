@@ -260,17 +260,18 @@ class Explained:
 def what_is_left(names: Names, left: Left | None, beside: bool = False, as_calibrated: float = 0.0, wanders: bool = False) -> Explained:
     """What the causes ``names`` leave, as evidence; the priors alone where nothing is known of it.
 
-    That generic forces show ``beside`` them is evidence (`SHOWS_BESIDE`); that none do says little of a small gap, and is not counted. What a calibration left,
-    by the odds ``as_calibrated`` of it over causes, closes any part of the gap as something else does, and leaves as little of a force that nobody logged as
-    causes do. How much of the gap causes close that all go on otherwise from window to window (``wanders``) says nothing.
+    That generic forces show ``beside`` them is evidence (`SHOWS_BESIDE`); that causes are ``adding`` to them is more of it, from the same forces, and counts
+    instead. That none shows says little of a small gap, and is not counted. What a calibration left, by the odds ``as_calibrated`` of it over causes, closes
+    any part of the gap as something else does, and leaves as little of a force that nobody logged as causes do. How much of the gap causes close that all go
+    on otherwise from window to window (``wanders``) says nothing.
     """
-    alike = LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / PRIOR_CAUSES * (SHOWS_BESIDE[1] / SHOWS_BESIDE[0] if beside else 1.0)
+    shows = SHOWS_BESIDE[1] / SHOWS_BESIDE[0] if beside else 1.0
     right, force = 1.0, exp(little_force(names, left))
     if left is not None and not wanders:
         freedom = 1.0 / CAUSES_LEAVE - 1.0  # Beta(1, b), of mean 1 / (1 + b)
         right = odds_of_left(*left.where_they_act(names), lambda share: freedom * (1.0 - share) ** (freedom - 1.0))
-        alike *= SHOWS_BESIDE[1] / NOT_FOUND if names in left.adding else 1.0
-    total = (right + as_calibrated) * force + alike
+        shows = SHOWS_BESIDE[1] / NOT_FOUND if names in left.adding else shows
+    total = (right + as_calibrated) * force + LIBRARY_ALIKE * PRIOR_SOMETHING_ELSE / PRIOR_CAUSES * shows
     return Explained(log(total), right * force / total, as_calibrated * force / total)
 
 
