@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -92,29 +92,30 @@ def _right(effects: list[Mapping[str, Any]]) -> tuple[str, ...]:
     return tuple(found)
 
 
+def _of_outside(name: str, effects: list[Mapping[str, Any]], when: str = "", read: Callable[[Path], Run] = open_run) -> Question:
+    """What was put into a log of the outside plant, or, as ``read``, into the part of it that is told as ``when``."""
+    piece = when + (" and ".join(one["family"] for one in effects) or "healthy")
+    return Question(piece, (real(f"outside_plant/{name}.csv.gz"),), to_toml(vehicle.load("merlin")), _right(effects), read)
+
+
+def _at_work(truth: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """The effects of a log; none where they move no axis, which leaves a healthy one."""
+    return truth["effects"] if truth["affected_axes"] else []
+
+
 def outside_plant(minutes: float) -> tuple[Answer, ...]:
-    """Logs of at most ``minutes`` of the outside plant, in order of their names; those whose effect moves no axis are healthy ones."""
-    nominal = to_toml(vehicle.load("merlin"))
-    asked = list[Question]()
-    for name, truth in sorted(_truth().items()):
-        if truth["minutes"] <= minutes:
-            effects = truth["effects"] if truth["affected_axes"] else []
-            piece = " and ".join(one["family"] for one in effects) or "healthy"
-            path: Path = real(f"outside_plant/{name}.csv.gz")
-            asked.append(Question(piece, (path,), nominal, _right(effects)))
-    return ask(tuple(asked))
+    """Logs of at most ``minutes`` of the outside plant, in order of their names."""
+    return ask(tuple(_of_outside(name, _at_work(truth)) for name, truth in sorted(_truth().items()) if truth["minutes"] <= minutes))
 
 
 def outside_parts() -> tuple[Answer, ...]:
     """Parts of all logs of the outside plant, of `PART_S` and up to twice as much, three of a log at most; what begins after a part is not in it."""
-    nominal, asked = to_toml(vehicle.load("merlin")), list[Question]()
+    asked = list[Question]()
     for name, truth in sorted(_truth().items()):
         seconds = 60.0 * truth["minutes"]
         count = max(1, int(seconds // PART_S))
         for i in range(count) if count <= PARTS else (0, count // 2, count - 1):
             start, end = i * seconds / count, (i + 1) * seconds / count
-            effects = [one for one in truth["effects"] if one["onset_s"] < end - LEAST_S] if truth["affected_axes"] else []
-            piece = f"{start:.0f} to {end:.0f} s: " + (" and ".join(one["family"] for one in effects) or "healthy")
-            read = partial(load, start_s=start, end_s=end)
-            asked.append(Question(piece, (real(f"outside_plant/{name}.csv.gz"),), nominal, _right(effects), read))
+            effects = [one for one in _at_work(truth) if one["onset_s"] < end - LEAST_S]
+            asked.append(_of_outside(name, effects, f"{start:.0f} to {end:.0f} s: ", partial(load, start_s=start, end_s=end)))
     return ask(tuple(asked))

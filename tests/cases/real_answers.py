@@ -19,6 +19,7 @@ from rovval.storage.archive import open_run
 
 PROCESSES = 2
 TENTH = 0.1  # of the squared gap: a piece that closes less when it is put back is not asked for
+WRONG = 0.1  # of the names that are printed at a probability of 0.9 or above: at most as many
 BINS = ((0.9, 1.01), (0.5, 0.9), (0.0, 0.5))  # of printed probabilities
 
 

@@ -220,7 +220,8 @@ def test_what_a_dead_band_takes_is_made_up_beyond_it_and_no_more():
     thrust takes the thrust at its edge."""
     n = np.linspace(-10.0, 10.0, 401)
     drive, flow, thrust = (thruster_deadband.acting(2.0, catch, n) for catch in (0.0, 0.5, -1.0))
-    np.testing.assert_allclose(thrust, np.sign(n) * np.sqrt(np.maximum(n**2 - 2.0**2, 0.0)), atol=1e-7)
+    np.testing.assert_allclose(thrust * np.abs(thrust), np.sign(n) * np.maximum(n**2 - 4.0, 0.0), atol=1e-9)
+    assert (np.abs(thrust) <= np.abs(n) + 1e-12).all() and (np.abs(thrust) >= np.abs(drive) - 1e-12).all()
     np.testing.assert_allclose(drive, np.sign(n) * np.maximum(np.abs(n) - 2.0, 0.0), atol=1e-12)
     inside, beyond = np.abs(n) <= 2.0, np.abs(n) >= 6.0
     assert (flow[inside] == 0.0).all() and np.abs(flow[beyond] - n[beyond]).max() < 1e-12

@@ -7,11 +7,10 @@ from __future__ import annotations
 
 import pytest
 from knock_outs import RUNS, knocked_out
-from real_answers import confidence, named_first, overconfident, table
+from real_answers import WRONG, confidence, named_first, overconfident, table
 
 pytestmark = pytest.mark.real
 NAMED_FIRST = 2 / 3  # of the pieces that close a tenth of the squared gap when they are put back
-WRONG = 0.1  # of the names that are printed at a probability of 0.9 or above
 
 
 @pytest.mark.parametrize("run", RUNS)

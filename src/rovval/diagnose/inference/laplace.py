@@ -72,6 +72,10 @@ class Posterior:
         slope = self.total.b[which].sum(axis=0) - self.precision * self.departure
         return self.solve(self.total.A[which].sum(axis=0) + np.diag(self.precision), slope)
 
+    def simulated_step(self) -> Array:
+        """Gauss-Newton step (k,) in the columns that are moved in the simulation; zero in the others."""
+        return np.where(self.tangent_only, 0.0, self.solve(self.curvature, self.descent))
+
     def solve(self, H: Array, slope: Array, among: np.ndarray | None = None) -> Array:
         """H^-1 slope (k,) in the columns ``among`` (all by default); zero for a column that it would push beyond the bound it is on."""
         free = (self.bound_side * slope <= 0) if among is None else (self.bound_side * slope <= 0) & among

@@ -6,6 +6,7 @@ coefficients are as a careful calibration would have them. The sensors' toleranc
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -155,9 +156,9 @@ def _point(problem: Problem, beta: Array, own: int, there: tuple[Whitened, ...])
 
 def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...]) -> Posterior | None:
     """The next point of the damped Gauss-Newton iteration; None where none of `STEP_SHARES` gains more than `STEP_WORTH`."""
-    step = np.where(point.tangent_only, 0.0, point.solve(point.curvature, point.descent))
+    step = point.simulated_step()
     for share in STEP_SHARES:
-        beta = _clipped(problem, point, share * step)
+        beta = moved_within_bounds(problem, point.beta, point.columns, share * step)
         data = equations_with_frozen(problem, beta, point.whitened)
         if data is None:
             continue
@@ -167,9 +168,9 @@ def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...]) -> P
     return None
 
 
-def _clipped(problem: Problem, point: Posterior, step: Array) -> Array:
-    """The step, stopped at the parameters' bounds (a parameter that rests there is reported as such)."""
-    trial = point.beta.copy()
-    for slot, own in zip(point.columns, step, strict=True):
-        trial[slot] = problem.plant.slots[slot].parameter.within(point.beta[slot] + own)
-    return trial
+def moved_within_bounds(problem: Problem, beta: Array, columns: Sequence[int], step: Array) -> Array:
+    """Parameters ``beta`` (p,) moved by a ``step`` (k,) in ``columns``, stopped at their bounds (a parameter that rests there is reported as such)."""
+    moved = beta.copy()
+    for slot, own in zip(columns, step, strict=True):
+        moved[slot] = problem.plant.slots[slot].parameter.within(beta[slot] + own)
+    return moved

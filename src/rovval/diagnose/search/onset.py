@@ -21,7 +21,7 @@ from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of
 from rovval.diagnose.inference.gap import parity_errors, weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, only_places
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
-from rovval.diagnose.inference.map_fit import posterior_at
+from rovval.diagnose.inference.map_fit import moved_within_bounds, posterior_at
 from rovval.diagnose.problem.problem import Problem, corrected_of, corrected_residuals, equations_with_frozen, gap_equations_of
 from rovval.diagnose.residuals.normal_equations import NormalEquations, Whitened
 from rovval.diagnose.residuals.ridge import Prior, eliminated, free_columns
@@ -187,11 +187,11 @@ class _Switch:
 
     def stepped(self, problem: Problem, point: Posterior) -> _Switch:
         """Linearised anew where one more step leads to from ``point``, a posterior of this linearisation; the same where a simulation stops there."""
-        step, k, own = np.where(point.tangent_only, 0.0, point.solve(point.curvature, point.descent)), len(self.begun.columns), self.begun.effect_count
-        rest = [*self.begun.columns[own:], *(self.begun.columns[i] for i in self.taken)]
+        step, columns, own = point.simulated_step(), self.begun.columns, self.begun.effect_count
+        without = [*columns[own:], *(columns[i] for i in self.taken)]  # what moves before the causes are at work
         points = [
-            (self.begun, _moved(problem, self.begun.beta, self.begun.columns, step[:k])),
-            (self.before, _moved(problem, self.before.beta, rest, step[own:])),
+            (self.begun, moved_within_bounds(problem, self.begun.beta, columns, step[: len(columns)])),
+            (self.before, moved_within_bounds(problem, self.before.beta, without, step[own:])),
         ]
         if any(equations_with_frozen(problem, beta, one.whitened) is None for one, beta in points):
             return self
@@ -222,11 +222,3 @@ class _Switch:
             departure=np.concatenate([begun.departure, self.before.departure[taken]]),
             bound_side=np.concatenate([begun.bound_side, none]), tangent_only=np.concatenate([begun.tangent_only, none > 0]),
         )  # fmt: skip
-
-
-def _moved(problem: Problem, beta: Array, columns: Sequence[int], step: Array) -> Array:
-    """Parameters ``beta`` (p,) with a ``step`` (k,) in ``columns``, within their bounds."""
-    moved = beta.copy()
-    for slot, own in zip(columns, step, strict=True):
-        moved[slot] = problem.plant.slots[slot].parameter.within(beta[slot] + own)
-    return moved
