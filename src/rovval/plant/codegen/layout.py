@@ -73,12 +73,13 @@ def constants(spec: Spec) -> dict[str, float]:
     numbers |= {name.upper(): where.first[name] for name in GROUPS}
     numbers |= {
         "W": spec.lanes, "THRUSTERS": k, "BODY": where.body_rows, "STRIDE": where.stride, "INPUT_ROWS": where.rows, "LOG_ROWS": LOG_ROWS,
-        "TIME": LOG.index("t"), "WRENCH": len(LOG),
+        "LOG_COUNT": len(LOG), "TIME": LOG.index("t"), "WRENCH": len(LOG),
         "THRUST_ROWS": 3 * k + 6 if spec.flow else 6, "PAYLOAD_ROWS": MASS_ROWS,
         "SPEED_LIMIT_2": SPEED_LIMIT**2, "RATE_LIMIT_2": RATE_LIMIT**2, "ADVANCE_LIMIT": ADVANCE_LIMIT, "THIRD": 1.0 / 3.0,
     }  # fmt: skip
     place = where.rows
     sizes = {"STATE": 5 * 13, "EULER": 3, "ENDS": 2 * k, "MEMORY": k, "NEXT": k, "ALIVE": 1, "CODE": 2, "CURRENT": 3, "WATER": 9, "EXTRA": 6}
+    sizes |= {"MOTION": (13 if spec.flow else 0) + (9 + 3 if spec.full else 0), "LOGGED": len(LOG) if spec.full else 0}
     sizes |= dict.fromkeys(("FILTERED", "BEFORE"), 6 if spec.explicit else 0)
     for name, size in sizes.items():
         numbers[name] = place

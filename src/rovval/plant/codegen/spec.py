@@ -13,6 +13,7 @@ from rovval import effects
 
 W = 16  # lanes of a block: fewer than 16 trips and LLVM leaves the loop scalar; with 32 every effect's numbers leave a 32 kB L1 (measured)
 HOOKS = ("speed", "acting", "static", "thrust", "water", "wrench")
+OF_STATE = ("thrust", "water", "wrench")  # of the motion of a stage; "acting" and "static" are of the thrusters at rest, "speed" of the log alone
 PER_THRUSTER = ("speed", "acting", "static", "thrust")
 SWITCHED = ("acting", "static", "thrust", "water", "wrench")  # worked out only in blocks where some lane has the effect
 LOGGED = ("altitude", "wall_distance", "voltage", "tether_length", "load", "turned")  # columns of a prepared log

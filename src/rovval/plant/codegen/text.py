@@ -12,7 +12,7 @@ from types import MappingProxyType
 
 from rovval.plant.codegen.inline import inlined
 from rovval.plant.codegen.layout import constants, layout
-from rovval.plant.codegen.spec import LOG, Hook, Spec, effect_rows, hooks, switches
+from rovval.plant.codegen.spec import LOG, OF_STATE, Hook, Spec, effect_rows, hooks, switches
 from rovval.plant.codegen.specialise import Insertion, Specialiser
 
 FOLDER = Path(__file__).parent / "kernel"
@@ -109,7 +109,7 @@ def _effect_value(spec: Spec, call: ast.Call) -> Inserted:
     kind, effect = (ast.literal_eval(a) for a in call.args[:2])
     given = {k.arg or "": k.value for k in call.keywords}
     (hook,) = (h for h in hooks(spec.full) if (h.kind, h.effect) == (kind, effect))
-    before, values = _value(spec, hook, given, given.pop("log"), call.args[3])
+    before, values = _value(spec, hook, given, None, call.args[3])
     return before, ast.Tuple(values, ast.Load())
 
 
@@ -118,8 +118,9 @@ def _value(
 ) -> tuple[list[ast.stmt], list[ast.expr]]:
     """One effect's function in lane ``j``, of thruster ``i``: its statements, and what it returns."""
     known = {row: _parsed(_row(spec, f"{hook.effect}.{row}", ast.unparse(j), i)) for row in effect_rows(hook.effect)[0]} | given
-    if log is not None:
-        known |= {name: _parsed(f"{ast.unparse(log)}[{c * constants(spec)['W']} + {ast.unparse(j)}]") for c, name in enumerate(LOG)}
+    if log is not None or hook.kind in OF_STATE:
+        where, first = (ast.unparse(log), 0) if log is not None else ("m", constants(spec)["LOGGED"])
+        known |= {name: _parsed(f"{where}[{(first + c) * constants(spec)['W']} + {ast.unparse(j)}]") for c, name in enumerate(LOG)}
     if unknown := [a for a in hook.arguments if a not in known]:
         raise ValueError(f"effects/{hook.effect}.py: {hook.kind}() asks for {', '.join(unknown)}, known there: {', '.join(known)}")
     return inlined(hook.function, f"{hook.effect}_{hook.kind}", {a: known[a] for a in hook.arguments})

@@ -1,5 +1,8 @@
 """The effects' functions of the state, each a loop over lanes of its own, passed over where no lane of the block has it.
 
+What they ask for of the state and the log is first copied to rows of its own (`motion_of_stage`). So these loops are functions by themselves, compiled in
+half the time that they take as a part of the loop over time, and LLVM need not check in them that what they write is not what they read.
+
 What they leave behind is the water's velocity in the body frame (rows CURRENT) and one wrench (rows EXTRA), all zeros where nothing acts, so that
 the rigid body's own loop is the nominal one to the last bit. What the flow takes from a thruster is such a wrench too.
 """
@@ -12,8 +15,8 @@ from rovval.plant.codegen.kernel.matrix import plus_translation, product
 from rovval.plant.codegen.kernel.state import attitude, over_ground, rates, rotation, through_water, velocity
 
 from rovval.plant.codegen.kernel.symbols import (  # isort: skip
-    ADDED, ADVANCE, ADVANCE_LIMIT, BODY, CURRENT, DISPLACED, EXPLICIT, EXTRA, FLOW, FULL, MASS, PAYLOAD_ROWS, STRIDE, THRUSTERS, WATER, Array, W,
-    any_at_work, at_work, effect_value, effects_of, in_turn, pruned, unrolled,
+    ADDED, ADVANCE, ADVANCE_LIMIT, BODY, CURRENT, DISPLACED, EXPLICIT, EXTRA, FLOW, FULL, LOG_COUNT, LOGGED, MASS, MOTION, PAYLOAD_ROWS, STRIDE, THRUSTERS,
+    WATER, Array, Lanes, W, any_at_work, at_work, compiled_function, effect_value, effects_of, in_turn, pruned, spread, unrolled,
 )  # fmt: skip
 from rovval.plant.codegen.kernel.thrust import add_wrench, with_force
 
@@ -30,24 +33,27 @@ def loops_needed(acts: Array, b: int, use_extra: bool, pending: bool) -> tuple[b
 
 
 def effects_on_state(
-    m: Array, tv: Array, lv: Array, g: tuple[float, ...], acts: Array, b: int, xs: int, use_state: bool, use_water: bool, use_cross: bool, use_flow: bool
+    m: Array, tv: Array, lv: Array, geo: Array, acts: Array, b: int, xs: int, use_state: bool, use_water: bool, use_cross: bool, use_flow: bool
 ) -> None:
     """Everything between the state of a stage and the rigid body's own loop."""
     if FULL:
         if use_state:
             clear(m, EXTRA, 6)
+            motion_of_stage(m, lv, xs)
         if use_water:
             clear(m, WATER, 9)
-            water(m, lv, acts, b, xs)
-            force_of_water(m, xs)
+            water(m, acts, b)
+            force_of_water(m)
         if use_cross:
-            flow_past_thrusters(m, tv, lv, g, xs, True)
+            cross_flow_past_thrusters(m, tv, geo)
         if use_flow and not use_cross:
-            flow_past_thrusters(m, tv, lv, g, xs, False)
-        wrenches(m, lv, acts, b, xs)
+            axial_flow_past_thrusters(m, tv, geo)
+        if use_state:
+            wrenches(m, acts, b)
     elif FLOW:
         clear(m, EXTRA, 6)
-        flow_past_thrusters(m, tv, lv, g, xs, False)
+        motion_of_stage(m, lv, xs)
+        axial_flow_past_thrusters(m, tv, geo)
 
 
 def clear(m: Array, row: int, count: int) -> None:
@@ -56,33 +62,63 @@ def clear(m: Array, row: int, count: int) -> None:
         m[row * W + c] = 0.0
 
 
-def water(m: Array, lv: Array, acts: Array, b: int, xs: int) -> None:
+def motion_of_stage(m: Array, lv: Array, xs: int) -> None:
+    """What effects may ask for at this stage: the state, the rotation and the velocity over ground (rows MOTION), the log (rows LOGGED)."""
+    for c in range(13 * W):
+        m[MOTION * W + c] = m[xs + c]
+    if FULL:
+        for c in range(LOG_COUNT * W):
+            m[LOGGED * W + c] = lv[c]
+        rotation_of_state(m, xs)
+
+
+def rotation_of_state(m: Array, xs: int) -> None:
+    """Rotation and velocity over ground (rows MOTION, after the state)."""
+    for j in range(W):
+        qw, qx, qy, qz = attitude(m, xs, j)
+        u, v, w = velocity(m, xs, j)
+        r11, r12, r13, r21, r22, r23, r31, r32, r33 = rotation(qw, qx, qy, qz)
+        vn, ve, vd = over_ground(u, v, w, r11, r12, r13, r21, r22, r23, r31, r32, r33)
+        found = (r11, r12, r13, r21, r22, r23, r31, r32, r33, vn, ve, vd)
+        for c in unrolled(12):
+            m[(MOTION + 13 + c) * W + j] = found[c]
+
+
+def rotation_of_stage(m: Array, j: int) -> tuple[Lanes, Lanes, Lanes, Lanes, Lanes, Lanes, Lanes, Lanes, Lanes]:
+    """Rotation matrix from body to world, row by row."""
+    return (
+        m[(MOTION + 13) * W + j], m[(MOTION + 14) * W + j], m[(MOTION + 15) * W + j], m[(MOTION + 16) * W + j], m[(MOTION + 17) * W + j],
+        m[(MOTION + 18) * W + j], m[(MOTION + 19) * W + j], m[(MOTION + 20) * W + j], m[(MOTION + 21) * W + j],
+    )  # fmt: skip
+
+
+@compiled_function
+def water(m: Array, acts: Array, b: int) -> None:
     """Velocity of the water, its change along the vehicle's path and at a fixed point, all effects on it together (rows WATER)."""
     for effect in effects_of("water"):
         if at_work(acts, b, effect):
             for j in pruned(range(W)):
-                qw, qx, qy, qz = attitude(m, xs, j)
-                u, v, w = velocity(m, xs, j)
-                r_p, r_q, r_r = rates(m, xs, j)
-                r11, r12, r13, r21, r22, r23, r31, r32, r33 = rotation(qw, qx, qy, qz)
-                vn, ve, vd = over_ground(u, v, w, r11, r12, r13, r21, r22, r23, r31, r32, r33)
+                u, v, w = velocity(m, MOTION * W, j)
+                r_p, r_q, r_r = rates(m, MOTION * W, j)
+                r11, r12, r13, r21, r22, r23, r31, r32, r33 = rotation_of_stage(m, j)
+                vn, ve, vd = m[(MOTION + 22) * W + j], m[(MOTION + 23) * W + j], m[(MOTION + 24) * W + j]
                 change = effect_value(
-                    "water", effect, m, j, log=lv, u=u, v=v, w=w, vn=vn, ve=ve, vd=vd, p=r_p, q=r_q, r=r_r,
-                    x=m[xs + j], y=m[xs + W + j], z=m[xs + 2 * W + j],
+                    "water", effect, m, j, u=u, v=v, w=w, vn=vn, ve=ve, vd=vd, p=r_p, q=r_q, r=r_r,
+                    x=m[MOTION * W + j], y=m[(MOTION + 1) * W + j], z=m[(MOTION + 2) * W + j],
                     r11=r11, r12=r12, r13=r13, r21=r21, r22=r22, r23=r23, r31=r31, r32=r32, r33=r33,
                 )  # fmt: skip
                 for c in unrolled(9):
                     m[(WATER + c) * W + j] += change[c]
 
 
-def force_of_water(m: Array, xs: int) -> None:
+@compiled_function
+def force_of_water(m: Array) -> None:
     """Water's velocity in the body frame (rows CURRENT); its pressure gradient on the displaced volume, the added mass of its acceleration, and what
     it changes of C_A(nu_r) nu_r, as a wrench (rows EXTRA). Fossen 2021, 10.3: M_A d(nu_c)/dt + C_A, with d(nu_c)/dt = R^T dv/dt - omega x nu_c."""
     for j in range(W):
-        qw, qx, qy, qz = attitude(m, xs, j)
-        u, v, w = velocity(m, xs, j)
-        r_p, r_q, r_r = rates(m, xs, j)
-        r11, r12, r13, r21, r22, r23, r31, r32, r33 = rotation(qw, qx, qy, qz)
+        u, v, w = velocity(m, MOTION * W, j)
+        r_p, r_q, r_r = rates(m, MOTION * W, j)
+        r11, r12, r13, r21, r22, r23, r31, r32, r33 = rotation_of_stage(m, j)
         cn, ce, cd, dn, de, dd, fn, fe, fd = (
             m[(WATER + 0) * W + j], m[(WATER + 1) * W + j], m[(WATER + 2) * W + j], m[(WATER + 3) * W + j], m[(WATER + 4) * W + j],
             m[(WATER + 5) * W + j], m[(WATER + 6) * W + j], m[(WATER + 7) * W + j], m[(WATER + 8) * W + j],
@@ -120,12 +156,24 @@ def force_of_water(m: Array, xs: int) -> None:
         )
 
 
-def flow_past_thrusters(m: Array, tv: Array, lv: Array, g: tuple[float, ...], xs: int, cross_flow: bool) -> None:
+@compiled_function
+def axial_flow_past_thrusters(m: Array, tv: Array, geo: Array) -> None:
+    """As `flow_past_thrusters`, where no lane of the block asks for the cross flow."""
+    flow_past_thrusters(m, tv, spread(geo, 16 * THRUSTERS), False)
+
+
+@compiled_function
+def cross_flow_past_thrusters(m: Array, tv: Array, geo: Array) -> None:
+    """As `flow_past_thrusters`, cross flow and all."""
+    flow_past_thrusters(m, tv, spread(geo, 16 * THRUSTERS), True)
+
+
+def flow_past_thrusters(m: Array, tv: Array, g: tuple[float, ...], cross_flow: bool) -> None:
     """What the flow past the thrusters changes of their thrust at rest, as a wrench (rows EXTRA): K_T(J_a) / K_T(0) by the advance ratio
     J_a = u_a / (n D), a cubic for each sense (``g``, after the place), then the effects'."""
     for j in range(W):
-        u, v, w = velocity(m, xs, j)
-        r_p, r_q, r_r = rates(m, xs, j)
+        u, v, w = velocity(m, MOTION * W, j)
+        r_p, r_q, r_r = rates(m, MOTION * W, j)
         if FULL:
             ur, vr, wr = through_water(m, u, v, w, j)
         else:
@@ -148,29 +196,29 @@ def flow_past_thrusters(m: Array, tv: Array, lv: Array, g: tuple[float, ...], xs
             if cross_flow:
                 aside = vx * vx + vy * vy + vz * vz - ua * ua
                 cross = math.sqrt(0.5 * (aside + abs(aside)))
-                T = in_turn("thrust", T, m, i, j, log=lv, n=n, ua=ua, cross=cross)
+                T = in_turn("thrust", T, m, i, j, n=n, ua=ua, cross=cross)
             else:
-                T = in_turn("thrust", T, m, i, j, log=lv, skip="cross", n=n, ua=ua)
+                T = in_turn("thrust", T, m, i, j, skip="cross", n=n, ua=ua)
             change = T - rest
             X, Y, Z, K, M, N = with_force(m, i, j, change, X, Y, Z, K, M, N)
         add_wrench(m, EXTRA, j, X, Y, Z, K, M, N)
 
 
-def wrenches(m: Array, lv: Array, acts: Array, b: int, xs: int) -> None:
+@compiled_function
+def wrenches(m: Array, acts: Array, b: int) -> None:
     """Forces and moments of all effects that have one (rows EXTRA)."""
     for effect in effects_of("wrench"):
         if at_work(acts, b, effect):
             for j in pruned(range(W)):
-                qw, qx, qy, qz = attitude(m, xs, j)
-                u, v, w = velocity(m, xs, j)
-                r_p, r_q, r_r = rates(m, xs, j)
-                r11, r12, r13, r21, r22, r23, r31, r32, r33 = rotation(qw, qx, qy, qz)
-                vn, ve, vd = over_ground(u, v, w, r11, r12, r13, r21, r22, r23, r31, r32, r33)
+                u, v, w = velocity(m, MOTION * W, j)
+                r_p, r_q, r_r = rates(m, MOTION * W, j)
+                r11, r12, r13, r21, r22, r23, r31, r32, r33 = rotation_of_stage(m, j)
+                vn, ve, vd = m[(MOTION + 22) * W + j], m[(MOTION + 23) * W + j], m[(MOTION + 24) * W + j]
                 ur, vr, wr = through_water(m, u, v, w, j)
                 force = effect_value(
-                    "wrench", effect, m, j, log=lv, u=u, v=v, w=w, ur=ur, vr=vr, wr=wr, vn=vn, ve=ve, vd=vd, p=r_p, q=r_q, r=r_r,
+                    "wrench", effect, m, j, u=u, v=v, w=w, ur=ur, vr=vr, wr=wr, vn=vn, ve=ve, vd=vd, p=r_p, q=r_q, r=r_r,
                     cn=m[WATER * W + j], ce=m[(WATER + 1) * W + j], cd=m[(WATER + 2) * W + j],
-                    x=m[xs + j], y=m[xs + W + j], z=m[xs + 2 * W + j],
+                    x=m[MOTION * W + j], y=m[(MOTION + 1) * W + j], z=m[(MOTION + 2) * W + j],
                     r11=r11, r12=r12, r13=r13, r21=r21, r22=r22, r23=r23, r31=r31, r32=r32, r33=r33,
                 )  # fmt: skip
                 for c in unrolled(6):

@@ -11,8 +11,8 @@ from rovval.plant.codegen.kernel.log import lag_memory, speeds_of_step
 from rovval.plant.codegen.kernel.step import halt, record, take_step
 
 from rovval.plant.codegen.kernel.symbols import (  # isort: skip
-    ALIVE, EULER, EXPLICIT, FLOW, FULL, INPUT_ROWS, JET, LAGGED, LOG_ROWS, MEMORY, NEXT, ROWS, STATE, THRUST_ROWS, THRUSTERS, TIME, Array, W,
-    compiled_function, spread,
+    ALIVE, EULER, EXPLICIT, FULL, INPUT_ROWS, JET, LAGGED, LOG_ROWS, MEMORY, NEXT, ROWS, STATE, THRUST_ROWS, THRUSTERS, TIME, Array, W,
+    compiled_function,
 )  # fmt: skip
 from rovval.plant.codegen.kernel.thrust import thrust_of_stage
 from rovval.plant.codegen.runtime import aligned, load_log
@@ -28,8 +28,6 @@ def run(
     h, inv_dt = dt / substeps, 1.0 / dt
     m, th = aligned(ROWS * W), aligned(3 * THRUST_ROWS * W)
     la, lg = aligned(2 * LOG_ROWS * W), aligned(3 * LOG_ROWS * W)
-    if FLOW:
-        g = spread(geo, 16 * THRUSTERS)
     for b in range(first, last):
         load_block(m, numbers, states, b)
         use_extra, use_wake, use_side, pending, least = lanes_of_block(m, b, onset, limit, which, steps)
@@ -52,7 +50,7 @@ def run(
                 if not hold and step + sub > 0:  # a step begins where the last one ended
                     again, begin = 1, 2 - begin
                 thrust_over_substep(
-                    m, th, lg, la, geo, g, pairs, weights, again, begin, f0, f1, inv_dt, use_log, use_rest, use_wake, use_side, use_extra
+                    m, th, lg, la, geo, pairs, weights, again, begin, f0, f1, inv_dt, use_log, use_rest, use_wake, use_side, use_extra
                 )
                 if FULL and pending:
                     take_payload(m, late, onset, b, (begin * LOG_ROWS + TIME) * W, lg)
@@ -60,15 +58,15 @@ def run(
                     remember_lag(m)
                 if EXPLICIT:
                     inverse_h = 1.0 / h if step + sub > 0 else 0.0
-                    engine_over_substep(m, th, lg, g, acts, b, begin, h, inverse_h, use_state, use_water, use_cross, use_flow)
+                    engine_over_substep(m, th, lg, geo, acts, b, begin, h, inverse_h, use_state, use_water, use_cross, use_flow)
                 else:
-                    motion_over_substep(m, th, lg, g, acts, b, begin, h, use_state, use_water, use_cross, use_flow)
+                    motion_over_substep(m, th, lg, geo, acts, b, begin, h, use_state, use_water, use_cross, use_flow)
                 take_step(m, stopped[b], reason[b], step)
             record(m, out, step + 1, b * W)
 
 
 def thrust_over_substep(
-    m: Array, th: Array, lg: Array, la: Array, geo: Array, g: Array, pairs: Array, weights: Array, again: int, begin: int, f0: float, f1: float,
+    m: Array, th: Array, lg: Array, la: Array, geo: Array, pairs: Array, weights: Array, again: int, begin: int, f0: float, f1: float,
     inv_dt: float, use_log: bool, use_rest: bool, use_wake: bool, use_side: bool, use_extra: bool,
 ) -> None:  # fmt: skip
     """Thrust, and what effects need of the log, at the start, the middle and the end of a substep; from the middle on where it goes on from the last."""
@@ -78,11 +76,11 @@ def thrust_over_substep(
         tv = th[slot * (THRUST_ROWS * W) : (slot + 1) * (THRUST_ROWS * W)]
         if FULL:
             lv = lg[slot * LOG_ROWS * W : (slot + 1) * LOG_ROWS * W]
-        thrust_of_stage(m, tv, lv, la, geo, g, pairs, weights, s, f, f0, inv_dt, use_log, use_rest, use_wake, use_side, use_extra)
+        thrust_of_stage(m, tv, lv, la, geo, pairs, weights, s, f, f0, inv_dt, use_log, use_rest, use_wake, use_side, use_extra)
 
 
 def motion_over_substep(
-    m: Array, th: Array, lg: Array, g: Array, acts: Array, b: int, begin: int, h: float, use_state: bool, use_water: bool, use_cross: bool,
+    m: Array, th: Array, lg: Array, geo: Array, acts: Array, b: int, begin: int, h: float, use_state: bool, use_water: bool, use_cross: bool,
     use_flow: bool,
 ) -> None:  # fmt: skip
     """The four stages of a Runge-Kutta step of length ``h`` (s), each with the effects that act on its state."""
@@ -94,19 +92,19 @@ def motion_over_substep(
         xs, xn = (STATE + 13 * stage) * W, (STATE + 13 * stage + 13) * W
         reach = -0.5 * h if stage == 3 else (h if stage == 2 else 0.5 * h)
         half = 0.5 * reach
-        effects_on_state(m, tv, lv, g, acts, b, xs, use_state, use_water, use_cross, use_flow)
+        effects_on_state(m, tv, lv, geo, acts, b, xs, use_state, use_water, use_cross, use_flow)
         equations_of_motion(m, tv, xs, xn, reach, half)
 
 
 def engine_over_substep(
-    m: Array, th: Array, lg: Array, g: Array, acts: Array, b: int, begin: int, h: float, inverse_h: float, use_state: bool, use_water: bool,
+    m: Array, th: Array, lg: Array, geo: Array, acts: Array, b: int, begin: int, h: float, inverse_h: float, use_state: bool, use_water: bool,
     use_cross: bool, use_flow: bool,
 ) -> None:  # fmt: skip
     """A physics engine's step of length ``h`` (s), with the thrust and the effects of its beginning."""
     tv = th[begin * (THRUST_ROWS * W) : (begin + 1) * (THRUST_ROWS * W)]
     if FULL:
         lv = lg[begin * LOG_ROWS * W : (begin + 1) * LOG_ROWS * W]
-    effects_on_state(m, tv, lv, g, acts, b, STATE * W, use_state, use_water, use_cross, use_flow)
+    effects_on_state(m, tv, lv, geo, acts, b, STATE * W, use_state, use_water, use_cross, use_flow)
     explicit_step(m, tv, h, inverse_h)
 
 

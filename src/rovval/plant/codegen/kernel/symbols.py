@@ -23,7 +23,8 @@ THRUSTERS = 1
 STRIDE = 1  # rows of a thruster
 INPUT_ROWS = 1  # rows of a lane that `Plant` hands over; those that follow are the kernel's own
 ROWS = 1  # rows of a lane in all
-LOG_ROWS = 1  # logged quantities and extra wrench at one time
+LOG_COUNT = 1  # logged quantities
+LOG_ROWS = 1  # the same and the extra wrench at one time
 TIME = 0  # row of the time among them
 WRENCH = 0  # first row of the extra wrench among them
 THRUST_ROWS = 1  # thrusts at rest and their wrench at one stage time
@@ -51,6 +52,8 @@ ALIVE = 0  # 1, or 0 of a lane that stopped
 CODE = 0  # why a lane stops in this step, and room for its sum
 CURRENT = 0  # velocity of the water in the body frame (3)
 WATER = 0  # velocity of the water, its change along the path and at a fixed point, north east down (9)
+MOTION = 0  # at the stage at hand: x y z, q_wxyz, u v w p q r, rotation (9), velocity over ground (3)
+LOGGED = 0  # logged quantities then
 EXTRA = 0  # wrench of all that acts on the state beyond the rigid body (6)
 FILTERED = 0  # filtered acceleration relative to the water (6)
 BEFORE = 0  # velocity relative to the water at the step before (6)
@@ -101,11 +104,11 @@ def any_at_work(acts: Array, b: int, *kinds: str, asks: str = "") -> bool:
 
 def in_turn(kind: str, value: Lanes, m: Array, i: int, j: int, *, log: Array = None, skip: str = "", **given: Lanes) -> Lanes:
     """``value`` (speed or thrust of thruster ``i`` in lane ``j``) handed from one effect's function of that kind to the next, ``log`` the logged
-    quantities at this time, ``given`` what else a function may ask for by name; those that ask for ``skip`` are left out."""
+    quantities at this time (else, of functions of the state, rows LOGGED), ``given`` what else a function may ask for by name; those that ask for
+    ``skip`` are left out."""
     raise NotImplementedError
 
 
-def effect_value(kind: str, effect: str, m: Array, j: int, *, log: Array, **given: Lanes) -> tuple[Lanes, ...]:
-    """What one effect's function of that kind returns in lane ``j``, ``log`` the logged quantities at this time, ``given`` what else it may ask for by
-    name."""
+def effect_value(kind: str, effect: str, m: Array, j: int, **given: Lanes) -> tuple[Lanes, ...]:
+    """What one effect's function of that kind returns in lane ``j``, ``given`` what it may ask for by name beside the logged quantities (rows LOGGED)."""
     raise NotImplementedError

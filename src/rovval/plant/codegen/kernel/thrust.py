@@ -6,13 +6,13 @@ Thruster speeds are taken at the stage times: frozen over the step they make the
 from __future__ import annotations
 
 from rovval.plant.codegen.kernel.symbols import (  # isort: skip
-    ADVANCE, BODY, ENDS, FLOW, FULL, JET, LAG, LAGGED, LOG_ROWS, MEMORY, NEXT, STRIDE, THRUSTERS, WRENCH, Array, Lanes, W, in_turn,
-    unrolled,
+    ADVANCE, BODY, ENDS, FLOW, FULL, JET, LAG, LAGGED, LOG_ROWS, MEMORY, NEXT, STRIDE, THRUSTERS, WRENCH, Array, Lanes, W,
+    compiled_function, in_turn, spread, unrolled,
 )  # fmt: skip
 
 
 def thrust_of_stage(
-    m: Array, tv: Array, lv: Array, la: Array, geo: Array, g: tuple[float, ...], pairs: Array, weights: Array, s: int, f: float, f0: float,
+    m: Array, tv: Array, lv: Array, la: Array, geo: Array, pairs: Array, weights: Array, s: int, f: float, f0: float,
     inv_dt: float, use_log: bool, use_rest: bool, use_wake: bool, use_side: bool, use_extra: bool,
 ) -> None:  # fmt: skip
     """Everything of a stage time, ``f`` of the way through the sample: the log, acting speed and thrust of each thruster, their wrench."""
@@ -30,7 +30,7 @@ def thrust_of_stage(
     if FLOW:
         wrench_of_thrusts(m, tv)
     if FULL and use_side:
-        side_force(m, tv, g)
+        side_force(m, tv, geo)
     if FULL and use_extra:
         for c in range(6 * W):
             tv[3 * THRUSTERS * W + c] += lv[WRENCH * W + c]
@@ -136,8 +136,10 @@ def lost_in_jets(m: Array, tv: Array, pairs: Array, weights: Array) -> None:
             tv[row + j] -= m[wake + j] * jet * own
 
 
-def side_force(m: Array, tv: Array, g: tuple[float, ...]) -> None:
+@compiled_function
+def side_force(m: Array, tv: Array, geo: Array) -> None:
     """Side force of every thruster on the hull beside it (effect ``hull_interaction``), from its thrust at rest."""
+    g = spread(geo, 16 * THRUSTERS)
     for j in range(W):
         X = Y = Z = K = M = N = 0.0
         for i in unrolled(THRUSTERS):
