@@ -16,7 +16,10 @@ def delayed(true: Array, late: Array) -> Array:
         lanes = np.flatnonzero(late == delay)
         x = np.clip(sample - delay, 0.0, last)
         low = np.minimum(x.astype(np.int64), max(last - 1, 0))
-        own = true[lanes]
-        before, after = own[:, low], own[:, np.minimum(low + 1, last)]
-        seen[lanes] = before + (after - before) * (x - low)[:, None]
+        own = true if len(lanes) == len(late) else true[lanes]
+        before, between = own.take(low, axis=1), own.take(np.minimum(low + 1, last), axis=1)
+        between -= before
+        between *= (x - low)[:, None]
+        between += before
+        seen[lanes] = between
     return seen

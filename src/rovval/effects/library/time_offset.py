@@ -51,8 +51,7 @@ EFFECT = Effect(
     stage="delay",
 )
 FULL_KERNEL = True
-ANGLES = (9, 10, 11)  # phi theta psi among u v w p q r x y z phi theta psi
-# Parameters by whose sum a sensor is late, and what it writes of these (`plant.sensor_delay`).
+# Parameters by whose sum a sensor is late, and what it writes of u v w p q r x y z phi theta psi (`plant.sensor_delay`).
 LATE = {("delay[velocity]",): (0, 1, 2), ("delay[attitude]",): (3, 4, 5, 9, 10, 11), ("delay[depth]",): (8,)}
 
 
@@ -63,17 +62,15 @@ def lower(lanes: Lanes, p: Mapping[str, Array]) -> Lanes:
 
 def observe(log: Log, p: Mapping[str, Array]) -> Log:
     """Velocities of the velocity log, attitude and rates of the attitude sensor, and depth, of their ``delay`` ago."""
-    state = np.concatenate([log.nu, log.eta], axis=-1)
-    for (parameter,), columns in LATE.items():
+    nu, eta = log.nu.copy(), log.eta.copy()
+    for parameter, columns in (("delay[velocity]", nu[..., :3]), ("delay[attitude]", nu[..., 3:]), ("delay[depth]", eta[..., 2:3])):
         lanes = np.flatnonzero(p[parameter])
-        if len(lanes):
-            late, true = p[parameter][lanes] / log.dt, state[lanes]
-            true[..., columns] = delayed(true[..., columns], late)
-            if set(columns) & set(ANGLES):
-                q = delayed(smooth_quaternions(state[lanes][..., ANGLES]), late)
-                true[..., ANGLES] = euler_from_quaternion(q / np.linalg.norm(q, axis=-1, keepdims=True))
-            state[lanes] = true
-    return replace(log, nu=state[..., :6], eta=state[..., 6:])
+        columns[lanes] = delayed(columns[lanes], p[parameter][lanes] / log.dt)
+    lanes = np.flatnonzero(p["delay[attitude]"])
+    if len(lanes):
+        q = delayed(smooth_quaternions(eta[lanes, :, 3:]), p["delay[attitude]"][lanes] / log.dt)
+        eta[lanes, :, 3:] = euler_from_quaternion(q / np.linalg.norm(q, axis=-1, keepdims=True))
+    return replace(log, nu=nu, eta=eta)
 
 
 def unobserve(nu: Array, eta: Array, p: Mapping[str, Array]) -> tuple[Array, Array]:
