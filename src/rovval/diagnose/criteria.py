@@ -54,6 +54,7 @@ STEADY_FORCE_SD = 0.1  # prior of a steady force of the environment, as a share 
 SEGMENT_CORRELATION = (0.02, 0.98)  # limits of a disturbance's correlation from one segment of a window to the next
 INTERVAL_PROBABILITY = 0.90  # of every interval that is stated
 OBSERVABLE_SIGMA = 3.0  # standard errors with which an effect of typical size must show in a log for its absence to mean anything (chosen)
+CORRELATED = 0.7  # correlation from which two numbers are told to be seen together only: half of the variance of each is the other's
 WIDEST_INTERVAL = 2.0  # typical sizes: a half interval beyond it about what the file has, at the fitted point, is no answer (chosen)
 EXACT_WINDOWS = 8.0  # windows for which the equations are as good as exact: of m, each says 1 / (1 + m / this) of what it seems to (development logs)
 PRIOR_WIDTH = 4.0  # wide prior, in typical sizes, in which effects are fitted: keeps a parameter that the log does not see from running away

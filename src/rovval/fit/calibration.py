@@ -17,7 +17,7 @@ from rovval.core.channels import AXES, VELOCITIES
 from rovval.core.data import Array, Run
 from rovval.core.errors import BadInput, SimulationStopped, UsageProblem
 from rovval.core.version import __version__
-from rovval.diagnose.criteria import HELD_OUT_RUNS
+from rovval.diagnose.criteria import CORRELATED, HELD_OUT_RUNS
 from rovval.diagnose.effort import PROGRESSIVE_S
 from rovval.diagnose.windows.noise import clean_channels
 from rovval.fit.apparent_sizes import apparent_sizes
@@ -44,7 +44,6 @@ from rovval.vehicle.model import Vehicle
 
 FLOORS = {"m/s": 0.005, "rad/s": 0.005, "1": 0.005, "m": 0.01}  # least noise that a channel is taken to have: a window's start has as much (chosen)
 HELD_BY_PRIOR = 0.8  # of the prior's standard deviation: a posterior as wide says that the logs show next to nothing of it (chosen)
-CORRELATED = 0.7  # correlation from which two unknowns are told as a pair: half of the variance of each is the other's
 QUANTILE = 1.645  # of a 90 % interval of a normal
 
 Progress = Callable[[str, float], None]

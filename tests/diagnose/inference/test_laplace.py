@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from diagnose_case import posed
+import pytest
+from diagnose_case import posed, slot
 
 from rovval.diagnose.inference.laplace import resampled_evidence
 from rovval.diagnose.inference.map_fit import map_fit
@@ -14,3 +15,15 @@ def test_evidence_is_linear_in_copies_of_the_log_but_for_the_prior():
     point = map_fit(p, p.origin, ())
     one, two = resampled_evidence(p, point, np.stack([np.ones(p.window_count), 2 * np.ones(p.window_count)]))
     assert two > one, "twice the data says the same louder"
+
+
+def test_two_parameters_that_do_the_same_are_seen_together_only():
+    """The downward part of a pull from far away and the weight of its line are one force; its northward part is another."""
+    p = posed(seconds=100.0)[0]
+    slots = tuple(slot(p, f"tether_tension.{name}") for name in ("north", "down", "weight"))
+    beta = p.origin.copy()
+    beta[list(slots)] = 5.0, 5.0, 1.0
+    correlation = map_fit(p, beta, slots).effect_correlation()
+    assert np.diag(correlation) == pytest.approx(np.ones(3)) and correlation == pytest.approx(correlation.T, abs=1e-6)
+    assert correlation[1, 2] < -0.9
+    assert abs(correlation[0, 1]) < 0.7 and abs(correlation[0, 2]) < 0.7

@@ -315,3 +315,14 @@ def test_probabilities_of_the_kinds_of_answers_stand_in_every_format() -> None:
     assert "| something that the library does not hold | 0.90 |" in markdown and "0.90 something" in plain and 'style="width:90.0%"' in page
     never = SURE | {"something_else": 1.0, "healthy": 0.0}
     assert "> 0.99 something" in formats(diagnosis(probabilities=never))[2] and "< 0.01 nothing" in formats(diagnosis(probabilities=never))[2]
+
+
+def test_parameters_that_are_seen_together_only_are_said_to_be_in_every_format() -> None:
+    """Those that the fit moved; of one that rests where it changes nothing nothing is said."""
+    made = make_diagnosis()
+    cause = made["causes"][0] | {"together": [{"of": ["loss", "lag"], "value": -0.987}]}
+    for text in formats(Diagnosis.read(made | {"causes": [cause]})):
+        assert "seen together only (correlation): loss and lag (-0.99)" in text
+    rests = cause["parameters"] | {"lag": {"value": 0.0, "low": -0.1, "high": 0.1, "unit": "s", "null": 0.0}}
+    for text in formats(Diagnosis.read(made | {"causes": [cause | {"parameters": rests}]})):
+        assert "seen together" not in text

@@ -102,8 +102,17 @@ class Posterior:
 
     def effect_sd(self) -> Array:
         """Standard deviation (effect_count,) of each of the effects' parameters, all others beside it."""
-        inverse = np.linalg.solve(self.curvature, np.eye(len(self.columns), self.effect_count))
-        return np.asarray(np.sqrt(self.tempering * np.diag(inverse)))
+        return np.asarray(np.sqrt(self.tempering * np.diag(self._effect_inverse())))
+
+    def effect_correlation(self) -> Array:
+        """Correlations (effect_count, effect_count) of the effects' parameters, all others beside them."""
+        inverse = self._effect_inverse()
+        sd = np.sqrt(np.diag(inverse))
+        return np.asarray(inverse / np.outer(sd, sd))
+
+    def _effect_inverse(self) -> Array:
+        """The part of the inverse curvature that is of the effects' parameters (effect_count, effect_count)."""
+        return np.asarray(np.linalg.solve(self.curvature, np.eye(len(self.columns), self.effect_count))[: self.effect_count])
 
     def _below(self, among: np.ndarray) -> float:
         """Cost after one linear step in the columns ``among`` (k,)."""

@@ -8,7 +8,7 @@ from dataclasses import asdict, replace
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import GROUP_NAMES, PARAMETER_FORM_ERROR
+from rovval.diagnose.criteria import CORRELATED, GROUP_NAMES, PARAMETER_FORM_ERROR
 from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.heterogeneity import ByRun, by_run
@@ -16,7 +16,7 @@ from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, confidence_i
 from rovval.diagnose.inference.shrinkage import shrinkage
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.ridge import Prior
-from rovval.diagnose.result.diagnosis import Cause, Parameter, RunValue, Shrinkage
+from rovval.diagnose.result.diagnosis import Cause, Correlation, Parameter, RunValue, Shrinkage
 
 
 def causes(problem: Problem, decision: Decision, before: list[Array], since: float | None, seed: int) -> tuple[Cause, ...]:
@@ -65,6 +65,7 @@ def _cause(
         probability=decision.probability[h.name],
         onset_s=next((float(joint.beta[s]) for s in h.slots if problem.plant.slots[s].parameter.role == "onset"), since),
         parameters=_parameters(problem, joint, h, each),
+        together=_together(problem, joint, h),
         evidence=decision.added[h.name],
         shrinkage=Shrinkage(**asdict(shrinkage(problem, single, before, seed))),
     )
@@ -87,6 +88,15 @@ def _parameters(problem: Problem, fitted: HypothesisFit, h: Hypothesis, each: Ma
             by_run=_run_values(problem, each[slot]) if slot in each else {}, homogeneity=each[slot].homogeneity if slot in each else None,
         )  # fmt: skip
     return found
+
+
+def _together(problem: Problem, fitted: HypothesisFit, h: Hypothesis) -> tuple[Correlation, ...]:
+    """Pairs of the cause's parameters that the log shows together only."""
+    at, correlation = [fitted.slots.index(s) for s in h.slots], fitted.posterior.effect_correlation()
+    names = [problem.plant.slots[s].parameter.name for s in h.slots]
+    pairs = [(names[a], names[b], float(correlation[i, j])) for a, i in enumerate(at) for b, j in enumerate(at[:a])]
+    close = sorted((pair for pair in pairs if abs(pair[2]) >= CORRELATED), key=lambda pair: -abs(pair[2]))
+    return tuple(Correlation(of=(one, other), value=value) for other, one, value in close)
 
 
 def _run_values(problem: Problem, each: ByRun) -> dict[str, RunValue]:

@@ -122,6 +122,13 @@ class Parameter(Interval):
     )
 
 
+class Correlation(Record):
+    """Two parameters of a cause that the log hardly tells apart: at 1 or -1 it shows one combination of them only."""
+
+    of: tuple[str, str] = Field(description="the two parameters")
+    value: float = Field(description="their correlation in the joint fit")
+
+
 class Cause(Record):
     """An isolated cause: an effect of the library that the gap is put down to."""
 
@@ -134,6 +141,7 @@ class Cause(Record):
     probability: float = Field(description="probability that it is at work")
     onset_s: float | None = Field(description="time from which it is at work, s; null: all of the log")
     parameters: Mapping[str, Parameter] = Field(description="by name")
+    together: tuple[Correlation, ...] = Field(default=(), description="pairs of parameters that the log shows together only, the closest first")
     evidence: float | None = Field(default=None, description="twice the log Bayes factor of the model with it over that without it")
     shrinkage: Shrinkage = Field(description="by itself, without the other causes")
 

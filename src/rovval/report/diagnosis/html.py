@@ -84,10 +84,10 @@ def _cause(cause: Cause, gap: Mapping[str, AxisGap]) -> dict[str, Any]:
     said += [f"begins at {number(cause.onset_s)} s"] if cause.onset_s is not None else []
     moved = words.moved(cause.parameters)
     parameters = [(name, p, figures.whisker(p.value, p.low, p.high, p.null or 0.0, p.unit)) for name, p in moved.items()]
-    by_run = [line for name, p in moved.items() if (line := words.runs(name, p))]
+    beside = [line for line in (*(words.runs(name, p) for name, p in moved.items()), words.together(cause)) if line]
     gains = _gains(cause.shrinkage.axes, cause.shrinkage.axes_interval, gap)
     members = [(name, title(name)) for name in words.group(cause)]
-    return {"members": members, "said": ", ".join([*said, words.shrinks(cause)]), "parameters": parameters, "by_run": by_run, "gains": gains}
+    return {"members": members, "said": ", ".join([*said, words.shrinks(cause)]), "parameters": parameters, "beside": beside, "gains": gains}
 
 
 def _gains(axes: Mapping[str, float], spans: Mapping[str, Interval], gap: Mapping[str, AxisGap]) -> list[Gain]:

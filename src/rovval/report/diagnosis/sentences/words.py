@@ -13,6 +13,7 @@ from rovval.report.diagnosis.sentences.plain import falls_to, regime, remaining
 SCOPE = "Every number is about this simulator, this log and this library of effects."
 SQUARED = "Errors are told as rms. Shares of the gap are of squared errors, which add up: an error that falls to a half leaves a quarter of them."
 RUNS_DIFFER = 0.01  # probability that runs of one value differ by as much, below which the reader is asked what changed (chosen)
+MOST_PAIRS = 3  # of parameters that are seen together only: enough to say it
 UNMOVED = 0.005  # of the squared gap: a change that rounds to nothing
 
 
@@ -43,6 +44,15 @@ def runs(name: str, p: Parameter) -> str:
         return f"{said}; the other runs say too little of it"
     differ = f"runs of one value would differ as much with probability {probability(p.homogeneity)}"
     return f"{said}; {differ}" + (": what changed between these runs?" if p.homogeneity < RUNS_DIFFER else "")
+
+
+def together(cause: Cause) -> str:
+    """Parameters that the log hardly tells apart; empty where there are none.
+
+    seen together only (correlation): down and weight (-0.99)
+    """
+    told = [f"{' and '.join(pair.of)} ({number(pair.value, 2)})" for pair in cause.together if set(pair.of) <= set(moved(cause.parameters))]
+    return f"seen together only (correlation): {', '.join(told[:MOST_PAIRS])}" if told else ""
 
 
 def moved(parameters: Mapping[str, Parameter]) -> Mapping[str, Parameter]:
