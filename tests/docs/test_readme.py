@@ -48,7 +48,7 @@ def test_there_are_two_commands_that_make_their_own_environment():
         [command] = commands(marker)
         assert command.startswith("python3 -m venv .venv && .venv/bin/pip install")
     assert commands("demo")[0].endswith(".venv/bin/rovval demo")
-    assert commands("tests")[0].endswith(".venv/bin/pytest -n 2 --dist loadfile")
+    assert commands("tests")[0].endswith(".venv/bin/pytest -n 3 --dist loadfile")
 
 
 def test_the_tour_on_ones_own_csv(tmp_path, monkeypatch):
