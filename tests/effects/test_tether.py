@@ -30,6 +30,14 @@ def test_a_pull_leads_to_its_point_from_any_depth():
     np.testing.assert_allclose(aside[:3], alike[:3], atol=1e-6)
 
 
+def test_within_its_slack_a_line_pulls_less_and_far_outside_as_without():
+    """Origin 20 m from the point and 20 m deep; the pull is 300 N."""
+    setting = "tether_tension:north=300,nearness=0.05,depth=20"
+    far, near, at = (10000.0 * np.array([-1.0, 0.0, 0.0]) + [0.0, 0.0, 20.0], np.array([18.0, 0.0, 20.0]), np.array([20.0, 0.0, 20.0]))
+    for place, share in ((far, 1.0), (near, 2.0 / np.hypot(2.0, 4.0)), (at, 0.0)):
+        np.testing.assert_allclose(begun(f"{setting},slack=4", tuple(place)), share * begun(setting, (0.0, 0.0, 20.0)), rtol=0, atol=1e-5)
+
+
 def test_the_pull_of_a_tether_that_is_dragged_is_a_steady_pull_at_its_attachment():
     pull = "north=200,east=-80,down=60,nearness=0.03,depth=28,x=-0.7,z=-0.4"
     at_rest = begun(f"tether_drag:{pull}", (3.0, 4.0, 30.0))
