@@ -284,7 +284,7 @@ def test_a_pull_keeps_its_size_and_points_to_where_it_is_held():
 
     def given(size: float, near: float) -> np.ndarray:
         n, e, d = size * pull
-        return np.stack(tether_tension.wrench(n, e, d, near, 0.0, 0.0, 0.0, 0.0, x, y, z, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)[:3], axis=-1)
+        return np.stack(tether_tension.wrench(n, e, d, near, 0.0, 0.0, 0.0, 0.0, 0.0, x, y, z, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)[:3], axis=-1)
 
     size = float(np.linalg.norm(pull))
     towards = pull / (size * nearness) - np.stack([x, y, z], axis=-1)

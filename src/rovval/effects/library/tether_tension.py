@@ -36,7 +36,7 @@ EFFECT = Effect(
         ),
         Parameter("depth", "m", -10.0, 12000.0, 0.0, 1.0, "where the pull has these components: the log's mean depth", role="level", needs="z"),
         Parameter("weight", "N", -100.0, 100.0, 0.0, 4.0, "100 m of some 20 g/m in water, or of as much lift (chosen): 10 N at each end", "weight"),
-        Parameter("slack", "m", 0.0, 20.0, 0.0, 2.0, "the pull is 0.7 of |T| there; a few lengths of the vehicle (chosen)", role="extent"),
+        Parameter("slack", "m", 0.0, 20.0, 0.0, 2.0, "there it pulls by 0.7 of its tension; a few lengths of the vehicle (chosen)", role="extent"),
         Parameter("x", "m", -2.0, 2.0, 0.0, 0.3, "attachment, ahead of the origin", role="lever"),
         Parameter("z", "m", -2.0, 2.0, 0.0, 0.2, "attachment, below the origin", role="lever"),
     ),
