@@ -17,8 +17,9 @@ from rovval.core.channels import AXES, VELOCITIES
 from rovval.core.data import Array, Run
 from rovval.core.errors import BadInput, SimulationStopped, UsageProblem
 from rovval.core.version import __version__
-from rovval.diagnose.criteria import CORRELATED, HELD_OUT_RUNS
+from rovval.diagnose.criteria import HELD_OUT_RUNS
 from rovval.diagnose.effort import PROGRESSIVE_S
+from rovval.diagnose.inference.identifiability import seen_together
 from rovval.diagnose.windows.noise import clean_channels
 from rovval.fit.apparent_sizes import apparent_sizes
 from rovval.fit.discrepancy import discrepancy
@@ -180,7 +181,8 @@ def calibrate(runs: Sequence[Run], vehicle: Vehicle, *, model: str = "fossen", w
     rows = tuple(_row(vehicle, one, estimate, i) for i, one in enumerate(chosen))
     matrix = tuple(tuple(float(value) for value in row) for row in estimate.correlation)
     further = _extrapolated(records, vehicle)
-    return Calibration(calibrated, rows, matrix, _pairs(chosen, estimate), errors, gains, accepted, estimate.converged, left_out, further)
+    pairs = seen_together([one.key for one in chosen], estimate.correlation)
+    return Calibration(calibrated, rows, matrix, pairs, errors, gains, accepted, estimate.converged, left_out, further)
 
 
 def _records(runs: Sequence[Run], vehicle: Vehicle, window_s: float) -> tuple[tuple[Record, ...], tuple[str, ...]]:
@@ -348,12 +350,3 @@ def _row(vehicle: Vehicle, one: Unknown, estimate: Estimate, i: int) -> Row:
     middle, low, high = (exp(x) if one.kind == "factor" else x for x in (value, value - QUANTILE * error, value + QUANTILE * error))
     moved = (value + vehicle.calibration.get(one.key, 0.0)) / one.sd
     return Row(one, middle, low, high, error, moved, error < HELD_BY_PRIOR * one.sd)
-
-
-def _pairs(chosen: Sequence[Unknown], estimate: Estimate) -> tuple[tuple[str, str, float], ...]:
-    """Unknowns that these logs hardly tell apart, the closest first."""
-    correlation = estimate.correlation
-    pairs = [(chosen[i].key, chosen[j].key, float(correlation[i, j])) for i in range(len(chosen)) for j in range(i)]
-    return tuple(sorted((p for p in pairs if abs(p[2]) >= CORRELATED), key=lambda p: -abs(p[2])))
-
-

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import WIDEST_INTERVAL
+from rovval.diagnose.criteria import CORRELATED, WIDEST_INTERVAL
 from rovval.diagnose.inference.hypothesis_fit import (
     HypothesisFit,
     confidence_interval,
@@ -32,6 +32,12 @@ class Unidentified:
 
     why: str
     beside: tuple[tuple[str, float], ...] = ()
+
+
+def seen_together(names: Sequence[str], correlation: Array) -> tuple[tuple[str, str, float], ...]:
+    """Pairs of names that logs show together only, by their ``correlation`` (k, k), the closest first: the later name, the earlier, and that."""
+    pairs = [(names[i], names[j], float(correlation[i, j])) for i in range(len(names)) for j in range(i)]
+    return tuple(sorted((p for p in pairs if abs(p[2]) >= CORRELATED), key=lambda p: -abs(p[2])))
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,11 +8,12 @@ from dataclasses import asdict, replace
 import numpy as np
 
 from rovval.core.data import Array
-from rovval.diagnose.criteria import CORRELATED, GROUP_NAMES, PARAMETER_FORM_ERROR
+from rovval.diagnose.criteria import GROUP_NAMES, PARAMETER_FORM_ERROR
 from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.heterogeneity import ByRun, by_run
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, confidence_interval, fit_quickly, standard_errors
+from rovval.diagnose.inference.identifiability import seen_together
 from rovval.diagnose.inference.shrinkage import shrinkage
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.ridge import Prior
@@ -92,11 +93,9 @@ def _parameters(problem: Problem, fitted: HypothesisFit, h: Hypothesis, each: Ma
 
 def _together(problem: Problem, fitted: HypothesisFit, h: Hypothesis) -> tuple[Correlation, ...]:
     """Pairs of the cause's parameters that the log shows together only."""
-    at, correlation = [fitted.slots.index(s) for s in h.slots], fitted.posterior.effect_correlation()
-    names = [problem.plant.slots[s].parameter.name for s in h.slots]
-    pairs = [(names[a], names[b], float(correlation[i, j])) for a, i in enumerate(at) for b, j in enumerate(at[:a])]
-    close = sorted((pair for pair in pairs if abs(pair[2]) >= CORRELATED), key=lambda pair: -abs(pair[2]))
-    return tuple(Correlation(of=(one, other), value=value) for other, one, value in close)
+    at, names = [fitted.slots.index(s) for s in h.slots], [problem.plant.slots[s].parameter.name for s in h.slots]
+    pairs = seen_together(names, fitted.posterior.effect_correlation()[np.ix_(at, at)])
+    return tuple(Correlation(of=(earlier, later), value=value) for later, earlier, value in pairs)
 
 
 def _run_values(problem: Problem, each: ByRun) -> dict[str, RunValue]:

@@ -53,7 +53,7 @@ ROWS = ("north", "east", "down", "nearness", "depth", "weight", "slack", "ax", "
 
 def rows(lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
     """Pull, where it leads, weight, slack and attachment."""
-    return {name: p[name] for name in ROWS[:7]} | {"ax": p["x"], "az": p["z"]}
+    return {name: p[name] for name in ROWS[:-2]} | {"ax": p["x"], "az": p["z"]}
 
 
 def wrench(

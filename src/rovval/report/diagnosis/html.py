@@ -82,12 +82,12 @@ def _cause(cause: Cause, gap: Mapping[str, AxisGap]) -> dict[str, Any]:
     """A cause with its parameters and what it does axis by axis."""
     said = [f"probability {probability(cause.probability)}"]
     said += [f"begins at {number(cause.onset_s)} s"] if cause.onset_s is not None else []
-    moved = words.moved(cause.parameters)
-    parameters = [(name, p, figures.whisker(p.value, p.low, p.high, p.null or 0.0, p.unit)) for name, p in moved.items()]
-    beside = [line for line in (*(words.runs(name, p) for name, p in moved.items()), words.together(cause)) if line]
+    parameters = [(n, p, figures.whisker(p.value, p.low, p.high, p.null or 0.0, p.unit)) for n, p in words.moved(cause.parameters).items()]
     gains = _gains(cause.shrinkage.axes, cause.shrinkage.axes_interval, gap)
     members = [(name, title(name)) for name in words.group(cause)]
-    return {"members": members, "said": ", ".join([*said, words.shrinks(cause)]), "parameters": parameters, "beside": beside, "gains": gains}
+    return {
+        "members": members, "said": ", ".join([*said, words.shrinks(cause)]), "parameters": parameters, "beside": words.beside(cause), "gains": gains,
+    }  # fmt: skip
 
 
 def _gains(axes: Mapping[str, float], spans: Mapping[str, Interval], gap: Mapping[str, AxisGap]) -> list[Gain]:

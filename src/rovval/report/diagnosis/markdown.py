@@ -60,9 +60,7 @@ def _axes(d: Diagnosis) -> str:
 
 
 def _cause(cause: Cause, gap: Mapping[str, AxisGap]) -> list[str]:
-    moved = words.moved(cause.parameters)
-    lines = [words.parameter(name, p) for name, p in moved.items()] + [said for name, p in moved.items() if (said := words.runs(name, p))]
-    lines += [said] if (said := words.together(cause)) else []
+    lines = [words.parameter(name, p) for name, p in words.moved(cause.parameters).items()] + words.beside(cause)
     lines += [f"begins at {number(cause.onset_s)} s"] if cause.onset_s is not None else []
     lines += [f"probability {probability(cause.probability)}", words.shrinks(cause)]
     return [bullets(lines), _gains(cause.shrinkage, gap)]

@@ -70,9 +70,7 @@ def _axes(d: Diagnosis) -> list[str]:
 
 
 def _cause(cause: Cause) -> list[str]:
-    moved = words.moved(cause.parameters)
-    lines = [words.parameter(name, p) for name, p in moved.items()] + [said for name, p in moved.items() if (said := words.runs(name, p))]
-    lines += [said] if (said := words.together(cause)) else []
+    lines = [words.parameter(name, p) for name, p in words.moved(cause.parameters).items()] + words.beside(cause)
     axes = ", ".join(f"{axis} {left_of(v)}" for axis, v in cause.shrinkage.axes.items())
     lines += [words.shrinks(cause), *([f"what is left of the error by axis: {axes}"] if axes else []), f"probability {probability(cause.probability)}"]
     return lines + ([f"begins at {number(cause.onset_s)} s"] if cause.onset_s is not None else [])

@@ -69,11 +69,11 @@ def motion_of_stage(m: Array, lv: Array, xs: int) -> None:
     if FULL:
         for c in range(LOG_COUNT * W):
             m[LOGGED * W + c] = lv[c]
-        rotation_of_state(m, xs)
+        put_rotation(m, xs)
 
 
-def rotation_of_state(m: Array, xs: int) -> None:
-    """Rotation and velocity over ground (rows MOTION, after the state)."""
+def put_rotation(m: Array, xs: int) -> None:
+    """Rotation and velocity over ground into rows MOTION, after the state."""
     for j in range(W):
         qw, qx, qy, qz = attitude(m, xs, j)
         u, v, w = velocity(m, xs, j)
@@ -92,6 +92,11 @@ def rotation_of_stage(m: Array, j: int) -> tuple[Lanes, Lanes, Lanes, Lanes, Lan
     )  # fmt: skip
 
 
+def over_ground_of_stage(m: Array, j: int) -> tuple[Lanes, Lanes, Lanes]:
+    """Velocity over ground, north east down."""
+    return m[(MOTION + 22) * W + j], m[(MOTION + 23) * W + j], m[(MOTION + 24) * W + j]
+
+
 @compiled_function
 def water(m: Array, acts: Array, b: int) -> None:
     """Velocity of the water, its change along the vehicle's path and at a fixed point, all effects on it together (rows WATER)."""
@@ -101,7 +106,7 @@ def water(m: Array, acts: Array, b: int) -> None:
                 u, v, w = velocity(m, MOTION * W, j)
                 r_p, r_q, r_r = rates(m, MOTION * W, j)
                 r11, r12, r13, r21, r22, r23, r31, r32, r33 = rotation_of_stage(m, j)
-                vn, ve, vd = m[(MOTION + 22) * W + j], m[(MOTION + 23) * W + j], m[(MOTION + 24) * W + j]
+                vn, ve, vd = over_ground_of_stage(m, j)
                 change = effect_value(
                     "water", effect, m, j, u=u, v=v, w=w, vn=vn, ve=ve, vd=vd, p=r_p, q=r_q, r=r_r,
                     x=m[MOTION * W + j], y=m[(MOTION + 1) * W + j], z=m[(MOTION + 2) * W + j],
@@ -213,7 +218,7 @@ def wrenches(m: Array, acts: Array, b: int) -> None:
                 u, v, w = velocity(m, MOTION * W, j)
                 r_p, r_q, r_r = rates(m, MOTION * W, j)
                 r11, r12, r13, r21, r22, r23, r31, r32, r33 = rotation_of_stage(m, j)
-                vn, ve, vd = m[(MOTION + 22) * W + j], m[(MOTION + 23) * W + j], m[(MOTION + 24) * W + j]
+                vn, ve, vd = over_ground_of_stage(m, j)
                 ur, vr, wr = through_water(m, u, v, w, j)
                 force = effect_value(
                     "wrench", effect, m, j, u=u, v=v, w=w, ur=ur, vr=vr, wr=wr, vn=vn, ve=ve, vd=vd, p=r_p, q=r_q, r=r_r,

@@ -55,6 +55,12 @@ def together(cause: Cause) -> str:
     return f"seen together only (correlation): {', '.join(told[:MOST_PAIRS])}" if told else ""
 
 
+def beside(cause: Cause) -> list[str]:
+    """What is said of a cause's parameters beside their values: what each run says, and which are seen together only."""
+    told = [*(runs(name, p) for name, p in moved(cause.parameters).items()), together(cause)]
+    return [line for line in told if line]
+
+
 def moved(parameters: Mapping[str, Parameter]) -> Mapping[str, Parameter]:
     """The parameters that the fit moved. One that rests where the effect changes nothing says nothing: a log without the tether's length cannot
     move the drag per length."""
