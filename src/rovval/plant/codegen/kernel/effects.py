@@ -1,7 +1,7 @@
 """The effects' functions of the state, each a loop over lanes of its own, passed over where no lane of the block has it.
 
-What they ask for of the state and the log is first copied to rows of its own (`motion_of_stage`). So these loops are functions by themselves, compiled in
-half the time that they take as a part of the loop over time, and LLVM need not check in them that what they write is not what they read.
+What they ask for of the state and the log is first copied to rows of its own (`motion_of_stage`). So these loops are functions by themselves, compiled
+sooner than as a part of the loop over time, and LLVM need not check in them that what they write is not what they read.
 
 What they leave behind is the water's velocity in the body frame (rows CURRENT) and one wrench (rows EXTRA), all zeros where nothing acts, so that
 the rigid body's own loop is the nominal one to the last bit. What the flow takes from a thruster is such a wrench too.
