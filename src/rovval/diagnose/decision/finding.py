@@ -10,6 +10,7 @@ from math import log
 from rovval.core.data import Array
 from rovval.diagnose.decision.verdict import Decision, decide
 from rovval.diagnose.effort import NEGLIGIBLE, SETS_WEIGHED
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.sensor_faults import FittedFault
 from rovval.diagnose.search.forward import Selection
@@ -40,10 +41,11 @@ class Finding:
 
 
 def may_begin(whole: Finding, time: float) -> bool:
-    """Whether the most probable causes of the ``whole`` log, where they have no onset of their own, may as well be at work from ``time`` (s) on alone (not
-    negligible beside all through, `NEGLIGIBLE`): where something else begins on a healthy vehicle the windows before do not hold them."""
+    """Whether it is worth a search what may be at work from ``time`` (s) on alone: where the ``whole`` log has no answer, and where its most probable causes
+    have an onset of their own or may as well begin then (not negligible beside all through, `NEGLIGIBLE`); the windows before do not hold what else begins on a
+    healthy vehicle."""
     problem, best, healthy = whole.problem, whole.selection.best, whole.selection.healthy
-    if best.fit is None or any(h.effect.begins for h in best.causes):
+    if best.fit is None or any(h.effect.begins for h in best.causes) or whole.decision.verdict == "unknown":
         return True
     return evidence_with_onset(problem, best.fit, time, healthy) > best.evidence + 2.0 * log(NEGLIGIBLE)
 
@@ -58,7 +60,10 @@ def weighed_with(late: Finding, whole: Finding, time: float) -> Finding:
     """The decision between the models of the ``whole`` log and those of its ``late`` part, from ``time`` (s) on, the vehicle healthy before; of the pass that
     found the causes which are named, or of the whole log where none are."""
     problem, selection = whole.problem, whole.selection
-    later = [with_onset(problem, m.causes, selection.prior.log_mass(m.causes), part, selection.healthy) for m, part in _leading(late, time)]
+    later = list[Model]()
+    for causes, part in _leading(late, time):
+        log_prior = selection.prior.log_mass(causes)
+        later.append(with_onset(problem, causes, log_prior, part, selection.healthy, later[0] if later else None))
     both = replace(selection, models=(*selection.models, *later))
     decision = decide(problem, both, whole.residuals, whole.faults, whole.decision.weighed)
     return replace(whole, decision=decision) if decision.since is None else replace(_with_the_rest(late, whole), decision=decision)
@@ -72,8 +77,8 @@ def _with_the_rest(late: Finding, whole: Finding) -> Finding:
     return replace(late, selection=replace(late.selection, ranking=(*late.selection.ranking, *rest)), untestable={**late.untestable, **untestable})
 
 
-def _leading(late: Finding, time: float) -> list[tuple[Model, Part]]:
-    """The most probable sets of causes of a part of the log, with what they are there."""
+def _leading(late: Finding, time: float) -> list[tuple[tuple[Hypothesis, ...], Part]]:
+    """The sets of causes that are the most probable in a part of the log by prior and fit, the first of them first, with what they are there."""
     problem, fitted = late.problem, best_of_each_set(late.selection.models)
     sets = [refitted(problem, fitted[names]) for names in late.decision.probabilities.ranked[:SETS_WEIGHED] if names in fitted]
-    return [(m, Part(time, problem, m.fit)) for m in sets if m.fit]
+    return [(m.causes, Part(time, problem, m.fit)) for m in sorted(sets, key=lambda m: -m.log_posterior) if m.fit]

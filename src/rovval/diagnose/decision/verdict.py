@@ -213,7 +213,7 @@ def _fitted(problem: Problem, selection: Selection, met: Sequence[Model], names:
     there, whole = _where_at_work(problem, larger, larger.fit)
     found = refitted(there, some_of(there, selection.prior, whole, causes))
     if larger.part and found.fit:  # causes that begin in mid-log do so without the others, too
-        return with_onset(problem, causes, found.log_prior, replace(larger.part, fit=found.fit), selection.healthy)
+        return with_onset(problem, causes, found.log_prior, replace(larger.part, fit=found.fit), selection.healthy, larger)
     return found
 
 

@@ -96,15 +96,24 @@ def windows_from(windows: Windows, time: float) -> Windows:
     return windows.some(windows.start * windows.run.dt >= time)
 
 
-def with_onset(problem: Problem, causes: Sequence[Hypothesis], log_prior: float, part: Part, healthy: Posterior) -> Model:
+def with_onset(
+    problem: Problem, causes: Sequence[Hypothesis], log_prior: float, part: Part, healthy: Posterior, beside: Model | None = None
+) -> Model:
     """The model in which ``causes`` fitted to a part of the log are at work from its beginning on, and a healthy vehicle is before, on every window; from
-    where the linearisation is made it takes one more step, and gains nothing by that linearisation alone."""
+    where the linearisation is made it takes one more step, and gains nothing by that linearisation alone.
+
+    The windows before are the same of all causes that begin there. So these are compared with each other in the part, under the noise model of its own windows:
+    where a model of other causes is given that begin there (``beside``), the evidence over it is that in the part.
+    """
     switch, point, evidence = _best_switched(problem, part.fit, part.since, healthy)
     stepped = switch.stepped(problem, point).at(np.concatenate(_before(problem, part.since)))
     if stepped.cost() < point.cost():
         point, evidence = stepped, min(evidence, laplace_evidence(problem, stepped))
+    evidence -= onset_cost(problem)
+    if beside and beside.part:
+        evidence = beside.evidence + part.fit.evidence - beside.part.fit.evidence
     fit = replace(_on_every_window(problem, part.fit, part.since), posterior=point, evidence=evidence)
-    return Model(tuple(causes), fit, evidence - onset_cost(problem), log_prior, careful=True, part=part)
+    return Model(tuple(causes), fit, evidence, log_prior, careful=True, part=part)
 
 
 def evidence_with_onset(problem: Problem, fit: HypothesisFit, time: float, healthy: Posterior) -> float:
