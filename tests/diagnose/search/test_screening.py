@@ -44,7 +44,7 @@ def test_what_no_window_shows_promises_nothing_to_the_last_bit():
 def test_a_linearisation_serves_near_by_and_is_made_anew_far_away():
     """Beside a cause that is there the library promises the same by the linearisation moved there as by one made there, where the cause adds a steady force;
     where it changes how the thrusters answer, the moved one is refused."""
-    for planted, near in (("buoyancy_error:force=150", True), ("inflow_loss:loss=0.5", False)):
+    for planted, near in (("buoyancy_error:force=-150", True), ("inflow_loss:loss=0.5", False)):
         p, library = posed((planted,), seconds=100.0)
         at_first, cause = linearised(p, library, healthy_fit(p)), next(h for h in library if h.name == planted.partition(":")[0])
         point, others = map_fit(p, p.origin, cause.slots), [h for h in library if h is not cause]
