@@ -116,6 +116,22 @@ def bluerov2(folder: Path, name: str, seed: int, seconds: float, slop: float, *e
     return open_run(folder / name, "merlin")
 
 
+def turned(damping: float, answers: bool, seed: int = 4) -> Run:
+    """A BlueROV2 that gusts turn, and a pilot who wants now this, now that: its thrusters give ``damping`` (N m s) against the rate of a sample before, if it
+    ``answers``, or what it wants alone. A hull that nobody pushes turns after them."""
+    v, rng, n = vehicle.load("bluerov2_heavy"), np.random.default_rng(seed), 2400
+    wanted, gust = np.repeat(rng.normal(size=n // 40), 40), rng.normal(size=n)
+    moment, rate = np.zeros(n), np.zeros(n)
+    for k in range(1, n):
+        moment[k] = 0.7 * moment[k - 1] + 0.3 * wanted[k] - (damping * rate[k - 1] if answers else 0.0)
+        rate[k] = rate[k - 1] + 0.1 / 0.6 * (moment[k] + gust[k] - 0.5 * rate[k - 1])
+    thrust = moment[:, None] * (np.linalg.pinv(allocation(v)) @ np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0]))
+    speed = np.sign(thrust) * np.sqrt(np.abs(thrust) / np.where(thrust >= 0, [x.k_pos for x in v.thruster], [x.k_neg for x in v.thruster]))
+    values = {c: np.zeros(n) for c in ("u", "v", "w", "p", "q", "x", "y", "z", "phi", "theta")}
+    values |= {"psi": np.cumsum(rate) * 0.1, "r": rate} | {f"n:{x.name}": speed[:, i] / 60.0 for i, x in enumerate(v.thruster)}
+    return bare(values, v, f"turned {damping} {answers}")
+
+
 def with_values(run: Run, **values: Array) -> Run:
     """The run with other values of some channels."""
     return replace(run, values={**run.values, **values})

@@ -36,8 +36,8 @@ class Tolerance:
 
     ``sd`` is in the parameter's unit, a number or a function of (parameter as this vehicle has it, vehicle, axis or thruster). Of a ``calibrated``
     one it is per unit of the declared calibration tolerance (`--calibration-slop`, relative, 0.05 by default); of others, which are a matter of
-    mounting and sensors, it is as it stands. ``source`` says where it comes from. ``loop_gain``: under an autopilot that steadies the axis, or any
-    axis for a parameter that belongs to none, it widens by (1 + loop gain) to this power, since the motion shows that much less of the coefficient.
+    mounting and sensors, it is as it stands. ``source`` says where it comes from. ``loop_gain``: under an autopilot that steadies the axis, or roll
+    or pitch for a parameter that belongs to none, it widens by (1 + loop gain) to this power, since the motion shows that much less of the coefficient.
     """
 
     sd: float | Callable[[Parameter, Vehicle, str], float]
@@ -52,7 +52,7 @@ class Tolerance:
 
     def widened(self, sd: float, target: str, gain: Mapping[str, float]) -> float:
         """``sd`` under an autopilot with the loop ``gain`` of each axis that it steadies."""
-        own = gain.get(target, 0.0) if target else max(gain.values())
+        own = gain.get(target, 0.0) if target else max(gain["roll"], gain["pitch"])
         return sd * (1.0 + own) ** self.loop_gain if self.loop_gain else sd
 
 

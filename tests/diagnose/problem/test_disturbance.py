@@ -107,7 +107,6 @@ def pilot_in_gusts(tmp_path_factory) -> Run:
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(strict=True, reason="form error is held to be as large as tolerances make it, and generic forces go by the motion at a step's end")
 def test_a_pilots_answers_to_gusts_are_read_neither_as_damping_nor_as_added_mass(pilot_in_gusts: Run):
     """White noise that is held to be larger than it is, and a force that goes by a motion that it did not cause, make them out of the answers (direct
     identification in closed loop: Ljung 1999, section 13.4): a damping of twice the log Bayes factor 17, and three times the added mass in yaw at 14."""

@@ -6,12 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnose_case import posed, slot
+from diagnose_case import posed, slot, turned
 
 from rovval.diagnose.criteria import GENERIC_SIZES
 from rovval.diagnose.inference.map_fit import map_fit
 from rovval.diagnose.residuals.normal_equations import NormalEquations
-from rovval.diagnose.search.discrepancy import GenericForces, forces_beside
+from rovval.diagnose.search.discrepancy import GenericForces, expected_forces, forces_beside
+from rovval.diagnose.windows.multiple_shooting import cut
+from rovval.vehicle import load
 
 AXES = ("surge", "sway", "surge", "yaw", "roll", "heave")
 
@@ -81,6 +83,17 @@ def test_what_is_expected_is_worth_nothing_and_ten_times_as_much_is():
     assert replace(found, expected=expected + 0.9).sparse() == (-np.inf, ())
     worth, names = replace(found, expected=expected + 0.05).sparse()
     assert 6.0 < worth < found.sparse()[0] and set(names) == {("surge", "2"), ("yaw", "3")}
+
+
+@pytest.mark.parametrize("answers", [True, False])
+def test_a_damping_as_large_as_thrusters_answer_the_motion_with_is_expected(answers: bool):
+    """Of yaw, which a pilot steadies against gusts; none where it turns as it likes. What does not damp is never expected."""
+    problem, _ = posed()
+    runs, _ = cut([turned(2.0, answers)], load("bluerov2_heavy"), "fossen", 10.0)
+    names = (("yaw", "r"), ("yaw", "r|r|"), ("yaw", "constant"), ("yaw", "u"), ("roll", "p"))
+    found = expected_forces(replace(problem, runs=tuple(runs)), names)
+    assert (found[2:] == 0.0).all() and found[0] == found[1]
+    assert (found[0] > 0.3) if answers else (found[0] < 0.05)
 
 
 def test_nothing_at_work_is_worth_nothing():

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from diagnose_case import bare
+from diagnose_case import bare, turned
 
 from rovval import vehicle
 from rovval.core.data import Run
-from rovval.diagnose.windows.closed_loop import loop_gain, loop_gains, variance_factors
+from rovval.diagnose.windows.closed_loop import answered_forces, fast_damping, loop_gain, loop_gains, variance_factors
 from rovval.diagnose.windows.multiple_shooting import cut_run
 from rovval.vehicle.model import allocation
 
@@ -38,3 +38,15 @@ def test_the_gain_of_an_autopilot_is_read_off_the_thrusters(gain: float):
     found = variance_factors((part,), loop_gains((part,)))
     assert found[part.channels.index("phi")] == pytest.approx((1 + gain) ** 2, rel=0.1)
     assert (np.delete(found, [part.channels.index(c) for c in ("phi", "p")]) == 1.0).all()
+
+
+@pytest.mark.parametrize("damping", [0.5, 2.0])
+def test_what_thrusters_answer_within_a_sample_is_told_from_what_the_pilot_wants(damping: float):
+    v = vehicle.load("bluerov2_heavy")
+    part, other = (cut_run(turned(damping, answers), v, "fossen", 10.0) for answers in (True, False))
+    found = fast_damping(part)
+    assert found["yaw"] == pytest.approx(damping, rel=0.1)
+    assert {axis for axis, size in found.items() if size > 0.0} == {"yaw"}
+    assert fast_damping(other)["yaw"] < 0.1 * damping
+    assert answered_forces((part,))["yaw"] == pytest.approx(damping * np.sqrt(np.mean(part.run.get("r") ** 2)), rel=0.1)
+    assert loop_gains((part,))["yaw"] > 10.0 * loop_gains((other,))["yaw"]

@@ -2,8 +2,8 @@
 
 The white variance of a channel at a time in the window is that of sensor noise (from the log) and of model-form error (what a fit of the whole library
 leaves of the residuals); in the metric of the gap it is also that of tolerances and disturbances. Disturbances are estimated from what the library
-leaves; then the library is fitted again with them as nuisances, and so on (`NOISE_MODEL_ROUNDS`). In the fine metric both are as large as is most likely for
-what the library leaves, and nothing is allowed for form error.
+leaves; then the library is fitted again with them as nuisances, and so on (`NOISE_MODEL_ROUNDS`), the form error of each round weighed in the noise of
+the one before. In the fine metric both are as large as is most likely for what the library leaves, and nothing is allowed for form error.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ def fit_noise_model(
         left = [replace(one, r=np.where(windows.ok, one.r - one.S @ best, 0.0)) for windows, one in zip(runs, plain, strict=True)]
         disturbance = estimate_disturbance(runs, responses, left, white, design_effect, disturbance)
         disturbed, beside = _with_disturbances(runs, plain, disturbance.response)
-        white = sensor + _form_variance(disturbed, beside, expected, best)
+        white = sensor + _form_variance(disturbed, beside, white, best)
         design_effect, best = _library_fit(disturbed, beside, white * channel_factor, library, folds, design_effect)
     components: Components | None = None
     for _ in range(COMPONENT_ROUNDS):

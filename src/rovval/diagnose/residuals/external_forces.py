@@ -38,7 +38,7 @@ def damps(axis: str, feature: str) -> bool:
 def force_features(windows: Windows) -> dict[str, Array]:
     """What a generic force may depend on: series (run,) on the run's grid by name, each of unit rms, those left out that do not vary."""
     run = windows.run
-    got = {c: np.nan_to_num(run.get(c)) for c in ("u", "v", "w", "p", "q", "r", "z", "phi", "theta", "psi") if run.measured(c)}
+    got = {c: _before(np.nan_to_num(run.get(c))) for c in ("u", "v", "w", "p", "q", "r", "z", "phi", "theta", "psi") if run.measured(c)}
     found: dict[str, Array] = {"constant": np.ones(len(run))}
     for c in ("u", "v", "w", "p", "q", "r"):
         if c in got:
@@ -63,6 +63,11 @@ def force_features(windows: Windows) -> dict[str, Array]:
         found[f"thrust of {name}"], found[f"|thrust of {name}|"] = thrust[:, i], np.abs(thrust[:, i])
     scaled = {n: f / np.sqrt(np.mean(f**2)) for n, f in found.items() if np.mean(f**2) > 1e-12}
     return {n: f for n, f in scaled.items() if n == "constant" or np.std(f) > 1e-3}
+
+
+def _before(series: Array) -> Array:
+    """At each sample the one before: a force that goes by it is predetermined, and cannot go by what it makes itself (Ljung 1999, 13.4)."""
+    return np.concatenate([series[:1], series[:-1]])
 
 
 def force_sensitivities(windows: Windows, beta: Array, forces: Sequence[tuple[str, Array]]) -> Array:

@@ -27,6 +27,7 @@ from rovval.diagnose.residuals.external_forces import damps, generic_force_respo
 from rovval.diagnose.residuals.normal_equations import Linearisation, NormalEquations, normal_equations
 from rovval.diagnose.residuals.nuisances import nuisance_sd
 from rovval.diagnose.residuals.ridge import Prior, eliminated
+from rovval.diagnose.windows.closed_loop import answered_forces
 from rovval.simulation.fitted_tolerances import fitted_discrepancy, kind_of_force
 
 
@@ -40,7 +41,7 @@ class GenericForces:
         precision: (k,) of the priors of the fit's columns.
         pull: (k,) gradient that those priors add.
         tempering: what squared residuals are divided by (`problem.Problem.tempering`).
-        expected: (f,) standard deviations of the forces that a calibrated vehicle has anyway; 0 where nothing is known of them.
+        expected: (f,) standard deviations of the forces that are there anyway (`expected_forces`); 0 where nothing is known of them.
     """
 
     names: tuple[tuple[str, str], ...]
@@ -142,9 +143,13 @@ def nominal_forces(problem: Problem) -> GenericForces:
 
 
 def expected_forces(problem: Problem, names: Sequence[tuple[str, str]]) -> Array:
-    """Standard deviations (f,) of generic forces that the problem's vehicle has by its calibration, in the rms of the thrusters' own force on each axis."""
+    """Standard deviations (f,) of generic forces that are no evidence of something else, in the rms of the thrusters' own force on each axis: those that the
+    problem's vehicle has by its calibration, and a damping as large as the one by which thrusters answer the motion within a sample. What pushes the vehicle
+    is in the motion that they answer, and is read as a part of that damping (direct identification in closed loop; Ljung 1999, 13.4)."""
     known, wrench = fitted_discrepancy(problem.plant.vehicle), dict(zip(AXES, typical_wrench(problem.runs), strict=True))
-    return np.array([known.get(kind_of_force(axis, damps(axis, feature)), 0.0) / wrench[axis] for axis, feature in names])
+    answered = {axis: size / wrench[axis] for axis, size in answered_forces(problem.runs).items()}
+    by_name = [(axis, damps(axis, feature)) for axis, feature in names]
+    return np.array([np.hypot(known.get(kind_of_force(axis, own), 0.0) / wrench[axis], answered[axis] if own else 0.0) for axis, own in by_name])
 
 
 def beside(
