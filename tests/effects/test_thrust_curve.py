@@ -49,5 +49,5 @@ def test_a_published_thruster_is_nearer_to_it_than_to_the_square(volts: int):
 @pytest.mark.slow
 @pytest.mark.parametrize("power", [-0.1, 0.1])
 def test_a_healthy_vehicle_has_some_of_it(power: float):
-    """Twice the tolerance, as much as the table has; without the tolerance it is a loss of thrust at high speed, or a supply that gives way."""
+    """Twice the tolerance, as much as the table has."""
     assert not diagnose([own((f"thrust_curve:power={power}",), 3, 300.0)], merlin()).causes

@@ -187,8 +187,8 @@ def test_a_cause_from_some_moment_on_is_weighed_on_every_window(posed: tuple[Pro
 
 
 def test_causes_that_begin_together_are_compared_in_the_part_where_they_act(posed: tuple[Problem, Windows, list[Hypothesis], Posterior]) -> None:
-    """That something begins is judged on the whole log, which of two causes it is under the noise model of the windows from there on: with a noise model of all
-    windows the loss had been as good as one that comes near to it."""
+    """That something begins is judged on the whole log, which of two causes it is under the noise model of the windows from there on; that of
+    all windows has another opinion."""
     problem, windows, library, alone = posed
     there = pose((windows_from(windows, BEGINS),), columns_of(library), 0.05)
     one, other = (fit_hypothesis(there, there.origin, named(library, name).slots) for name in ("inflow_loss", "quadratic_drag[surge]"))

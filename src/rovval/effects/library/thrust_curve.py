@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from rovval.effects.arithmetic import Number
 from rovval.effects.effect import Effect, Parameter, Tolerance
 from rovval.effects.lanes import Array, Lanes, reference_speed
@@ -38,7 +40,7 @@ SHARED = True
 
 def rows(lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
     """The power, and the speed at which nothing changes, rev/s."""
-    return {"power": p["power"], "reference": 0.0 * p["power"] + reference_speed(lanes.vehicle)}
+    return {"power": p["power"], "reference": np.full_like(p["power"], reference_speed(lanes.vehicle))}
 
 
 def static(power: Number, reference: Number, T: Number, n: Number) -> Number:
