@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import log
+from math import inf, log
 
 from rovval.core.data import Array
 from rovval.diagnose.decision.verdict import Decision, decide
@@ -41,19 +41,24 @@ class Finding:
 
 
 def may_begin(whole: Finding, time: float) -> bool:
-    """Whether it is worth a search what may be at work from ``time`` (s) on alone: where the ``whole`` log has no answer, and where its most probable causes
-    have an onset of their own or may as well begin then (not negligible beside all through, `NEGLIGIBLE`); the windows before do not hold what else begins on a
-    healthy vehicle."""
-    problem, best, healthy = whole.problem, whole.selection.best, whole.selection.healthy
-    if best.fit is None or any(h.effect.begins for h in best.causes) or whole.decision.verdict == "unknown":
+    """Whether it is worth a search what may be at work from ``time`` (s) on alone: where the ``whole`` log has no answer, or one that needs further numbers of
+    the file to be off beside it, and where its most probable causes have an onset of their own or may as well begin then (not negligible beside all through,
+    `NEGLIGIBLE`); the windows before do not hold what else begins on a healthy vehicle."""
+    problem, best, healthy, decision = whole.problem, whole.selection.best, whole.selection.healthy, whole.decision
+    if best.fit is None or any(h.effect.begins for h in best.causes) or decision.verdict == "unknown":
+        return True
+    if decision.probabilities.off_beside(frozenset(h.name for h in decision.causes)):
         return True
     return evidence_with_onset(problem, best.fit, time, healthy) > best.evidence + 2.0 * log(NEGLIGIBLE)
 
 
 def began(late: Finding, whole: Finding, time: float) -> float:
-    """When (s) the likeliest causes in the part of the ``whole`` log from ``time`` on began; ``time`` where there are none."""
-    best = late.selection.best
-    return moved_onset(whole.problem, best.fit, time, whole.selection.healthy) if best.fit else time
+    """When (s) the likeliest causes in the part of the ``whole`` log from ``time`` on began; ``time`` where there are none, and where they began in the window
+    before: that holds them in part, and in a part of the log they would have to be at work all through."""
+    best, windows = late.selection.best, whole.problem.runs[0]
+    moved = moved_onset(whole.problem, best.fit, time, whole.selection.healthy) if best.fit else time
+    starts = windows.start * windows.run.dt
+    return time if moved == starts[starts < time].max(initial=-inf) else moved
 
 
 def weighed_with(late: Finding, whole: Finding, time: float) -> Finding:
