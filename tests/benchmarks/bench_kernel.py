@@ -36,7 +36,7 @@ FLAGS = "-O3 -march=native -ffp-contract=fast -fno-math-errno -fno-trapping-math
 LANES, STEPS = 2048, 500
 SHARE_OF_C, TIMES_MUJOCO, SHARE_NOMINAL, SHARE_FULL = 0.75, 250.0, 0.60, 0.25  # issue 3, part 4
 REFERENCE = 1769  # flop a nominal step: 792 additions and 975 multiplications, counted by a number type that counts (`peers.md`, part 2)
-SOME = ["inflow_loss:loss=0.3", "waves:amplitude=0.2", "thrust_lag:tau=0.2"]
+SOME = ["inflow_loss:loss=0.3", "waves:cosine=0.2", "thrust_lag:tau=0.2"]
 FLOP = """double peak(long n){double a[96];for(int i=0;i<96;i++)a[i]=1e-9*i;for(long j=0;j<n;j++)
 for(int i=0;i<96;i++)a[i]=a[i]*0.999999999+1e-12;double s=0;for(int i=0;i<96;i++)s+=a[i];return s;}"""
 

@@ -24,8 +24,8 @@ def test_a_parameter_that_makes_no_sense_is_refused(stated):
 
 
 def test_what_only_places_an_effect_is_no_departure():
-    roles = ("size", "amplitude", "lever", "onset", "period", "phase", "direction", "datum", "extent")
-    assert [parameter(role=role).places for role in roles] == [False] * 3 + [True] * 6
+    roles = ("size", "lever", "onset", "period", "direction", "datum", "extent")
+    assert [parameter(role=role).places for role in roles] == [False] * 2 + [True] * 5
     assert parameter(role="anchor", channel="x").places
 
 

@@ -18,7 +18,7 @@ def test_settings_are_refused_by_name_and_all_at_once():
     parts = ("no effect named 'inflow_los'", "thruster_degraded[HFP]", "inflow_loss has loss", "dvl_scale.scale = 9, allowed -0.7 to 1.2")
     for part in (*parts, "'x' is not a number"):
         assert part in message
-    assert parse_settings(plant, ["thruster_degraded[HFP]:loss=0.4", "waves:amplitude=0.2,period=5"])[plant.index["waves.period"]] == 5
+    assert parse_settings(plant, ["thruster_degraded[HFP]:loss=0.4", "waves:cosine=0.2,period=5"])[plant.index["waves.period"]] == 5
 
 
 def test_out_of_bounds_parameters_are_refused_by_name():

@@ -13,7 +13,7 @@ from rovval.plant.stepping import Stepper
 LANES: tuple[list[str], ...] = (
     [],
     ["thrust_lag:tau=0.3,dead=0.2", "current_constant:north=0.4"],
-    ["waves:amplitude=0.5", "seabed:firmness=1,depth=11"],
+    ["waves:cosine=0.5", "seabed:firmness=1,depth=11"],
     ["supply_droop:droop=0.5"],
 )
 

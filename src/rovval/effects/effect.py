@@ -16,7 +16,7 @@ from rovval.vehicle.model import Vehicle
 Place = Literal["vehicle", "input", "water", "wrench", "sensor"]
 Growth = Literal["", "weight", "length", "drag", "speed"]
 Role = Literal[
-    "size", "amplitude", "onset", "period", "further period", "phase", "direction", "datum", "level", "bottom", "extent", "anchor", "lever", "threshold"
+    "size", "onset", "period", "further period", "direction", "datum", "level", "bottom", "extent", "anchor", "lever", "threshold"
 ]  # fmt: skip
 Error = Literal["additive", "factor", "delay"]
 Stage = Literal["", "position", "mounting", "scale", "bias", "filter", "delay"]
@@ -27,7 +27,7 @@ GROWS = {  # what sized parameters go by
 }  # fmt: skip
 STAGES: tuple[str, ...] = get_args(Stage)
 FAMILIES: tuple[str, ...] = get_args(Family)[1:]
-SIZES = ("size", "amplitude", "lever", "threshold")  # roles of parameters that have a null value of their own; the others only place an effect
+SIZES = ("size", "lever", "threshold")  # roles of parameters that have a null value of their own; the others only place an effect
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,12 +68,11 @@ class Parameter:
     - ``target`` sets a parameter of an effect that is neither per axis nor per thruster apart, as a hypothesis of its own:
       ``time_offset[velocity]``, ``p["delay[velocity]"]``.
     - ``needs``: the channel without which it does nothing and is refused.
-    - ``role``: what it says of the effect. ``size``: how strong it is; ``amplitude``: the size of a swing, which below zero is the same swing half a
-      period later; ``onset``: when it begins (s since the run's start); ``period`` (s), ``phase`` (rad) and ``direction`` (rad from north) of a
-      swing, and ``further period`` (s) of another one that comes with it; ``datum``: the depth (m) at which what changes with depth is zero;
-      ``level``: a depth (m) from which another place is counted; ``bottom``: the depth (m) of the seabed; ``extent``: how far it reaches or how long
-      it takes; ``anchor``: a coordinate of a point that it is tied to; ``lever``: a coordinate, body axes, of the point where its force acts;
-      ``threshold``: the shaft speed below which it acts, for which the search begins at speeds that the log holds.
+    - ``role``: what it says of the effect. ``size``: how strong it is; ``onset``: when it begins (s since the run's start); ``period`` (s) and
+      ``direction`` (rad from north) of a swing, and ``further period`` (s) of another one that comes with it; ``datum``: the depth (m) at which what
+      changes with depth is zero; ``level``: a depth (m) from which another place is counted; ``bottom``: the depth (m) of the seabed; ``extent``: how
+      far it reaches or how long it takes; ``anchor``: a coordinate of a point that it is tied to; ``lever``: a coordinate, body axes, of the point
+      where its force acts; ``threshold``: the shaft speed below which it acts, for which the search begins at speeds that the log holds.
     - ``starts``: values from which the search begins, for what a linearisation at the null value cannot see.
     - ``instead_of``: the channel in whose place it stands: free only where a log does not hold that, and without the one or the other the effect is refused.
     - ``channel``: of an anchor, the channel that holds the vehicle's own coordinate; the search begins where the vehicle was.

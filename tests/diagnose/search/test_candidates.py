@@ -16,14 +16,15 @@ from rovval.diagnose.search.forward import search
 from rovval.diagnose.search.screening import linearised, screened
 
 
-@pytest.mark.parametrize(("before", "after"), [(0.0, np.pi), (np.pi / 2, -np.pi / 2)])
-def test_a_negative_amplitude_is_half_a_turn(before: float, after: float):
-    p, _ = posed()
-    amplitude, phase = slot(p, "waves.amplitude"), slot(p, "waves.phase")
-    h = displaced(p.plant, "waves@0", tuple(p.plant.hypotheses["waves"]), (amplitude,), ((phase, before),), 1000)
-    data = NormalEquations(np.zeros((1, 1, 1)), np.zeros((1, 1)), np.zeros(1), (1000,))
-    start = start_of(p, data, h, np.array([-0.7]), p.origin, h.slots)
-    assert start[phase] == pytest.approx(after) and start[amplitude] == pytest.approx(0.7)
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_fit_begins_at_the_linear_answer_within_bounds(sign: float):
+    p, _ = posed(seconds=60.0)
+    cosine, period = slot(p, "waves.cosine"), slot(p, "waves.period")
+    h = displaced(p.plant, "waves@0", tuple(p.plant.hypotheses["waves"]), (cosine,), ((period, 8.0),), 1000)
+    data, bound = NormalEquations(np.zeros((1, 1, 1)), np.zeros((1, 1)), np.zeros(1), (1000,)), p.plant.slots[cosine].parameter.high
+    for step, expected in ((0.7, 0.7), (2.0 * bound, bound)):
+        start = start_of(p, data, h, np.array([sign * step]), p.origin, h.slots)
+        assert start[period] == 8.0 and start[cosine] == pytest.approx(sign * expected)
 
 
 @pytest.mark.slow

@@ -21,7 +21,7 @@ from rovval.diagnose.search.model import Model, ModelPrior
 @pytest.mark.slow
 def test_a_second_cause_does_not_lead_the_first_away():
     """A step of all parameters at once takes the waves out of step, and a list beside them would seem to be worth nothing."""
-    document = diagnose([own(("waves:amplitude=1.2,period=6.2,direction=-2,phase=0.4", "cg_offset:x=-0.012"), 5, 240.0)], merlin()).document()
+    document = diagnose([own(("waves:cosine=1.11,sine=-0.47,period=6.2,direction=-2", "cg_offset:x=-0.012"), 5, 240.0)], merlin()).document()
     assert {c["effect"] for c in document["causes"]} == {"waves", "cg_offset"}, document["sentence"]
 
 

@@ -29,7 +29,7 @@ def share(spec: Spec) -> float:
     return vector / scalar
 
 
-@pytest.mark.parametrize("effect", [None, "waves:amplitude=0.2"], ids=["nominal", "every effect"])
+@pytest.mark.parametrize("effect", [None, "waves:cosine=0.2"], ids=["nominal", "every effect"])
 def test_the_kernel_is_vectorised(effect):
     plant = Plant(cases.merlin())
     cases.run(plant, beta=parse_settings(plant, [effect] if effect else []))

@@ -21,7 +21,6 @@ from rovval.diagnose.effort import (
     ONSET_STARTS,
     PERIOD_STARTS,
     SPEED_QUANTILES,
-    TRAIN_START,
     WHOLE_STARTS,
 )
 from rovval.diagnose.hypotheses.hypothesis import START_SCALE, Hypothesis, columns_of, displaced, from_nothing
@@ -85,23 +84,27 @@ def initial_points(target: Target, windows: Sequence[Windows], hints: Hints, nex
     points = [dict(zip(grids, point, strict=True)) for point in product(*grids.values())]
     most = WHOLE_STARTS if free == (START_SCALE,) else MOST_STARTS
     chosen = points if len(points) <= most else [points[i] for i in np.linspace(0, len(points) - 1, most).astype(int)]
-    return [h for i, point in enumerate(chosen) for h in _begun(target, f"{name}@{i}", free, placed | point, hints, next_id + i * len(free))]
+    found = list[Hypothesis]()
+    for i, point in enumerate(chosen):
+        found += _begun(target, f"{name}@{i}", free, placed | point, hints, next_id + len(columns_of(found).displaced))
+    return found
 
 
 def _begun(target: Target, label: str, free: tuple[int, ...], at: Mapping[int, float], hints: Hints, next_id: int) -> list[Hypothesis]:
     """The hypothesis that begins ``at`` some point. Waves begin at the period of those that run in its direction, since a vehicle under way sees them at
-    their period of encounter, which is another; and a second time with their further periods, in the same columns, where there are any: each with some
-    size (`TRAIN_START`), since a train of none has no period that a fit could hold."""
+    their period of encounter, which is another; and a second time with as many further trains as there are further periods, their sizes free as well."""
     by_role = {target.parameter(s).role: s for s in target.slots}
     trains = [s for s in target.slots if target.parameter(s).role == "further period"]
     lines = hints.periods.get(at.get(by_role.get("direction", -1)), ()) if {"period", "direction"} <= set(by_role) else ()
     first = {**at, **({by_role["period"]: lines[0]} if lines else {})}
     alone = tuple(s for s in target.slots if not trains or target.parameter(s).name not in target.effect.refines)
     found = [displaced(target.plant, label, alone, free, tuple(first.items()), next_id)]
-    if trains and len(lines) > len(trains):
-        sizes = {s: TRAIN_START * target.parameter(s).typical for s in target.slots if s not in alone and s not in trains}
-        further = (*found[0].at, *sizes.items(), *zip(trains, lines[1:], strict=False))
-        found.append(replace(found[0], label=f"{label} further", slots=target.slots, at=further))
+    if further := dict(zip(trains, lines[1:], strict=False)):
+        refined = [s for s in target.slots if s not in alone]  # train by train
+        used = refined[: len(refined) // len(trains) * len(further)]
+        sizes = (*free, *(s for s in used if s not in trains))
+        beside = displaced(target.plant, label, (*alone, *used), sizes, (*first.items(), *further.items()), next_id + len(free))
+        found.append(replace(beside, label=f"{label} further"))
     return found
 
 
@@ -191,5 +194,6 @@ def _grids(target: Target, windows: Sequence[Windows], hints: Hints) -> dict[int
             found[slot] = tuple(v for v in parameter.starts if parameter.low <= v <= parameter.high)
             if parameter.role == "period" and (here := [p for p in periods if parameter.low <= p <= parameter.high]):
                 others = int(np.prod([len(p.starts) for p in target.effect.parameters if p.starts and p.role != "period"]))
-                found[slot] = tuple(here[: min(PERIOD_STARTS, max(MOST_STARTS // others, 1))])
+                most = 1 if target.effect.has("direction") else min(PERIOD_STARTS, max(MOST_STARTS // others, 1))  # waves have one for each direction
+                found[slot] = tuple(here[:most])
     return {slot: values for slot, values in found.items() if values}

@@ -97,7 +97,8 @@ def _periods(problem: Problem, names: set[str], healthy: Posterior) -> dict[floa
     encounter = [period for period, _ in spectral_lines(problem, healthy)]
     periods: dict[float | None, Sequence[float]] = {None: encounter}
     for slot in problem.plant.slots:
-        p, towards = slot.parameter, [d for p in effects.load(slot.effect).parameters if p.role == "direction" for d in p.starts]
+        p, effect = slot.parameter, effects.load(slot.effect)
+        towards, trains = [d for p in effect.parameters if p.role == "direction" for d in p.starts], 1 + len(effect.names_of("further period"))
         if p.role == "period" and towards and slot.hypothesis in names:
-            periods |= wave_periods(problem, healthy, encounter, (p.low, p.high), towards)
+            periods |= wave_periods(problem, healthy, encounter, (p.low, p.high), towards, trains)
     return periods

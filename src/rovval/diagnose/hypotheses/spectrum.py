@@ -9,14 +9,14 @@ deep water, k = omega^2 / g (Faltinsen 1990, table 2.1).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from rovval.core.data import Array, Flags
-from rovval.diagnose.criteria import SHORTEST_PERIOD_S
-from rovval.diagnose.effort import WAVE_DOPPLER, WAVE_LINES, WAVE_TRAINS
+from rovval.diagnose.criteria import MATERIAL, SHORTEST_PERIOD_S
+from rovval.diagnose.effort import WAVE_DOPPLER
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.normal_equations import Linearisation
@@ -88,7 +88,7 @@ def oscillation(problem: Problem, point: Posterior) -> Oscillation | None:
 
 
 def wave_periods(
-    problem: Problem, point: Posterior, encounter: Sequence[float], bounds: tuple[float, float], directions: Iterable[float]
+    problem: Problem, point: Posterior, encounter: Sequence[float], bounds: tuple[float, float], directions: Iterable[float], most: int
 ) -> dict[float | None, Sequence[float]]:
     """Periods of the waves that explain most of the residual at ``point``, by the direction towards which they run.
 
@@ -96,12 +96,14 @@ def wave_periods(
         encounter: periods of encounter (s), at which the moving vehicle saw them, the strongest first; theirs are looked for close by.
         bounds: shortest and longest period (s).
         directions: tried, in rad from north.
+        most: trains of waves in one direction.
 
     Returns:
-        Periods (s) for each direction, the strongest first, `WAVE_TRAINS` at most; nothing where a log does not say where the vehicle was.
+        Periods (s) for each direction, the strongest first, as many as explain a `MATERIAL` share of what those before them leave; nothing where a log does
+        not say where the vehicle was.
     """
     runs, placed = _velocities(problem, point), all(part.run.measured(c) for part in problem.runs for c in ("x", "y", "z"))
-    seen = [period for period in encounter if bounds[0] <= period <= bounds[1]][:WAVE_LINES]
+    seen = [period for period in encounter if bounds[0] <= period <= bounds[1]][:most]
     if not runs or not placed or not seen:
         return {}
     step, gravity = 1.0 / (PER_TURN * _duration(runs)), problem.plant.vehicle.water.gravity
@@ -110,18 +112,30 @@ def wave_periods(
     found = dict[float | None, Sequence[float]]()
     for direction in directions:
         ahead = np.array([np.cos(direction), np.sin(direction)])
-        share = [_share(runs, 2.0 * np.pi * rate, ahead * (2.0 * np.pi * rate) ** 2 / gravity) for rate in rates]
-        found[direction] = tuple(1.0 / rate for rate in _apart(rates, np.array(share), 1.5 * PER_TURN * step))
+        waves = {float(rate): ahead * (2.0 * np.pi * rate) ** 2 / gravity for rate in rates}
+        found[direction] = tuple(1.0 / rate for rate in _lines(runs, waves, 1.5 * PER_TURN * step, most))
     return found
 
 
-def _apart(rates: Array, share: Array, distance: float) -> list[float]:
-    """The rates of the largest local maxima of the share, `WAVE_TRAINS` at most, no nearer to one another than ``distance``: one line is no wider."""
-    chosen, tops = list[float](), np.flatnonzero((share >= np.roll(share, 1)) & (share >= np.roll(share, -1)))
-    for i in tops[np.argsort(-share[tops])]:
-        if len(chosen) < WAVE_TRAINS and all(abs(float(rates[i]) - other) > distance for other in chosen):
-            chosen.append(float(rates[i]))
-    return chosen
+def _lines(runs: Sequence[_Velocities], waves: Mapping[float, Array], distance: float, most: int) -> list[float]:
+    """The frequencies (Hz), ``most`` at most, of the waves (given with their wave vectors) that explain most of the residual velocities together. Of the local
+    maxima the one that explains most beside those before it is next (orthogonal matching pursuit: Pati et al. 1993), since a strong line has side lobes in
+    a log of finite length. None is nearer to another than ``distance`` (Hz): one line is no wider."""
+    rates, share = list(waves), np.array([_share(runs, 2.0 * np.pi * rate, wave) for rate, wave in waves.items()])
+    tops = np.flatnonzero((share >= np.roll(share, 1)) & (share >= np.roll(share, -1)))
+    some = [rates[i] for i in tops[np.argsort(-share[tops])][: 2 * most]]
+    X = np.concatenate([_answers(runs, 2.0 * np.pi * rate, waves[rate]) for rate in some], axis=1)
+    y = _residual(runs)
+    gram, cross, whole = X.T @ X, X.T @ y, float((y**2).sum())
+    chosen, explained = list[int](), 0.0
+    while len(chosen) < most:
+        open_now = [i for i in range(len(some)) if all(abs(some[i] - some[j]) > distance for j in chosen)]
+        more = {i: _explained(gram, cross, [*chosen, i]) for i in open_now}
+        best = max(more, key=lambda i: more[i], default=None)
+        if best is None or (chosen and more[best] - explained < MATERIAL * (whole - explained)):
+            break
+        chosen, explained = [*chosen, best], more[best]
+    return [some[i] for i in chosen]
 
 
 def _velocities(problem: Problem, point: Posterior) -> list[_Velocities]:
@@ -158,9 +172,26 @@ def _periodogram(runs: Sequence[_Velocities], rates: Array) -> Array:
 
 
 def _share(runs: Sequence[_Velocities], omega: float, wave: Array | None = None) -> float:
-    """Share of the squared residual velocities that a force of angular frequency ``omega`` (rad/s) explains; of waves, with their wave vector (2,) (1/m):
-    their phase is taken, and their amplitude decays with depth, where the vehicle was."""
-    gram, cross, total = np.zeros((2, 2)), np.zeros((2, 3)), 0.0
+    """Share of the squared residual velocities that a force of angular frequency ``omega`` (rad/s) explains; of waves, with their wave vector (2,) (1/m)."""
+    x, y = _answers(runs, omega, wave), _residual(runs)
+    return _explained(x.T @ x, x.T @ y, [0]) / max(float((y**2).sum()), 1e-300)
+
+
+def _explained(gram: Array, cross: Array, lines: Sequence[int]) -> float:
+    """Squared residual velocities that lines explain together, of whose answers, two columns each, ``gram`` and ``cross`` are the products."""
+    at = np.array([2 * i + part for i in lines for part in (0, 1)])
+    return float((cross[at] * np.linalg.solve(gram[np.ix_(at, at)] + 1e-12 * np.eye(len(at)), cross[at])).sum())
+
+
+def _residual(runs: Sequence[_Velocities]) -> Array:
+    """Residual velocities (samples, 3) of all runs."""
+    return np.concatenate([one.residual.reshape(-1, 3) for one in runs])
+
+
+def _answers(runs: Sequence[_Velocities], omega: float, wave: Array | None = None) -> Array:
+    """Velocity (samples, 2) of a body of one time constant by a force of angular frequency ``omega`` (rad/s), in phase with it and a quarter behind; of waves,
+    with their wave vector (2,) (1/m): their phase is taken, and their amplitude decays with depth, where the vehicle was."""
+    found = list[Array]()
     for one in runs:
         phase, size = omega * one.t, np.ones_like(one.t)
         if wave is not None:
@@ -168,7 +199,5 @@ def _share(runs: Sequence[_Velocities], omega: float, wave: Array | None = None)
         carrier = size * np.exp(1j * phase)
         begun = carrier[:, :1] * np.exp(-(one.t - one.t[:, :1]) / TIME_CONSTANT_S)
         answer = (carrier - begun) / (1.0 / TIME_CONSTANT_S + 1j * omega)
-        x = _start_eliminated(one.t, one.ok, np.stack([answer.real, answer.imag], axis=-1)).reshape(-1, 2)
-        y = one.residual.reshape(-1, 3)
-        gram, cross, total = gram + x.T @ x, cross + x.T @ y, total + float((y**2).sum())
-    return float((cross * np.linalg.solve(gram + 1e-12 * np.eye(2), cross)).sum()) / max(total, 1e-300)
+        found.append(_start_eliminated(one.t, one.ok, np.stack([answer.real, answer.imag], axis=-1)).reshape(-1, 2))
+    return np.concatenate(found)

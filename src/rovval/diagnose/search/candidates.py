@@ -210,16 +210,5 @@ def start_of(problem: Problem, data: NormalEquations, h: Hypothesis, steps: Arra
         slot = moved.get(column, column)
         if move and 0 <= slot < len(start) and slot not in still and (column in moved or slot not in begins):
             parameter = problem.plant.slots[slot].parameter
-            if parameter.role == "amplitude" and start[slot] + move < parameter.low:
-                start, move = _half_a_turn_later(problem, h, start), -move
             start[slot] = parameter.within(start[slot] + move)
-    return start
-
-
-def _half_a_turn_later(problem: Problem, h: Hypothesis, start: Array) -> Array:
-    """The start with the phase of an oscillation turned over: the same as a negative amplitude, which has no meaning."""
-    start = start.copy()
-    for slot in h.slots:
-        if problem.plant.slots[slot].parameter.role == "phase":
-            start[slot] = start[slot] - np.pi if start[slot] > 0 else start[slot] + np.pi
     return start

@@ -39,7 +39,7 @@ EFFECT = Effect(
         Parameter("x", "m", -3.0, 3.0, 0.0, 0.5, LEVER, role="lever"),
         Parameter("y", "m", -3.0, 3.0, 0.0, 0.5, LEVER, role="lever"),
         Parameter("z", "m", -3.0, 3.0, 0.0, 0.5, LEVER, role="lever"),
-        Parameter("swing", "m", -2.0, 2.0, 0.0, 0.3, LEVER, role="amplitude"),
+        Parameter("swing", "m", -2.0, 2.0, 0.0, 0.3, LEVER),
         Parameter("period", "s", 2.0, 600.0, 20.0, 10.0, "a slow arm (chosen)", role="period"),
     ),
     signature="pitch and heave that follow the arm, and drag on a lever",
