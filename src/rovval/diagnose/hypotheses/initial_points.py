@@ -103,8 +103,7 @@ def _begun(target: Target, label: str, free: tuple[int, ...], at: Mapping[int, f
         refined = [s for s in target.slots if s not in alone]  # train by train
         used = refined[: len(refined) // len(trains) * len(further)]
         sizes = (*free, *(s for s in used if s not in trains))
-        beside = displaced(target.plant, label, (*alone, *used), sizes, (*first.items(), *further.items()), next_id + len(free))
-        found.append(replace(beside, label=f"{label} further"))
+        found.append(displaced(target.plant, f"{label} further", (*alone, *used), sizes, (*first.items(), *further.items()), next_id + len(free)))
     return found
 
 

@@ -121,11 +121,11 @@ def _lines(runs: Sequence[_Velocities], waves: Mapping[float, Array], distance: 
     """The frequencies (Hz), ``most`` at most, of the waves (given with their wave vectors) that explain most of the residual velocities together. Of the local
     maxima the one that explains most beside those before it is next (orthogonal matching pursuit: Pati et al. 1993), since a strong line has side lobes in
     a log of finite length. None is nearer to another than ``distance`` (Hz): one line is no wider."""
-    rates, share = list(waves), np.array([_share(runs, 2.0 * np.pi * rate, wave) for rate, wave in waves.items()])
+    y, rates = _residual(runs), list(waves)
+    share = np.array([_share(y, _answers(runs, 2.0 * np.pi * rate, wave)) for rate, wave in waves.items()])
     tops = np.flatnonzero((share >= np.roll(share, 1)) & (share >= np.roll(share, -1)))
     some = [rates[i] for i in tops[np.argsort(-share[tops])][: 2 * most]]
     X = np.concatenate([_answers(runs, 2.0 * np.pi * rate, waves[rate]) for rate in some], axis=1)
-    y = _residual(runs)
     gram, cross, whole = X.T @ X, X.T @ y, float((y**2).sum())
     chosen, explained = list[int](), 0.0
     while len(chosen) < most:
@@ -168,13 +168,13 @@ def _start_eliminated(t: Array, ok: Flags, x: Array) -> Array:
 
 def _periodogram(runs: Sequence[_Velocities], rates: Array) -> Array:
     """Share of the squared residual velocities that a force of each of the frequencies ``rates`` (f,) Hz explains (f,)."""
-    return np.array([_share(runs, 2.0 * np.pi * rate) for rate in rates])
+    y = _residual(runs)
+    return np.array([_share(y, _answers(runs, 2.0 * np.pi * rate)) for rate in rates])
 
 
-def _share(runs: Sequence[_Velocities], omega: float, wave: Array | None = None) -> float:
-    """Share of the squared residual velocities that a force of angular frequency ``omega`` (rad/s) explains; of waves, with their wave vector (2,) (1/m)."""
-    x, y = _answers(runs, omega, wave), _residual(runs)
-    return _explained(x.T @ x, x.T @ y, [0]) / max(float((y**2).sum()), 1e-300)
+def _share(residual: Array, answer: Array) -> float:
+    """Share of squared ``residual`` velocities (samples, 3) that a force with this ``answer`` (samples, 2) explains."""
+    return _explained(answer.T @ answer, answer.T @ residual, [0]) / max(float((residual**2).sum()), 1e-300)
 
 
 def _explained(gram: Array, cross: Array, lines: Sequence[int]) -> float:

@@ -6,7 +6,8 @@ Residuals of roll and pitch are larger by as much, without any fault of the mode
 
 Where thrusters answer a velocity within a sample, what pushes the vehicle is in the velocity that they answer, and part of their damping is read as the
 hull's, or as a force that goes with the motion. In the median of 16 logs of a BlueROV2 under plant b's pilots a half of the thrusters' moment in roll is
-such an answer, and four tenths in pitch; of 12 logs of a Merlin, under the pilots of both plants, next to nothing is.
+such an answer by the estimate itself, of which less is used (the lower end of its interval), and four tenths in pitch; of 12 logs of a Merlin, under the
+pilots of both plants, next to nothing is.
 """
 
 from __future__ import annotations
