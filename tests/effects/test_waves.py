@@ -40,7 +40,11 @@ def rows(**values: float) -> dict[str, Array]:
 def water(of: dict[str, Array], at: Array, velocity: Array) -> Array:
     """(9,) velocity of the water at a place and time (4,), its change along a path of a ``velocity`` (3,), and at a fixed point."""
     (x, y, z, t), (vn, ve, vd) = at, velocity
-    found: Array = np.concatenate([np.ravel(value) for value in waves.water(**of, x=x, y=y, z=np.array([z]), t=t, vn=vn, ve=ve, vd=vd)])
+    found = np.zeros(9)
+    for train in waves.COMPONENTS:
+        own = {row: of[row + train] for row in ("a", "b", "omega", "k")}
+        one = waves.water(of["north"], of["east"], **own, x=x, y=y, z=np.array([z]), t=t, vn=vn, ve=ve, vd=vd)
+        found += np.concatenate([np.ravel(value) for value in one])
     return found
 
 

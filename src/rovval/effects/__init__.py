@@ -9,6 +9,8 @@ thruster; every one changes nothing at the null value, to the last bit):
   for functions of a thruster unless the file says ``SHARED = True``
 - ``water(...)``                         north-east-down velocity of the water, its change along the path and at a fixed point (9)
 - ``wrench(...)``                        body force and moment, N and N m (6)
+  of which the water's and the body's may be sums over ``COMPONENTS``, endings of names (a sea's trains, ``""`` the first): the function is of one, its
+  parameters and rows are those of that ending, or those that all share; a component at its null value costs nothing
 - ``speed(...)``, ``acting(...)``        thruster speed rev/s, before and after the lag
 - ``static(...)``, ``thrust(...)``       thrust N, at rest in the water and under way
 - ``observe(motion, p)``, ``unobserve(nu, eta, p)``   the log as a sensor writes it, and the truth back out of it

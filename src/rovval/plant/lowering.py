@@ -14,7 +14,7 @@ from rovval.core.frames import skew
 from rovval.effects.lanes import Lanes
 from rovval.plant import slots
 from rovval.plant.codegen.layout import SYMMETRIC, layout
-from rovval.plant.codegen.spec import HOOKS, Spec, effect_rows, switches
+from rovval.plant.codegen.spec import HOOKS, Spec, component_of, effect_rows, switches
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -91,12 +91,13 @@ def _beyond_numbers() -> frozenset[str]:
 
 
 def _acts(found: tuple[slots.Slot, ...], null: Array, beta: Array) -> Flags:
-    """Which of the effects that a kernel can pass over each lane has (B, E)."""
+    """Which of the effects and components that a kernel can pass over each lane has (B, E)."""
     away, names = beta != null, switches()
     out = np.zeros((len(beta), len(names)), dtype=bool)
     for c in np.flatnonzero(away.any(axis=0)):
-        if found[c].effect in names:
-            out[:, names[found[c].effect]] |= away[:, c]
+        name = found[c].effect + component_of(found[c].effect, found[c].parameter.name)
+        if name in names:
+            out[:, names[name]] |= away[:, c]
     return out
 
 

@@ -5,13 +5,16 @@ from __future__ import annotations
 import ast
 import itertools
 
+import plant_cases as cases
 import pytest
 
+from rovval.plant import Plant, parse_settings
 from rovval.plant.codegen.kernel import symbols
 from rovval.plant.codegen.layout import constants, layout
-from rovval.plant.codegen.spec import BODY_NAMES, PER_THRUSTER, THRUSTER_NAMES, Spec, effect_rows, hooks
+from rovval.plant.codegen.spec import BODY_NAMES, PER_THRUSTER, THRUSTER_NAMES, Spec, effect_rows, hooks, switches
 from rovval.plant.codegen.specialise import Insertion, Specialiser
 from rovval.plant.codegen.text import render
+from rovval.plant.lowering import lower
 
 SPECS = [Spec(k, *choice) for k, choice in itertools.product((1, 7), itertools.product((False, True), repeat=3))]
 INSERTED = {name for name in vars(symbols) if name.isupper() or callable(getattr(symbols, name))}
@@ -47,10 +50,10 @@ def test_every_constant_of_the_kernel_has_a_number():
 
 def test_a_nominal_kernel_holds_no_effect_and_a_full_one_all():
     nominal, full = (render(Spec(7, False, False, full)) for full in (False, True))
-    assert not any(f"{h.effect}_{h.kind}_" in nominal for h in hooks(True))
+    assert not any(f"{h.name}_{h.kind}_" in nominal for h in hooks(True))
     assert "acts[" not in nominal
     with_locals = [h for h in hooks(True) if h.function.__code__.co_nlocals > len(h.arguments)]
-    assert with_locals and all(f"{h.effect}_{h.kind}_" in full for h in with_locals)
+    assert with_locals and all(f"{h.name}_{h.kind}_" in full for h in with_locals)
 
 
 def test_what_effects_ask_for_is_offered_by_name():
@@ -96,3 +99,10 @@ def test_what_is_known_is_put_in(source, result):
 def test_a_local_that_would_change_a_variable_of_the_caller_is_refused():
     with pytest.raises(ValueError, match="main: a are names of a function that is written into it"):
         specialised("def main(x):\n    a = 1\n    y = f(x)\n    return a + y\ndef f(x):\n    a = 2 * x\n    return a + 1")
+
+
+@pytest.mark.parametrize(("setting", "wanted"), [("waves:cosine=0.5,direction=1", ["waves"]), ("waves:sine=0.5,cosine_3=0.2,period_3=9", ["waves", "waves_3"])])
+def test_a_lane_has_the_components_that_it_gives_sizes_to(setting: str, wanted: list[str]):
+    plant = Plant(cases.merlin())
+    found = lower(plant.nominal, plant.slots, plant.index, plant.null, parse_settings(plant, [setting])[None])
+    assert [name for name, column in switches().items() if found.acts[0, column]] == wanted

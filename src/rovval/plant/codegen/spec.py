@@ -30,12 +30,24 @@ THRUSTER_NAMES = ("n", "T", "ua", "cross", *LOG)
 
 @dataclass(frozen=True, slots=True)
 class Hook:
-    """One function of the state: its effect, its kind (of `HOOKS`), the function, the names of its arguments."""
+    """One function of the state: its effect, its kind (of `HOOKS`), the function, the names of its arguments; of an effect that is a sum, one such for each
+    ``component``."""
 
     effect: str
     kind: str
     function: Callable[..., Any]
     arguments: tuple[str, ...]
+    component: str = ""
+
+    @property
+    def name(self) -> str:
+        """Name of the effect, or of its component."""
+        return self.effect + self.component
+
+    def row(self, argument: str) -> str:
+        """Row of the effect's own that stands for an argument: the component's, or what all components share."""
+        own = argument + self.component
+        return own if own in effect_rows(self.effect)[0] else argument
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,14 +88,26 @@ def hooks(full: bool) -> tuple[Hook, ...]:
         module = effects.module(name)
         for kind in HOOKS:
             if function := getattr(module, kind, None):
-                found.append(Hook(name, kind, function, tuple(inspect.signature(function).parameters)))
+                arguments = tuple(inspect.signature(function).parameters)
+                found += [Hook(name, kind, function, arguments, of) for of in components(name)]
     return tuple(found)
 
 
 @cache
 def switches() -> Mapping[str, int]:
-    """Effects that a block can go without, and the column of each in the kernel's argument ``acts``."""
-    return MappingProxyType({name: i for i, name in enumerate(dict.fromkeys(h.effect for h in hooks(True) if h.kind in SWITCHED))})
+    """Effects, and components of effects, that a block can go without, and the column of each in the kernel's argument ``acts``."""
+    return MappingProxyType({name: i for i, name in enumerate(dict.fromkeys(h.name for h in hooks(True) if h.kind in SWITCHED))})
+
+
+def components(effect: str) -> tuple[str, ...]:
+    """Endings of the names of what an effect is the sum of; one empty ending where it is no sum."""
+    return tuple(getattr(effects.module(effect), "COMPONENTS", ("",)))
+
+
+@cache
+def component_of(effect: str, parameter: str) -> str:
+    """Component of an effect to which a parameter belongs; one that all share goes with the first."""
+    return next((of for of in components(effect)[1:] if parameter.endswith(of)), components(effect)[0])
 
 
 @cache

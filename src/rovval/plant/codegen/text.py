@@ -76,7 +76,7 @@ def _spread(call: ast.Call) -> Inserted:
 
 def _effects_of(spec: Spec, call: ast.Call) -> Inserted:
     kind = ast.literal_eval(call.args[0])
-    return [], ast.Tuple([ast.Constant(h.effect) for h in hooks(spec.full) if h.kind == kind], ast.Load())
+    return [], ast.Tuple([ast.Constant(h.name) for h in hooks(spec.full) if h.kind == kind], ast.Load())
 
 
 def _at_work(call: ast.Call) -> Inserted:
@@ -87,7 +87,7 @@ def _at_work(call: ast.Call) -> Inserted:
 def _any_at_work(call: ast.Call) -> Inserted:
     acts, b = (ast.unparse(a) for a in call.args[:2])
     kinds, asks = [ast.literal_eval(a) for a in call.args[2:]], "".join(ast.literal_eval(k.value) for k in call.keywords)
-    found = dict.fromkeys(h.effect for h in hooks(True) if h.kind in kinds and (not asks or asks in h.arguments))
+    found = dict.fromkeys(h.name for h in hooks(True) if h.kind in kinds and (not asks or asks in h.arguments))
     return [], _parsed(" or ".join(f"{acts}[{b}, {switches()[name]}]" for name in found) or "False")
 
 
@@ -108,7 +108,7 @@ def _in_turn(spec: Spec, call: ast.Call) -> Inserted:
 def _effect_value(spec: Spec, call: ast.Call) -> Inserted:
     kind, effect = (ast.literal_eval(a) for a in call.args[:2])
     given = {k.arg or "": k.value for k in call.keywords}
-    (hook,) = (h for h in hooks(spec.full) if (h.kind, h.effect) == (kind, effect))
+    (hook,) = (h for h in hooks(spec.full) if (h.kind, h.name) == (kind, effect))
     before, values = _value(spec, hook, given, None, call.args[3])
     return before, ast.Tuple(values, ast.Load())
 
@@ -117,13 +117,13 @@ def _value(
     spec: Spec, hook: Hook, given: dict[str, ast.expr], log: ast.expr | None, j: ast.expr, i: ast.expr | None = None
 ) -> tuple[list[ast.stmt], list[ast.expr]]:
     """One effect's function in lane ``j``, of thruster ``i``: its statements, and what it returns."""
-    known = {row: _parsed(_row(spec, f"{hook.effect}.{row}", ast.unparse(j), i)) for row in effect_rows(hook.effect)[0]} | given
+    known = {row: _parsed(_row(spec, f"{hook.effect}.{hook.row(row)}", ast.unparse(j), i)) for row in effect_rows(hook.effect)[0]} | given
     if log is not None or hook.kind in OF_STATE:
         where, first = (ast.unparse(log), 0) if log is not None else ("m", constants(spec)["LOGGED"])
         known |= {name: _parsed(f"{where}[{(first + c) * constants(spec)['W']} + {ast.unparse(j)}]") for c, name in enumerate(LOG)}
     if unknown := [a for a in hook.arguments if a not in known]:
         raise ValueError(f"effects/{hook.effect}.py: {hook.kind}() asks for {', '.join(unknown)}, known there: {', '.join(known)}")
-    return inlined(hook.function, f"{hook.effect}_{hook.kind}", {a: known[a] for a in hook.arguments})
+    return inlined(hook.function, f"{hook.name}_{hook.kind}", {a: known[a] for a in hook.arguments})
 
 
 def _row(spec: Spec, key: str, j: str, i: ast.expr | None) -> str:

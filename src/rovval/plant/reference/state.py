@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -10,10 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rovval import effects
 from rovval.effects.lanes import Lanes
 from rovval.plant import geometry
-from rovval.plant.codegen.spec import PER_THRUSTER
+from rovval.plant.codegen.spec import PER_THRUSTER, Hook, hooks
 from rovval.plant.inputs import Inputs, Prepared
 from rovval.plant.lowering import Lowered
 from rovval.plant.model import Plant
@@ -45,29 +43,28 @@ class Run:
         self.jets, self.side = geometry.jets(vehicle), geometry.hull_side(vehicle)
 
 
-def _call(run: Run, name: str, kind: str, names: Mapping[str, Any]) -> Any:
+def _call(run: Run, hook: Hook, names: Mapping[str, Any]) -> Any:
     """One effect's function of the state with its own rows and whatever else it asks for by name."""
-    function = getattr(effects.module(name), kind)
-    own = {row.partition(".")[2]: value for row, value in run.lowered.rows.items() if row.startswith(name + ".")}
-    if kind in PER_THRUSTER:
+    own = {row.partition(".")[2]: value for row, value in run.lowered.rows.items() if row.startswith(hook.effect + ".")}
+    if hook.kind in PER_THRUSTER:
         own = {row: value[:, None] if value.ndim == 1 else value for row, value in own.items()}
-    return function(**{a: own[a] if a in own else names[a] for a in inspect.signature(function).parameters})
+    return hook.function(**{a: own[hook.row(a)] if a in own else names[a] for a in hook.arguments})
 
 
 def chain(run: Run, kind: str, value: Array, names: Mapping[str, Array]) -> Array:
     """Speed or thrust (B, k) handed from one effect to the next."""
     spread = {n: v[:, None] if v.ndim == 1 else v for n, v in names.items()}
-    for name in effects.names():
-        if hasattr(effects.module(name), kind):
-            value = _call(run, name, kind, {**spread, "n" if kind in ("speed", "acting") else "T": value})
+    for hook in hooks(True):
+        if hook.kind == kind:
+            value = _call(run, hook, {**spread, "n" if kind in ("speed", "acting") else "T": value})
     return value
 
 
 def total(run: Run, kind: str, names: Mapping[str, Array], size: int) -> Array:
     """Sum (B, size) of what every effect of a kind returns."""
     out = np.zeros((len(run.start), size))
-    for name in effects.names():
-        if hasattr(effects.module(name), kind):
-            parts = _call(run, name, kind, names)
+    for hook in hooks(True):
+        if hook.kind == kind:
+            parts = _call(run, hook, names)
             out = out + np.stack(np.broadcast_arrays(*parts, out[:, 0])[:size], axis=1)
     return out
