@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rovval.core.frames import turned
 from rovval.effects.effect import Effect, Parameter, Tolerance
 from rovval.effects.lanes import Array
 from rovval.effects.log import Log
@@ -18,8 +19,12 @@ EFFECT = Effect(
     name="attitude_bias",
     title="Attitude bias",
     place="sensor",
-    equation="(phi, theta)_logged = (phi, theta) + bias.",
-    symbols={"phi, theta": "roll and pitch angle; rad", "bias": "what the sensor adds; rad"},
+    equation="R_logged = R exp(S((phi, theta, 0))): near level, roll and pitch are logged with phi and theta added.",
+    symbols={
+        "R": "rotation from body axes to the north-east-down frame",
+        "phi, theta": "tilt of the sensor in the vehicle; rad",
+        "S": "cross product as a matrix",
+    },
     parameters=(
         Parameter("phi", "rad", -0.3, 0.3, 0.0, 0.03, SOURCE, tolerance=STATIC),
         Parameter("theta", "rad", -0.3, 0.3, 0.0, 0.03, SOURCE, tolerance=STATIC),
@@ -36,15 +41,18 @@ EFFECT = Effect(
 
 
 def observe(log: Log, p: Mapping[str, Array]) -> Log:
-    """Add the bias."""
-    return replace(log, eta=log.eta + _bias(p)[:, None])
+    """Attitude of the sensor, which sits askew in the vehicle."""
+    return replace(log, eta=_turned(log.eta, _tilt(p)[:, None]))
 
 
 def unobserve(nu: Array, eta: Array, p: Mapping[str, Array]) -> tuple[Array, Array]:
     """True first state."""
-    return nu, eta - _bias(p)
+    return nu, _turned(eta, -_tilt(p))
 
 
-def _bias(p: Mapping[str, Array]) -> Array:
-    zero = np.zeros_like(p["phi"])
-    return np.stack([zero, zero, zero, p["phi"], p["theta"], zero], axis=-1)
+def _turned(eta: Array, by: Array) -> Array:
+    return np.concatenate([eta[..., :3], turned(eta[..., 3:], np.broadcast_to(by, (*eta.shape[:-1], 3)))], axis=-1)
+
+
+def _tilt(p: Mapping[str, Array]) -> Array:
+    return np.stack([p["phi"], p["theta"], np.zeros_like(p["phi"])], axis=-1)
