@@ -60,7 +60,7 @@ def _insertions(spec: Spec) -> dict[str, Insertion]:
     """What stands for the functions of `rovval.plant.codegen.kernel.symbols`, which says what they mean."""
     return {
         "unrolled": _unrolled, "spread": _spread, "effects_of": partial(_effects_of, spec), "at_work": _at_work, "any_at_work": _any_at_work,
-        "in_turn": partial(_in_turn, spec), "effect_value": partial(_effect_value, spec),
+        "any_reads_log": _any_reads_log, "in_turn": partial(_in_turn, spec), "effect_value": partial(_effect_value, spec),
     }  # fmt: skip
 
 
@@ -87,20 +87,29 @@ def _at_work(call: ast.Call) -> Inserted:
 def _any_at_work(call: ast.Call) -> Inserted:
     acts, b = (ast.unparse(a) for a in call.args[:2])
     kinds, asks = [ast.literal_eval(a) for a in call.args[2:]], "".join(ast.literal_eval(k.value) for k in call.keywords)
-    found = dict.fromkeys(h.name for h in hooks(True) if h.kind in kinds and (not asks or asks in h.arguments))
-    return [], _parsed(" or ".join(f"{acts}[{b}, {switches()[name]}]" for name in found) or "False")
+    return [], _any(acts, b, [h for h in hooks(True) if h.kind in kinds and (not asks or asks in h.arguments)])
+
+
+def _any_reads_log(call: ast.Call) -> Inserted:
+    acts, b = (ast.unparse(a) for a in call.args)
+    return [], _any(acts, b, [h for h in hooks(True) if h.name in switches() and {*LOG} & {*h.arguments}])
+
+
+def _any(acts: str, b: str, some: list[Hook]) -> ast.expr:
+    """Whether one of ``some`` is at work in block ``b``."""
+    return _parsed(" or ".join(f"{acts}[{b}, {switches()[name]}]" for name in dict.fromkeys(h.name for h in some)) or "False")
 
 
 def _in_turn(spec: Spec, call: ast.Call) -> Inserted:
     kind, value, _, i, j = call.args
     given = {k.arg or "": k.value for k in call.keywords}
-    log, skip = given.pop("log", None), ast.literal_eval(given.pop("skip", ast.Constant("")))
+    skip = ast.literal_eval(given.pop("skip", ast.Constant("")))
     assert isinstance(value, ast.Name)
-    given["n" if ast.literal_eval(kind) in ("speed", "acting") else "T"] = value
+    given["n" if ast.literal_eval(kind) == "speed" else "T"] = value
     done = list[ast.stmt]()
     for hook in hooks(spec.full):
         if hook.kind == ast.literal_eval(kind) and skip not in hook.arguments:
-            before, (result,) = _value(spec, hook, given, log, j, i)
+            before, (result,) = _value(spec, hook, given, None, j, i)
             done += [*before, ast.Assign([ast.Name(value.id, ast.Store())], result, lineno=0)]
     return done, value
 
@@ -108,8 +117,9 @@ def _in_turn(spec: Spec, call: ast.Call) -> Inserted:
 def _effect_value(spec: Spec, call: ast.Call) -> Inserted:
     kind, effect = (ast.literal_eval(a) for a in call.args[:2])
     given = {k.arg or "": k.value for k in call.keywords}
+    log, i = given.pop("log", None), given.pop("i", None)
     (hook,) = (h for h in hooks(spec.full) if (h.kind, h.name) == (kind, effect))
-    before, values = _value(spec, hook, given, None, call.args[3])
+    before, values = _value(spec, hook, given, log, call.args[3], i)
     return before, ast.Tuple(values, ast.Load())
 
 

@@ -16,7 +16,7 @@ from rovval.plant.codegen.kernel.state import attitude, over_ground, rates, rota
 
 from rovval.plant.codegen.kernel.symbols import (  # isort: skip
     ADDED, ADVANCE, ADVANCE_LIMIT, BODY, CURRENT, DISPLACED, EXPLICIT, EXTRA, FLOW, FULL, LOG_COUNT, LOGGED, MASS, MOTION, PAYLOAD_ROWS, STRIDE, THRUSTERS,
-    WATER, Array, Lanes, W, any_at_work, at_work, compiled_function, effect_value, effects_of, in_turn, pruned, spread, unrolled,
+    WATER, Array, Lanes, W, any_at_work, any_reads_log, at_work, compiled_function, effect_value, effects_of, in_turn, pruned, spread, unrolled,
 )  # fmt: skip
 from rovval.plant.codegen.kernel.thrust import add_wrench, with_force
 
@@ -28,7 +28,7 @@ def loops_needed(acts: Array, b: int, use_extra: bool, pending: bool) -> tuple[b
     use_cross = any_at_work(acts, b, "thrust", asks="cross")
     use_flow = ADVANCE or any_at_work(acts, b, "thrust")
     use_state = use_water or use_flow or any_at_work(acts, b, "wrench")
-    use_log = use_extra or pending or use_rest or use_state
+    use_log = use_extra or pending or any_reads_log(acts, b)
     return use_rest, use_water, use_cross, use_flow, use_state, use_log
 
 

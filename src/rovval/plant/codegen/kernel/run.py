@@ -50,7 +50,7 @@ def run(
                 if not hold and step + sub > 0:  # a step begins where the last one ended
                     again, begin = 1, 2 - begin
                 thrust_over_substep(
-                    m, th, lg, la, geo, pairs, weights, again, begin, f0, f1, inv_dt, use_log, use_rest, use_wake, use_side, use_extra
+                    m, th, lg, la, geo, pairs, weights, acts, b, again, begin, f0, f1, inv_dt, use_log, use_rest, use_wake, use_side, use_extra
                 )
                 if FULL and pending:
                     take_payload(m, late, onset, b, (begin * LOG_ROWS + TIME) * W, lg)
@@ -66,7 +66,7 @@ def run(
 
 
 def thrust_over_substep(
-    m: Array, th: Array, lg: Array, la: Array, geo: Array, pairs: Array, weights: Array, again: int, begin: int, f0: float, f1: float,
+    m: Array, th: Array, lg: Array, la: Array, geo: Array, pairs: Array, weights: Array, acts: Array, b: int, again: int, begin: int, f0: float, f1: float,
     inv_dt: float, use_log: bool, use_rest: bool, use_wake: bool, use_side: bool, use_extra: bool,
 ) -> None:  # fmt: skip
     """Thrust, and what effects need of the log, at the start, the middle and the end of a substep; from the middle on where it goes on from the last."""
@@ -76,7 +76,7 @@ def thrust_over_substep(
         tv = th[slot * (THRUST_ROWS * W) : (slot + 1) * (THRUST_ROWS * W)]
         if FULL:
             lv = lg[slot * LOG_ROWS * W : (slot + 1) * LOG_ROWS * W]
-        thrust_of_stage(m, tv, lv, la, geo, pairs, weights, s, f, f0, inv_dt, use_log, use_rest, use_wake, use_side, use_extra)
+        thrust_of_stage(m, tv, lv, la, geo, pairs, weights, acts, b, s, f, f0, inv_dt, use_log, use_rest, use_wake, use_side, use_extra)
 
 
 def motion_over_substep(

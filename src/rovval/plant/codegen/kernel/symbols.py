@@ -102,13 +102,18 @@ def any_at_work(acts: Array, b: int, *kinds: str, asks: str = "") -> bool:
     raise NotImplementedError
 
 
-def in_turn(kind: str, value: Lanes, m: Array, i: int, j: int, *, log: Array = None, skip: str = "", **given: Lanes) -> Lanes:
-    """``value`` (speed or thrust of thruster ``i`` in lane ``j``) handed from one effect's function of that kind to the next, ``log`` the logged
-    quantities at this time (else, of functions of the state, rows LOGGED), ``given`` what else a function may ask for by name; those that ask for
-    ``skip`` are left out."""
+def any_reads_log(acts: Array, b: int) -> bool:
+    """Whether some lane of block ``b`` has an effect that asks for a logged quantity."""
     raise NotImplementedError
 
 
-def effect_value(kind: str, effect: str, m: Array, j: int, **given: Lanes) -> tuple[Lanes, ...]:
-    """What one effect's function of that kind returns in lane ``j``, ``given`` what it may ask for by name beside the logged quantities (rows LOGGED)."""
+def in_turn(kind: str, value: Lanes, m: Array, i: int, j: int, *, skip: str = "", **given: Lanes) -> Lanes:
+    """``value`` (speed or thrust of thruster ``i`` in lane ``j``) handed from one effect's function of that kind to the next, ``given`` what a function may
+    ask for by name beside the logged quantities (rows LOGGED); those that ask for ``skip`` are left out."""
+    raise NotImplementedError
+
+
+def effect_value(kind: str, effect: str, m: Array, j: int, *, i: int = 0, log: Array = None, **given: Lanes) -> tuple[Lanes, ...]:
+    """What one effect's function of that kind returns in lane ``j``, of thruster ``i`` where it is one of a thruster, ``log`` the logged quantities at this
+    time (else, of functions of the state, rows LOGGED), ``given`` what else it may ask for by name."""
     raise NotImplementedError

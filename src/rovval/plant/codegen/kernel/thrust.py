@@ -7,24 +7,27 @@ from __future__ import annotations
 
 from rovval.plant.codegen.kernel.symbols import (  # isort: skip
     ADVANCE, BODY, ENDS, FLOW, FULL, JET, LAG, LAGGED, LOG_ROWS, MEMORY, NEXT, STRIDE, THRUSTERS, WRENCH, Array, Lanes, W,
-    compiled_function, in_turn, spread, unrolled,
+    at_work, compiled_function, effect_value, effects_of, spread, unrolled,
 )  # fmt: skip
 
 
 def thrust_of_stage(
-    m: Array, tv: Array, lv: Array, la: Array, geo: Array, pairs: Array, weights: Array, s: int, f: float, f0: float,
+    m: Array, tv: Array, lv: Array, la: Array, geo: Array, pairs: Array, weights: Array, acts: Array, b: int, s: int, f: float, f0: float,
     inv_dt: float, use_log: bool, use_rest: bool, use_wake: bool, use_side: bool, use_extra: bool,
 ) -> None:  # fmt: skip
     """Everything of a stage time, ``f`` of the way through the sample: the log, acting speed and thrust of each thruster, their wrench."""
     if not FLOW:
-        wrench_at_rest(m, tv, lv, geo, s, f, f0, inv_dt)
+        wrench_at_rest(m, tv, s, f, f0, inv_dt)
     if FULL and use_log:
         for c in range(LOG_ROWS * W):
             lv[c] = la[c] + (la[LOG_ROWS * W + c] - la[c]) * f
-    if FULL and use_rest:
-        thrusts_at_rest(m, tv, lv, geo, s, f, f0, inv_dt, True)
-    elif FLOW:
-        thrusts_at_rest(m, tv, lv, geo, s, f, f0, inv_dt, False)
+    if FLOW:
+        speeds_at_work(m, tv, s, f, f0, inv_dt)
+        if FULL and use_rest:
+            change_speeds(m, tv, lv, acts, b)
+        thrusts_at_rest(m, tv, geo)
+        if FULL and use_rest:
+            change_thrusts(m, tv, lv, acts, b)
     if FULL and use_wake:
         lost_in_jets(m, tv, pairs, weights)
     if FLOW:
@@ -36,11 +39,8 @@ def thrust_of_stage(
             tv[3 * THRUSTERS * W + c] += lv[WRENCH * W + c]
 
 
-def thrust_at_rest(
-    m: Array, tv: Array, lv: Array, geo: Array, i: int, j: int, s: int, f: float, f0: float, inv_dt: float, effects: bool
-) -> Lanes:
-    """Thrust of thruster ``i`` (N, thesis 3.14: k n |n|, k of its own for each sense) at its acting speed, which a lag (exact for a speed that runs
-    linearly from ``f0`` to ``f``) and effects stand before."""
+def speed_at_work(m: Array, i: int, j: int, s: int, f: float, f0: float, inv_dt: float) -> Lanes:
+    """Speed (rev/s) at which thruster ``i`` turns: the logged one, behind a lag that is exact for a speed that runs linearly from ``f0`` to ``f``."""
     if LAGGED:
         tau, left = m[LAG * W + j], m[(LAG + 1 + s) * W + j]
     a = m[(ENDS + i) * W + j]
@@ -50,33 +50,59 @@ def thrust_at_rest(
         slope = d * inv_dt * tau
         n = n - slope + (m[(MEMORY + i) * W + j] - (a + d * f0) + slope) * left
         m[(NEXT + i) * W + j] = n
-    if effects:
-        n = in_turn("acting", n, m, i, j, log=lv)
+    return n
+
+
+def thrust_at_rest(m: Array, i: int, j: int, n: Lanes) -> Lanes:
+    """Thrust of thruster ``i`` (N, thesis 3.14) at a speed: k n |n|, k of its own for each sense."""
     ahead, astern = 0.5 * (abs(n) + n), 0.5 * (abs(n) - n)
-    T = m[(BODY + i * STRIDE) * W + j] * ahead * ahead - m[(BODY + i * STRIDE + 1) * W + j] * astern * astern
-    if effects:
-        T = in_turn("static", T, m, i, j, log=lv, n=n)
-    if FLOW:
-        tv[3 * i * W + j] = T
-        tv[(3 * i + 1) * W + j] = n
-    if ADVANCE:
-        tv[(3 * i + 2) * W + j] = n / (geo[16 * i + 15] * (n * n + 1e-12))  # J_a = u_a n / (D n^2)
-    return T
+    return m[(BODY + i * STRIDE) * W + j] * ahead * ahead - m[(BODY + i * STRIDE + 1) * W + j] * astern * astern
 
 
-def thrusts_at_rest(m: Array, tv: Array, lv: Array, geo: Array, s: int, f: float, f0: float, inv_dt: float, effects: bool) -> None:
-    """Thrust at rest of every thruster, kept for the stages."""
-    for i in range(THRUSTERS):
-        for j in range(W):
-            thrust_at_rest(m, tv, lv, geo, i, j, s, f, f0, inv_dt, effects)
+def speeds_at_work(m: Array, tv: Array, s: int, f: float, f0: float, inv_dt: float) -> None:
+    """Speed of every thruster, kept for the stages."""
+    for j in range(W):
+        for i in unrolled(THRUSTERS):
+            tv[(3 * i + 1) * W + j] = speed_at_work(m, i, j, s, f, f0, inv_dt)
 
 
-def wrench_at_rest(m: Array, tv: Array, lv: Array, geo: Array, s: int, f: float, f0: float, inv_dt: float) -> None:
+@compiled_function
+def change_speeds(m: Array, tv: Array, lv: Array, acts: Array, b: int) -> None:
+    """What effects make of these speeds, one after the other."""
+    for effect in effects_of("acting"):
+        if at_work(acts, b, effect):
+            for j in range(W):
+                for i in unrolled(THRUSTERS):
+                    tv[(3 * i + 1) * W + j] = effect_value("acting", effect, m, j, i=i, log=lv, n=tv[(3 * i + 1) * W + j])[0]
+
+
+def thrusts_at_rest(m: Array, tv: Array, geo: Array) -> None:
+    """Thrust at rest of every thruster at its speed, kept for the stages."""
+    for j in range(W):
+        for i in unrolled(THRUSTERS):
+            n = tv[(3 * i + 1) * W + j]
+            tv[3 * i * W + j] = thrust_at_rest(m, i, j, n)
+            if ADVANCE:
+                tv[(3 * i + 2) * W + j] = n / (geo[16 * i + 15] * (n * n + 1e-12))  # J_a = u_a n / (D n^2)
+
+
+@compiled_function
+def change_thrusts(m: Array, tv: Array, lv: Array, acts: Array, b: int) -> None:
+    """What effects make of these thrusts, one after the other."""
+    for effect in effects_of("static"):
+        if at_work(acts, b, effect):
+            for j in range(W):
+                for i in unrolled(THRUSTERS):
+                    tv[3 * i * W + j] = effect_value("static", effect, m, j, i=i, log=lv, T=tv[3 * i * W + j], n=tv[(3 * i + 1) * W + j])[0]
+
+
+def wrench_at_rest(m: Array, tv: Array, s: int, f: float, f0: float, inv_dt: float) -> None:
     """Wrench of all thrusters where thrust does not depend on the motion."""
     for j in range(W):
         X = Y = Z = K = M = N = 0.0
         for i in unrolled(THRUSTERS):
-            T = thrust_at_rest(m, tv, lv, geo, i, j, s, f, f0, inv_dt, False)
+            n = speed_at_work(m, i, j, s, f, f0, inv_dt)
+            T = thrust_at_rest(m, i, j, n)
             X, Y, Z, K, M, N = with_force(m, i, j, T, X, Y, Z, K, M, N)
         put_wrench(tv, 0, j, X, Y, Z, K, M, N)
 
