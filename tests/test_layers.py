@@ -68,7 +68,7 @@ ALLOWED = {
     "rerun": {"report"},
     "numba": {"plant", "effects"},
     "llvmlite": {"plant"},
-    "scipy": {"ingest", "plant", "diagnose", "blind", "alignment", "report", "simulation", "comparison", "trend"},
+    "scipy": {"ingest", "fit", "diagnose", "blind", "alignment", "report", "simulation", "comparison", "trend"},
     "distributed": {"pipeline"},
     "upath": {"storage"},
     "cryptography": {"blind"},

@@ -53,10 +53,8 @@ def test_the_parameters_of_an_effect_are_what_the_search_needs(name):
         assert p.source and p.unit and p.low <= p.null <= p.high and p.typical > 0
         assert all(p.low <= v <= p.high for v in p.starts)
         assert not p.channel or p.channel in CHANNELS
-        assert p.compared_with in ("", *effects.names())
         assert p.tolerance is None or p.tolerance.source
-    assert {effect.onset_of, effect.continues} <= {"", *effects.names()}
-    assert not effect.onset_of or effect.begins
+    assert effect.continues in ("", *effects.names())
     assert not effect.continues or all(p.starts for p in effect.parameters), "it begins as large as it is searched from"
     assert bool(effect.stage) == hasattr(effects.module(name), "observe"), "a sensor's effect says where on the way into the log it acts"
 

@@ -11,7 +11,7 @@ from real_data import real
 
 from rovval.core.errors import BadInput, UsageProblem
 from rovval.fit import bench
-from rovval.plant.thruster_lag import first_order, steps
+from rovval.fit.step_response import steps
 
 
 def test_the_motor_s_law_that_made_a_table_is_found_in_it(tmp_path):
@@ -26,8 +26,8 @@ def test_the_motor_s_law_that_made_a_table_is_found_in_it(tmp_path):
 
 def test_the_time_constant_that_made_a_record_is_found_in_it():
     t = np.arange(0.0, 20.0, 0.01)
-    command = np.where((t > 4.0) & (t < 12.0), 100.0, 0.0)
-    y = first_order(command[:, None], 0.01, 0.35)[:, 0] + np.random.default_rng(0).normal(size=len(t))
+    rise, fall = (-np.expm1(-np.maximum(t - at, 0.0) / 0.35) for at in (4.0, 12.0))
+    y = 100.0 * (rise - fall) + np.random.default_rng(0).normal(size=len(t))
     up, down = steps(t, y)
     assert (up.tau, down.tau) == pytest.approx((0.35, 0.35), abs=0.02)
     assert (up.at, down.at) == pytest.approx((4.0, 12.0), abs=0.03) and up.after == pytest.approx(100.0, abs=0.5)

@@ -291,3 +291,18 @@ def test_a_pull_keeps_its_size_and_points_to_where_it_is_held():
     assert np.allclose(given(1.0, nearness), size * towards / np.linalg.norm(towards, axis=1)[:, None], rtol=1e-9)
     assert np.allclose(given(1.0, 0.0), pull, rtol=1e-9)
     assert not given(0.0, nearness).any()
+
+
+def test_minerva_thrust_is_its_cubic():
+    """rho D^4 n|n| theta K_T(J_a) at J_a = 0.5 ahead: K_T = 0.5/8 - 0.66/4 - 0.25/2 + 0.24 = 0.0125."""
+    v = vehicles.load("minerva")
+    plant = Plant(v)
+    n, d = 10.0, 0.22
+    at_rest = plant.thrust(np.array([[0, 0, 0, n, n]]))[0, 3]
+    assert at_rest == pytest.approx(1025 * d**4 * n**2 * 0.72 * 0.24, rel=1e-6)
+    u = 0.5 * n * d / 0.985
+    dt = 1e-5
+    speed = np.array([0, 0, 0, n, n])
+    on, off = (cases.run(plant, s, seconds=dt, dt=dt, nu=[u, 0, 0, 0, 0, 0]).nu[0, 1, 0] for s in (speed, 0 * speed))
+    force = (on - off) / dt * (460 + 293)
+    assert force == pytest.approx(2 * 0.985 / np.hypot(0.985, 0.174) * 1025 * d**4 * n**2 * 0.72 * 0.0125, rel=0.01)

@@ -79,7 +79,6 @@ class Parameter:
     - ``tolerance``: how far off it is in a healthy vehicle or log; None: not at all.
     - ``vanishes_at``: the bound at which nothing is left of what it scales (a coefficient, a thruster's thrust): an answer that rests there is one,
       at any other bound the search would have gone on.
-    - ``compared_with``: the effect whose tolerance a departure is held against where there is none of its own.
     - ``genuine_from``: the least value at which the effect is what its name says.
     - ``error``: how a sensor's parameter enters what it measures: added, as a factor, or as a delay, which its opposite undoes.
     """
@@ -100,7 +99,6 @@ class Parameter:
     channel: str = ""
     tolerance: Tolerance | None = None
     vanishes_at: Literal["", "low", "high"] = ""
-    compared_with: str = ""
     genuine_from: float | None = None
     error: Error = "additive"
 
@@ -142,7 +140,6 @@ class Effect:
     - ``competes`` False: a diagnosis never names it; `unnamed` says why.
     - ``wanders``: its value drifts by nature, so that it does not hold still speaks in no way against it.
     - ``lasts``: it grows for as long as it lasts, so that one that began before the log is still told from its like by that.
-    - ``onset_of``: the effect that it is from an onset on.
     - ``held``: it pulls towards a point as a tether does that is caught there, so that its search begins where a spring would hold the vehicle, too.
     - ``towed``: it brakes across the line along which it pulls, so that its search begins where such a line is seen in the forces that are missing, too.
     - ``continues``: the effect that imitates it as far as that goes, and which it exceeds (a dead thruster is one that is half reversed).
@@ -176,7 +173,6 @@ class Effect:
     competes: bool = True
     wanders: bool = False
     lasts: bool = False
-    onset_of: str = ""
     held: bool = False
     towed: bool = False
     continues: str = ""

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval.core.errors import BadInput, all_at_once
-from rovval.plant import electrical, thruster_lag
+from rovval.fit import motor_law, step_response
 
 Array = NDArray[np.float64]
 MOST_PROBLEMS = 5  # wrong lines that are named
@@ -47,12 +47,12 @@ def table(path: Path, columns: Sequence[int]) -> Array:
 def motor(path: Path, columns: Sequence[int]) -> tuple[str, dict[str, Any]]:
     """Equation 2.4 of a table of voltage (V) and thrust (N), both ways together and each by itself; as text and as rovval.motor/1."""
     volts, thrust = table(path, columns).T
-    both = electrical.fit(volts, thrust)
+    both = motor_law.fit(volts, thrust)
     found = {"both ways": both}
     for way, sign in (("ahead", 1.0), ("astern", -1.0)):
         part = thrust * sign > 0
         if part.sum() >= 3:
-            found[way] = electrical.fit(volts[part], thrust[part])
+            found[way] = motor_law.fit(volts[part], thrust[part])
     text = "\n".join([f"{path.name}: {len(volts)} points", *(f"{way:<10} {law}" for way, law in found.items())])
     fits = {way: asdict(law) for way, law in found.items()}
     units = {"resistive": "V/N", "back_emf": "V/N^0.5", "rms": "V", "largest": "V", "lowest": "N", "highest": "N"}
@@ -62,7 +62,7 @@ def motor(path: Path, columns: Sequence[int]) -> tuple[str, dict[str, Any]]:
 def response(path: Path, columns: Sequence[int]) -> tuple[str, dict[str, Any]]:
     """Time constants of the steps of a record of time (s) and speed or thrust; as text and as rovval.response/1."""
     t, y = table(path, columns).T
-    found = thruster_lag.steps(t, y)
+    found = step_response.steps(t, y)
     text = "\n".join([f"{path.name}: {len(t)} samples of {np.median(np.diff(t)):.4g} s", *map(str, found)])
     hint = "as an effect: --effect thrust_lag:tau=SECONDS, one for both ways"
     return f"{text}\n{hint}", {"schema": "rovval.response/1", "file": path.name, "steps": [asdict(s) for s in found]}

@@ -14,7 +14,7 @@ one; `integration` runs the kernel over blocks of lanes; `sensors` write the log
 The equations stand twice. `codegen.kernel` is what runs: typed Python of which `codegen` makes one compiled function for each kind of vehicle.
 `reference` is the same in plain NumPy, matrix by matrix as the thesis has it (3.10 to 3.15); tests hold the two against each other.
 `platforms` has one file a simulator whose equations these are: fossen, uuv, freefloating.
-`geometry` says which thruster's jet reaches which; `thruster_lag` and `electrical` are laws of a thruster for logs before they come here.
+`geometry` says which thruster's jet reaches which.
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ EFFECT = Effect(
     },
     parameters=(
         Parameter(
-            "loss", "1", -0.1, 1.0, 0.0, 0.1, "0 to 30 % (chosen); searched as far as all of it", vanishes_at="high", compared_with="thruster_degraded",
+            "loss", "1", -0.1, 1.0, 0.0, 0.1, "0 to 30 % (chosen); searched as far as all of it", vanishes_at="high",
         ),
     ),
     signature="weak thrust while moving sideways",

@@ -24,7 +24,7 @@ EFFECT = Effect(
         "side": "side force over thrust",
     },
     parameters=(
-        Parameter("loss", "1", -0.3, 1.0, 0.0, 0.15, "5 to 30 % (chosen)", vanishes_at="high", compared_with="thruster_degraded"),
+        Parameter("loss", "1", -0.3, 1.0, 0.0, 0.15, "5 to 30 % (chosen)", vanishes_at="high"),
         Parameter("side", "1", -0.5, 0.5, 0.0, 0.05, "chosen: a tenth of the thrust"),
     ),
     signature="gain depends on the sign of a thruster's speed, installed thrust differs from a bench's",

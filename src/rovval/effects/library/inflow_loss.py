@@ -27,7 +27,7 @@ EFFECT = Effect(
     },
     parameters=(
         Parameter(
-            "loss", "1", -0.2, 1.0, 0.0, 0.15, "10 to 40 % at top speed (chosen)", vanishes_at="high", compared_with="thruster_degraded",
+            "loss", "1", -0.2, 1.0, 0.0, 0.15, "10 to 40 % at top speed (chosen)", vanishes_at="high",
         ),
     ),
     signature="grows with thruster speed times vehicle speed: feels like drag while thrusting, and is gone when coasting",

@@ -16,7 +16,7 @@ EFFECT = Effect(
     symbols={"T_i": "thrust of thruster i, along its axis; N", "loss": "share of it that is lost; 1 is a dead thruster"},
     parameters=(
         Parameter(
-            "loss", "1", -1.0, 1.0, 0.0, 0.2, "0: sound, 1: dead, -1: twice what the file says", vanishes_at="high", compared_with="thruster_degraded",
+            "loss", "1", -1.0, 1.0, 0.0, 0.2, "0: sound, 1: dead, -1: twice what the file says", vanishes_at="high",
             tolerance=Tolerance(1.0, "the declared calibration tolerance itself"),
         ),
     ),

@@ -21,7 +21,7 @@ EFFECT = Effect(
         "t, onset": "time and time of the fault since the run's start; s",
     },
     parameters=(
-        Parameter("loss", "1", -0.5, 1.0, 0.0, 0.3, "0: sound, 1: dead", vanishes_at="high", compared_with="thruster_degraded"),
+        Parameter("loss", "1", -0.5, 1.0, 0.0, 0.3, "0: sound, 1: dead", vanishes_at="high"),
         Parameter("onset", "s", 0.0, 1e6, 0.0, 60.0, "any time of the log", role="onset"),
     ),
     per="thruster",
@@ -29,7 +29,6 @@ EFFECT = Effect(
     confused_with=("thruster_degraded", "voltage_sag", "payload_change"),
     separates="the change point; before it that thruster is sound",
     literature=("Zhao 2014: thruster faults of an ROV detected during a dive", "Omerdic and Roberts 2004: partial and total faults"),
-    onset_of="thruster_degraded",
 )
 ROWS = ("loss", "onset")
 

@@ -25,7 +25,7 @@ EFFECT = Effect(
     parameters=(
         Parameter(
             "loss", "1", 0.0, 1.0, 0.0, 0.15, "0 to 50 % (chosen; a tandem pair loses up to 100 % at no distance, Dang and Laheij 2004)",
-            vanishes_at="high", compared_with="thruster_degraded",
+            vanishes_at="high",
         ),
     ),
     per="thruster",

@@ -19,7 +19,7 @@ EFFECT = Effect(
     parameters=(
         Parameter(
             "scale", "1", -0.9, 1.0, 0.0, 0.15, "a BlueROV2's vertical thrusters blow at its frame: 0.59 to 0.74 of the others by calibrations on tank runs",
-            vanishes_at="low", compared_with="thruster_degraded",
+            vanishes_at="low",
         ),
     ),
     signature="all that vertical thrust does, in heave, roll and pitch, by one factor",

@@ -1,4 +1,4 @@
-"""The electrical relation of a thruster, thesis equation 2.4: V = (R_m / K_m) T + (K_E / sqrt(K_T)) sqrt(T), odd in T."""
+"""The law of a thruster's motor, thesis equation 2.4: V = (R_m / K_m) T + (K_E / sqrt(K_T)) sqrt(T), odd in T."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class Electrical:
+class MotorLaw:
     """``resistive`` R_m / K_m in V/N and ``back_emf`` K_E / sqrt(K_T) in V/sqrt(N): equation 2.4 holds no more than these two. The fit's
     ``rms`` and ``largest`` error in V, over ``n`` points between ``lowest`` and ``highest`` thrust in N."""
 
@@ -46,7 +46,7 @@ class Electrical:
         )
 
 
-def fit(voltage: Array, thrust: Array) -> Electrical:
+def fit(voltage: Array, thrust: Array) -> MotorLaw:
     """Least squares of equation 2.4 over points with thrust; both coefficients held at zero or above, as physics has them."""
     from scipy.optimize import nnls
 
@@ -57,7 +57,7 @@ def fit(voltage: Array, thrust: Array) -> Electrical:
     v, size = voltage[used] * np.sign(thrust[used]), np.abs(thrust[used])
     (resistive, back_emf), _ = nnls(np.stack([size, np.sqrt(size)], axis=1), v)
     error = resistive * size + back_emf * np.sqrt(size) - v
-    return Electrical(
+    return MotorLaw(
         float(resistive), float(back_emf), float(np.sqrt(np.mean(error**2))), float(np.abs(error).max()), len(v),
         float(thrust[used].min()), float(thrust[used].max()),
     )  # fmt: skip
