@@ -7,8 +7,8 @@ from rovval.diagnose.search.baseline import Candidate
 
 
 def plausible(problem: Problem, one: Candidate) -> bool:
-    """Whether a candidate is what its name says: a thruster counts as reversed only where it pushes the other way (up to half-reversed it is a degraded
-    one), and what begins before the log does has no onset in it, unless it goes on as it began."""
+    """Whether a candidate is what its name says: a thruster counts as reversed only where it pushes the other way and is nearer to that than to a dead one,
+    which is degraded; and what begins before the log does has no onset in it, unless it goes on as it began."""
     first = min(float(part.start[0] + part.steps) * part.run.dt for part in problem.runs)
     named = [(problem.plant.slots[s].parameter, float(one.fit.beta[s])) for s in one.hypothesis.slots]
     genuine = all(p.genuine_from is None or value >= p.genuine_from for p, value in named)
