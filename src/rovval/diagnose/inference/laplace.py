@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import special, stats
+from scipy.optimize import nnls
 
 from rovval.core.data import Array
 from rovval.diagnose.criteria import PRIOR_FREEDOM, PRIOR_WIDTH
@@ -77,10 +78,17 @@ class Posterior:
         return np.where(self.tangent_only, 0.0, self.solve(self.curvature, self.descent))
 
     def solve(self, H: Array, slope: Array, among: np.ndarray | None = None) -> Array:
-        """H^-1 slope (k,) in the columns ``among`` (all by default); zero for a column that it would push beyond the bound it is on."""
-        free = (self.bound_side * slope <= 0) if among is None else (self.bound_side * slope <= 0) & among
-        step = np.zeros(len(slope))
-        step[free] = np.linalg.solve(H[np.ix_(free, free)], slope[free])
+        """The step (k,) in the columns ``among`` (all by default) to the least of step H step - 2 slope step at which no column leaves the bound that it is on:
+        for these non-negative least squares (Lawson and Hanson 1974), the others at their best beside them."""
+        open_now = np.ones(len(slope), dtype=bool) if among is None else among
+        held, loose = open_now & (self.bound_side != 0), open_now & (self.bound_side == 0)
+        step, beside = np.zeros(len(slope)), H[np.ix_(held, loose)]
+        best = np.linalg.solve(H[np.ix_(loose, loose)], np.column_stack([beside.T, slope[loose]]))
+        if held.any():
+            root = np.linalg.cholesky(H[np.ix_(held, held)] - beside @ best[:, :-1])
+            inward = -self.bound_side[held]
+            step[held] = inward * nnls(root.T * inward, np.linalg.solve(root, slope[held] - beside @ best[:, -1]))[0]
+        step[loose] = best[:, -1] - best[:, :-1] @ step[held]
         return step
 
     def predicted_departure(self) -> Array:
