@@ -51,7 +51,7 @@ def unobserve(nu: Array, eta: Array, p: Mapping[str, Array]) -> tuple[Array, Arr
 
 
 def _turned(eta: Array, by: Array) -> Array:
-    return np.concatenate([eta[..., :3], turned(eta[..., 3:], np.broadcast_to(by, (*eta.shape[:-1], 3)))], axis=-1)
+    return np.concatenate([eta[..., :3], turned(eta[..., 3:], by)], axis=-1)
 
 
 def _tilt(p: Mapping[str, Array]) -> Array:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from rovval.effects.effect import Effect, Parameter
 from rovval.effects.lanes import Array, Lanes
 
-NEARER = 0.75  # than to a dead thruster, which is half reversed and `thruster_degraded`
+REVERSED_FROM = 0.75  # half-way from a dead thruster (0.5), which is `thruster_degraded`, to a reversed one (1)
 
 EFFECT = Effect(
     name="thruster_reversed",
@@ -17,7 +17,7 @@ EFFECT = Effect(
     equation="T_i(n) <- (1 - fraction) T_i(n) + fraction T_i(-n) at rest in the water: 1 is a shaft that turns the other way (not -T_i: the gains "
     "differ), and nothing between 0 and 1 is physical.",
     symbols={"T_i(n)": "thrust of thruster i at the shaft speed n, along its axis; N", "n": "shaft speed; rev/s", "fraction": "0: sound, 1: reversed"},
-    parameters=(Parameter("fraction", "1", 0.0, 1.0, 0.0, 1.0, "discrete: 0 or 1", starts=(1.0,), genuine_from=NEARER),),
+    parameters=(Parameter("fraction", "1", 0.0, 1.0, 0.0, 1.0, "discrete: 0 or 1", starts=(1.0,), genuine_from=REVERSED_FROM),),
     per="thruster",
     signature="twice that thruster's wrench, the wrong way",
     confused_with=("thruster_degraded", "thruster_misaligned"),
