@@ -36,14 +36,21 @@ def checked(
     given: dict[str, Array | Indices] = {"nu0": nu0, "eta0": eta0, "beta": beta, "extra": which, "extra_gain": gain}
     if problems := _misfits(given, len(found), thrusters, inputs, start, steps):
         raise BadInput(all_at_once(problems, "simulate"))
-    slots.check_bounds(found, beta)
-    moved = [found[int(c)] for c in np.flatnonzero((beta != null).any(axis=0))]
+    rows = beta[in_a_row(beta)[0]]
+    slots.check_bounds(found, rows)
+    moved = [found[int(c)] for c in np.flatnonzero((rows != null).any(axis=0))]
     missing = [f"{n} needs {c}" for n in sorted({s.effect for s in moved}) for c in effects.load(n).needs if c in ABSENT and _absent(inputs, c)]
     missing += [f"{s.key} needs {s.parameter.needs}" for s in moved if s.parameter.needs in INPUTS and _absent(inputs, s.parameter.needs)]
-    missing += _nothing_instead(found, null, beta, inputs)
+    missing += _nothing_instead(found, null, rows, inputs)
     if missing:
         raise UsageProblem(all_at_once(missing, "channels that the log does not hold"))
     return start, nu0, eta0, beta, which, gain
+
+
+def in_a_row(beta: Array) -> tuple[Indices, Indices]:
+    """The first lane (P,) of each row of neighbours with equal parameters ``beta`` (B, K), and the row (B,) that each lane is of."""
+    begins = np.concatenate([[True], (beta[1:] != beta[:-1]).any(axis=1)])
+    return np.flatnonzero(begins), np.cumsum(begins) - 1
 
 
 def _misfits(given: Mapping[str, Array | Indices], parameters: int, thrusters: int, inputs: Inputs, start: Indices, steps: int) -> list[str]:

@@ -90,7 +90,8 @@ def prepare(inputs: Inputs, vehicle: Vehicle) -> Prepared:
 
 def load(speed: Array, reference: float) -> Array:
     """Power (...,) that all thrusters draw at ``speed`` (..., k) rev/s, over what they draw at the ``reference``, which holds the vehicle at 1 m/s ahead."""
-    return np.asarray(np.mean(np.abs(speed / reference) ** 3, axis=-1))
+    share = np.abs(speed / reference)
+    return np.asarray(np.mean(share * share * share, axis=-1))
 
 
 def _or(values: Array | None, samples: int, fill: float) -> Array:
@@ -101,9 +102,11 @@ def _or(values: Array | None, samples: int, fill: float) -> Array:
 
 def _held(values: Array | None, samples: int, fill: float) -> Array:
     """Missing samples keep the last value before them (the first known one at the start; ``fill`` if none is known)."""
-    if values is None or not np.isfinite(values).any():
+    known = np.zeros(samples, dtype=bool) if values is None else np.isfinite(values)
+    if values is None or not known.any():
         return np.full(samples, fill)
-    known = np.isfinite(values)
+    if known.all():
+        return values
     last = np.maximum.accumulate(np.where(known, np.arange(samples), -1))
     first = int(np.argmax(known))
     return np.asarray(values, dtype=float)[np.where(last < 0, first, last)]

@@ -14,7 +14,7 @@ from rovval.core.errors import UsageProblem
 from rovval.effects.lanes import nominal
 from rovval.effects.log import Log
 from rovval.plant import platforms, sensors, slots
-from rovval.plant.arguments import checked
+from rovval.plant.arguments import checked, in_a_row
 from rovval.plant.codegen.layout import RATE_LIMIT, SPEED_LIMIT
 from rovval.plant.inputs import Inputs, prepare
 from rovval.plant.integration import Integrator, Starts
@@ -97,7 +97,7 @@ class Plant:
         thrusters = len(self.vehicle.thruster)
         start, nu0, eta0, beta, which, gain = checked(self.slots, self.null, thrusters, inputs, start, steps, nu0, eta0, beta, extra, extra_gain)
         prepared = prepare(inputs, self.vehicle)
-        first, numbers = _in_a_row(beta)
+        first, numbers = in_a_row(beta)
         lowered = lower(self.nominal, self.slots, self.index, self.null, beta[first], self._resting)
         starts = Starts(start, *sensors.unobserve(self.vehicle, self.index, self.null, beta, nu0, eta0), which, gain, numbers)
         motion = partial(self.integrator.motion, inputs, prepared, lowered, self.integrator.packed(lowered, inputs.dt, starts))
@@ -126,12 +126,6 @@ class Plant:
         clock = Clock(simulate, inputs.dt, len(inputs.speed))
         state, before, after = true_start(clock, starts.sample, np.concatenate([starts.nu, starts.eta], axis=1), delays)
         return replace(starts, nu=state[:, :6], eta=state[:, 6:]), before, after
-
-
-def _in_a_row(beta: Array) -> tuple[Indices, Indices]:
-    """The first lane (P,) of each row of neighbours with equal parameters ``beta`` (B, K), and the row (B,) that each lane is of."""
-    begins = np.concatenate([[True], (beta[1:] != beta[:-1]).any(axis=1)])
-    return np.flatnonzero(begins), np.cumsum(begins) - 1
 
 
 def parse_settings(plant: Plant, settings: Sequence[str]) -> Array:

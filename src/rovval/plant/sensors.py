@@ -75,9 +75,9 @@ def _key(name: str, parameter: str) -> str:
 def _acting(wanted: tuple[str, ...], index: Mapping[str, int], null: Array, beta: Array) -> list[tuple[str, Part]]:
     """Effects and the lanes in which they are not null."""
     found = list[tuple[str, Part]]()
-    columns, away = _columns(tuple(index)), beta != null
+    columns = _columns(tuple(index))
     for name in wanted:
-        lanes = np.flatnonzero(away[:, columns[name]].any(axis=1))
+        lanes = np.flatnonzero((beta[:, columns[name]] != null[columns[name]]).any(axis=1))
         if len(lanes):
             first, last = int(lanes[0]), int(lanes[-1])
             found.append((name, slice(first, last + 1) if last - first < len(lanes) else lanes))

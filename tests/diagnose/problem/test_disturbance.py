@@ -30,6 +30,7 @@ from rovval.diagnose.inference.map_fit import healthy_fit
 from rovval.diagnose.problem.disturbance import (
     estimate_disturbance,
     initial_disturbance,
+    inverse,
     principal_parts,
     unit_responses,
 )
@@ -137,3 +138,13 @@ def test_a_healthy_vehicle_on_station_is_not_blamed_and_the_push_is_found(on_sta
 @pytest.mark.xfail(strict=True, reason="a light vehicle's open gap is larger than that of the heavy ones it was measured on: the answer is unknown")
 def test_pushes_by_the_water_are_no_gap_of_a_light_vehicle(on_station: Run):
     assert diagnose([on_station], vehicle.load("bluerov2_heavy")).document()["verdict"] == "no_gap"
+
+
+def test_the_inverse_by_cholesky_factors_is_the_inverse():
+    root = np.random.default_rng(3).normal(size=(4, 6, 9))
+    matrices = root @ np.swapaxes(root, 1, 2)
+    found, log_det = inverse(matrices)
+    np.testing.assert_allclose(found @ matrices, np.broadcast_to(np.eye(6), matrices.shape), atol=1e-10)
+    assert log_det == pytest.approx(-np.linalg.slogdet(matrices)[1].sum())
+    with pytest.raises(np.linalg.LinAlgError):
+        inverse(np.array([[[1.0, 2.0], [2.0, 1.0]]]))

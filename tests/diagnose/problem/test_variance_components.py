@@ -46,7 +46,7 @@ def residuals(quiet, share, noise):
 
 
 def test_noise_disturbances_and_their_memory_are_found(quiet, noise):
-    found = variance_components(quiet[0], residuals(quiet, PUT_IN.share, noise), quiet[1], 3.0 * noise)
+    found = variance_components(quiet[0], residuals(quiet, PUT_IN.share, noise), quiet[1], Components.initial(3.0 * noise))
     assert found.noise == pytest.approx(noise, rel=0.05)
     assert found.share[SHOW] == pytest.approx(PUT_IN.share[SHOW], rel=0.25)
     assert np.abs(found.correlation - PUT_IN.correlation)[SHOW].max() < 0.2
@@ -54,16 +54,16 @@ def test_noise_disturbances_and_their_memory_are_found(quiet, noise):
 
 def test_it_ends_at_the_same_wherever_it_begins(quiet, noise):
     left = residuals(quiet, PUT_IN.share, noise)
-    one, other = (variance_components(quiet[0], left, quiet[1], factor * noise) for factor in (0.5, 10.0))
+    one, other = (variance_components(quiet[0], left, quiet[1], Components.initial(factor * noise)) for factor in (0.5, 10.0))
     assert one.noise == pytest.approx(other.noise, rel=0.02) and one.share[SHOW] == pytest.approx(other.share[SHOW], rel=0.1)
 
 
 def test_where_nothing_was_put_in_there_is_next_to_none(quiet, noise):
-    found = variance_components(quiet[0], residuals(quiet, np.zeros(6), noise), quiet[1], 3.0 * noise)
+    found = variance_components(quiet[0], residuals(quiet, np.zeros(6), noise), quiet[1], Components.initial(3.0 * noise))
     assert found.share[SHOW].max() < 0.02 and found.noise == pytest.approx(noise, rel=0.05)
 
 
 def test_what_is_louder_than_the_sensors_is_noise_and_no_force(quiet, noise):
     loud = noise * np.where(np.array(quiet[0][0].channels) == "r", 4.0, 1.0)
-    found = variance_components(quiet[0], residuals(quiet, np.zeros(6), loud), quiet[1], noise)
+    found = variance_components(quiet[0], residuals(quiet, np.zeros(6), loud), quiet[1], Components.initial(noise))
     assert found.noise == pytest.approx(loud, rel=0.05) and found.share[SHOW].max() < 0.02

@@ -10,6 +10,7 @@ from diagnose_case import posed, slot, turned
 
 from rovval.diagnose.criteria import GENERIC_SIZES
 from rovval.diagnose.inference.map_fit import map_fit
+from rovval.diagnose.inference.unlogged_forces import responses_about
 from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.search.discrepancy import GenericForces, expected_forces, forces_beside
 from rovval.diagnose.windows.multiple_shooting import cut
@@ -126,6 +127,8 @@ def test_forces_on_one_axis_are_those_of_that_axis_alone():
 def test_in_the_fine_metric_a_force_shows_on_the_axis_of_a_cause_and_none_beside_it():
     p, _ = posed(("cross_drag:yaw_to_sway=0.0,sway_to_yaw=0.3",))
     own = tuple(slot(p, key) for key in ("cross_drag.yaw_to_sway", "cross_drag.sway_to_yaw"))
-    alone, beside = (forces_beside(p, map_fit(p, p.origin, slots)).fine for slots in ((), own))
+    fits = [map_fit(p, p.origin, slots) for slots in ((), own)]
+    alone, beside = (forces_beside(p, fit, responses_about(p, fit)).fine for fit in fits)
     assert alone["yaw"] > 10.0 and beside["yaw"] < 0.05 * alone["yaw"]
-    assert forces_beside(replace(p, components=None), map_fit(p, p.origin, ())).fine == {}, "where windows are too few to tell disturbances from anything"
+    few = replace(p, components=None)
+    assert forces_beside(few, fits[0], responses_about(few, fits[0])).fine == {}, "where windows are too few to tell disturbances from anything"

@@ -71,7 +71,7 @@ def departures(problem: Problem, point: Posterior, among: Sequence[int]) -> list
     It ends where one more explains no more. In the linearisation about a fit, the ``point`` (automatic relevance determination; MacKay 1992); a prior that
     is widened changes the curvature by a matrix of rank one.
     """
-    moves = point.bound_side * point.descent <= 0
+    moves = (point.bound_side == 0) | (point.solve(point.curvature, point.descent) != 0.0)  # what stays on its bound at the best step is held there
     precision, evidence, found = point.precision.copy(), laplace_evidence(problem, point), list[Departures]()
     each = 2.0 * float(np.log(max(len(among), 1)))
     columns = [i for s in among if moves[i := point.columns.index(s)]]

@@ -23,7 +23,7 @@ from rovval.diagnose.effort import NEGLIGIBLE, SETS_WEIGHED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.inference.gap import weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
-from rovval.diagnose.inference.unlogged_forces import ForceLeft, unlogged_forces
+from rovval.diagnose.inference.unlogged_forces import ForceLeft, responses_about, unlogged_forces
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.residuals.sensor_faults import FittedFault
 from rovval.diagnose.search.discrepancy import Beside, forces_beside, nominal_forces
@@ -143,10 +143,10 @@ class _Compared:
 def _compared(problem: Problem, selection: Selection, before: Mapping[Names, Weighed]) -> _Compared:
     """The sets that lead are weighed, and then each that would be named, beside others in the place of each of its causes, until the one that is named has
     been, and those of as many causes that fit better."""
-    alone = forces_beside(problem, selection.healthy)
+    segments = responses_about(problem, selection.healthy)
+    alone, unlogged_alone = forces_beside(problem, selection.healthy, segments), unlogged_forces(problem, selection.healthy, segments)
     file, met, nominal = file_evidence(problem, selection), list(selection.models), unlogged_forces(problem)
     gap = open_gap(problem, [selection.healthy, *(m.fit.posterior for m in met if m.fit)])
-    unlogged_alone = unlogged_forces(problem, selection.healthy)
     about_healthy = {frozenset[str](): unlogged_about_healthy(problem, unlogged_alone)} if unlogged_alone else {}
     weighed, weigh, exchanged = dict[Names, Weighed](), _leading(problem, selection), {selection.best.names}
     while True:
@@ -192,8 +192,9 @@ def _weighed(problem: Problem, model: Model, fit: HypothesisFit, nominal: Mappin
     if model.names in before and before[model.names].of == of:
         return before[model.names]
     there, fit = _where_at_work(problem, model, fit)
-    beside = forces_beside(there, fit.posterior, fine=not model.part)
-    left, at_first = unlogged_forces(there, fit.posterior), unlogged_forces(there) if model.part else nominal
+    segments = responses_about(there, fit.posterior)
+    beside = forces_beside(there, fit.posterior, () if model.part else segments)
+    left, at_first = unlogged_forces(there, fit.posterior, segments), unlogged_forces(there) if model.part else nominal
     wanders = any(h.effect.wanders for h in model.causes)
     unlogged = unlogged_where_they_act(there, left, at_first, wanders) if left and at_first else None
     return Weighed(of, beside, variation(there, fit.posterior, model.causes), unlogged)

@@ -54,7 +54,7 @@ class MissingWrench:
 
     def normal(self, each: Array) -> tuple[Array, Array]:
         """Normal equations (f, f) and (f,) of how much of each wrench, ``each`` (m, 12, f), there is."""
-        return np.einsum("wia,wij,wjb->ab", each, self.A, each, optimize=True), np.einsum("wi,wia->a", self.b, each)
+        return np.tensordot(each, self.A @ each, axes=((0, 1), (0, 1))), np.tensordot(self.b, each, axes=2)
 
 
 def missing_wrench(windows: Windows, linear: Linearisation, beta: Array, variance: Array) -> MissingWrench:

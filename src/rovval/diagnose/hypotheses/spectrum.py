@@ -38,12 +38,14 @@ class _Velocities:
         residual: (m, n, 3) north, east, down (m/s), the best error of the window's initial velocity taken out; 0 where unknown.
         ok: (m, n) where they are known.
         place: (m, n, 3) where the vehicle was (m; north, east, down).
+        fades: (m, n, 1) what a wrong initial velocity of the window leaves of itself, of unit length; 0 where residuals are unknown.
     """
 
     t: Array
     residual: Array
     ok: Flags
     place: Array
+    fades: Array
 
 
 def spectral_lines(problem: Problem, point: Posterior) -> tuple[tuple[float, float], ...]:
@@ -156,14 +158,14 @@ def _of_run(windows: Windows, linear: Linearisation) -> _Velocities:
     psi, x, y, z = (interpolated(windows, c, t) for c in ("psi", "x", "y", "z"))
     u, v, w = np.moveaxis(np.where(ok[..., None], linear.r[:, ::every, at], 0.0), -1, 0)
     world = np.stack([np.cos(psi) * u - np.sin(psi) * v, np.sin(psi) * u + np.cos(psi) * v, w], axis=-1)
-    return _Velocities(t, _start_eliminated(t, ok, world), ok, np.stack([x, y, z], axis=-1))
-
-
-def _start_eliminated(t: Array, ok: Flags, x: Array) -> Array:
-    """Values (m, n, c) without the best multiple of what a wrong initial velocity of each window leaves of itself."""
     fades = np.where(ok, np.exp(-(t - t[:, :1]) / TIME_CONSTANT_S), 0.0)[..., None]
-    much = (fades * x).sum(axis=1, keepdims=True) / np.maximum((fades**2).sum(axis=1, keepdims=True), 1e-12)
-    return np.where(ok[..., None], x - fades * much, 0.0)
+    fades /= np.sqrt(np.maximum((fades**2).sum(axis=1, keepdims=True), 1e-12))
+    return _Velocities(t, _start_eliminated(fades, ok, world), ok, np.stack([x, y, z], axis=-1), fades)
+
+
+def _start_eliminated(fades: Array, ok: Flags, x: Array) -> Array:
+    """Values (m, n, c) without the best multiple of what a wrong initial velocity of each window leaves of itself, ``fades``."""
+    return np.where(ok[..., None], x - fades * (np.swapaxes(fades, 1, 2) @ x), 0.0)
 
 
 def _periodogram(runs: Sequence[_Velocities], rates: Array) -> Array:
@@ -189,15 +191,14 @@ def _residual(runs: Sequence[_Velocities]) -> Array:
 
 
 def _answers(runs: Sequence[_Velocities], omega: float, wave: Array | None = None) -> Array:
-    """Velocity (samples, 2) of a body of one time constant by a force of angular frequency ``omega`` (rad/s), in phase with it and a quarter behind; of waves,
-    with their wave vector (2,) (1/m): their phase is taken, and their amplitude decays with depth, where the vehicle was."""
+    """Velocity (samples, 2) of a body of one time constant by a force of angular frequency ``omega`` (rad/s), in two phases a quarter apart, of a size of its
+    own: what the force does not begin with fades as a wrong initial velocity does, and goes with it. Of waves, with their wave vector (2,) (1/m), the phase is
+    taken, and their amplitude decays with depth, where the vehicle was."""
     found = list[Array]()
     for one in runs:
-        phase, size = omega * one.t, np.ones_like(one.t)
+        phase = omega * one.t if wave is None else omega * one.t - one.place[..., :2] @ wave
+        carrier = np.stack([np.cos(phase), np.sin(phase)], axis=-1)
         if wave is not None:
-            phase, size = phase - one.place[..., :2] @ wave, np.exp(-np.linalg.norm(wave) * np.maximum(one.place[..., 2], 0.0))
-        carrier = size * np.exp(1j * phase)
-        begun = carrier[:, :1] * np.exp(-(one.t - one.t[:, :1]) / TIME_CONSTANT_S)
-        answer = (carrier - begun) / (1.0 / TIME_CONSTANT_S + 1j * omega)
-        found.append(_start_eliminated(one.t, one.ok, np.stack([answer.real, answer.imag], axis=-1)).reshape(-1, 2))
+            carrier *= np.exp(-np.linalg.norm(wave) * np.maximum(one.place[..., 2:], 0.0))
+        found.append(_start_eliminated(one.fades, one.ok, carrier).reshape(-1, 2))
     return np.concatenate(found)

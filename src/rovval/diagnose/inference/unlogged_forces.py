@@ -6,7 +6,8 @@ thrusters: of their rms in all, and of its moment at their distance from the cen
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +17,7 @@ from rovval.core.data import Array
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.disturbance import segment_responses
 from rovval.diagnose.problem.problem import Problem
-from rovval.diagnose.problem.variance_components import evenly_spread, variance_components
+from rovval.diagnose.problem.variance_components import Components, evenly_spread, variance_components
 from rovval.diagnose.residuals.external_forces import typical_wrench
 from rovval.diagnose.residuals.normal_equations import Linearisation
 from rovval.diagnose.windows.windows import axis_channels
@@ -39,18 +40,26 @@ class ForceLeft(NamedTuple):
     alike: float
 
 
-def unlogged_forces(problem: Problem, point: Posterior | None = None) -> dict[str, float]:
-    """Standard deviation (1) of the force on each measured axis beside a fit, at its minimum, or beside the nominal vehicle; empty where windows are too few
-    to tell such forces from steady ones, or where the thrusters stand still."""
+def responses_about(problem: Problem, point: Posterior | None = None) -> tuple[Array, ...]:
+    """Response of each run's windows (m, n, c, 6 s) to a force of the thrusters' rms on one axis in one of their s segments, about a fit or about the nominal
+    vehicle."""
+    return segment_responses(problem.runs, problem.origin if point is None else point.beta, typical_wrench(problem.runs))
+
+
+def unlogged_forces(problem: Problem, point: Posterior | None = None, segments: Sequence[Array] = ()) -> dict[str, float]:
+    """Standard deviation (1) of the force on each measured axis beside a fit, at its minimum, or beside the nominal vehicle, by the responses of its
+    ``segments`` where these are known (`responses_about`); empty where windows are too few to tell such forces from steady ones, or where the thrusters stand
+    still."""
     if problem.components is None or not any(windows.actuation.inputs.speed.any() for windows in problem.runs):
         return {}
     wrench, some = typical_wrench(problem.runs), evenly_spread(problem.runs)
-    runs, beta = [windows.some(some) for windows in problem.runs], problem.origin if point is None else point.beta
+    runs = [windows.some(some) for windows in problem.runs]
     step = np.zeros(0) if point is None else point.solve(point.curvature, point.descent)
     whole = problem.nominal if point is None else [one.after(step) for one in point.whitened]
     left = [Linearisation(one.r[some], one.S[some], one.J[some], (), one.valid[some]) for one in whole]
-    noise = np.sqrt(problem.likelihood.variance.mean(axis=0))
-    size = variance_components(runs, left, segment_responses(runs, beta, wrench), noise).share * wrench / thrusters_force(wrench, problem.plant.vehicle)
+    begin = Components.initial(np.sqrt(problem.likelihood.variance.mean(axis=0)))
+    answers = [one[some] for one in segments] or responses_about(replace(problem, runs=tuple(runs)), point)
+    size = variance_components(runs, left, answers, begin).share * wrench / thrusters_force(wrench, problem.plant.vehicle)
     return {axis: float(value) for axis, value in zip(AXES, size, strict=True) if axis in axis_channels(runs[0])}
 
 

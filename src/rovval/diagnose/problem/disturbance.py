@@ -15,6 +15,7 @@ from itertools import pairwise
 
 import numpy as np
 from scipy.linalg import block_diag
+from scipy.linalg.lapack import dpotrf, dpotri
 
 from rovval.core.channels import AXES
 from rovval.core.data import Array
@@ -145,10 +146,24 @@ def _expectation_maximisation(data: NormalEquations, share: Array, correlation: 
     Expectation: posterior mean and covariance of every window's forces. Maximisation: their mean second moments over windows and segments.
     """
     for _ in range(DISTURBANCE_ROUNDS):
-        cover = np.linalg.inv(data.A + np.linalg.inv(covariance(share, correlation)))
+        cover, _ = inverse(data.A + np.linalg.inv(covariance(share, correlation)))
         mean = np.einsum("wij,wj->wi", cover, data.b)
         share, correlation = moments(cover + mean[:, :, None] * mean[:, None, :])
     return share, correlation
+
+
+def inverse(information: Array) -> tuple[Array, float]:
+    """Inverses (m, k, k) of positive definite matrices, by their Cholesky factors, and the sum of the logarithms of these inverses' determinants."""
+    found, log_det = np.empty_like(information), 0.0
+    for matrix, own in zip(information, found, strict=True):
+        root, failed = dpotrf(matrix, lower=1)
+        if failed:
+            raise np.linalg.LinAlgError("a matrix that is not positive definite")
+        log_det -= 2.0 * float(np.log(np.diagonal(root)).sum())
+        own[:] = dpotri(root, lower=1, overwrite_c=1)[0]
+    at = np.arange(information.shape[-1])
+    found[:, at, at] *= 0.5
+    return found + np.swapaxes(found, 1, 2), log_det
 
 
 def moments(second: Array) -> tuple[Array, Array]:

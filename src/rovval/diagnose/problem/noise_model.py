@@ -103,7 +103,7 @@ def fit_noise_model(
             disturbed, beside = _with_disturbances(runs, plain, [correlated(segments, components.root()) for segments in responses.segments])
             _, best = _library_fit(disturbed, beside, np.tile(components.noise**2, (len(white), 1)), library, folds, design_effect)
         left = [replace(one, r=np.where(windows.ok, one.r - one.S @ best, 0.0)) for windows, one in zip(runs, plain, strict=True)]
-        components = variance_components(runs, left, responses.segments, np.sqrt(white.mean(axis=0)))
+        components = variance_components(runs, left, responses.segments, components or Components.initial(np.sqrt(white.mean(axis=0))))
     runs, linear = _with_disturbances(runs, linear, principal_parts(runs, disturbance.response, white))
     return NoiseModel(runs, linear, white * channel_factor, total, design_effect, disturbance, components)
 

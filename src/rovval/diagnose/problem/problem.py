@@ -18,11 +18,10 @@ from rovval.core.errors import BadInput
 from rovval.core.large_arrays import side_by_side
 from rovval.diagnose.criteria import EXACT_WINDOWS, LEAST_WINDOWS
 from rovval.diagnose.problem.cross_validation import Fold, make_folds
-from rovval.diagnose.problem.disturbance import Disturbance, correlated, principal_parts, segment_responses
+from rovval.diagnose.problem.disturbance import Disturbance, correlated, principal_parts
 from rovval.diagnose.problem.noise_model import equations_of_runs, fit_noise_model
 from rovval.diagnose.problem.prior import loosened_by_closed_loop, prior_mean, tolerance_prior
 from rovval.diagnose.problem.variance_components import Components
-from rovval.diagnose.residuals.external_forces import typical_wrench
 from rovval.diagnose.residuals.normal_equations import (
     Linearisation,
     NormalEquations,
@@ -166,7 +165,7 @@ def equations_at(problem: Problem, beta: Array, columns: tuple[int, ...], displa
             for begin in range(0, windows.count, WINDOWS_AT_ONCE):
                 which = slice(begin, begin + WINDOWS_AT_ONCE)
                 few = windows.part(which)
-                dynamics = normal_equations(linearise(few, beta, columns, displaced), few.ok, problem.likelihood.variance, nuisance_sd(few))
+                dynamics = normal_equations(linearise(few, beta, (), displaced, columns), few.ok, problem.likelihood.variance, nuisance_sd(few))
                 yield dynamics + check.normal_equations(beta, dynamics.columns, problem.design_effect, which=which)
 
     return gathered(parts(), problem.window_count)
@@ -189,15 +188,16 @@ def whitened(problem: Problem, linear: Sequence[Linearisation]) -> tuple[Whitene
     return tuple(whiten(one, windows.ok, variance, nuisance_sd(windows)) for windows, one in zip(problem.runs, linear, strict=True))
 
 
-def in_fine_metric(problem: Problem, beta: Array, linear: Sequence[Linearisation]) -> tuple[Problem, tuple[Linearisation, ...]] | None:
-    """The problem with the fine metric in place of that of its likelihood, and the linearisation ``linear`` of each run about ``beta`` (k,) with the
-    disturbances of that metric among its nuisances; None where the problem has no such metric."""
+def in_fine_metric(
+    problem: Problem, segments: Sequence[Array], linear: Sequence[Linearisation]
+) -> tuple[Problem, tuple[Linearisation, ...]] | None:
+    """The problem with the fine metric in place of that of its likelihood, and the linearisation ``linear`` of each run with the disturbances of that metric
+    among its nuisances, of which ``segments`` are the responses there (`disturbance.segment_responses`); None where the problem has no such metric."""
     if problem.components is None:
         return None
     found, starts = problem.components, len(initial_state_sd(problem.runs[0]))
     variance = np.tile(found.noise**2, (len(problem.likelihood.variance), 1))
-    responses = [correlated(segments, found.root()) for segments in segment_responses(problem.runs, beta, typical_wrench(problem.runs))]
-    parts = principal_parts(problem.runs, responses, variance)
+    parts = principal_parts(problem.runs, [correlated(one, found.root()) for one in segments], variance)
     runs = tuple(replace(windows, disturbance_response=one) for windows, one in zip(problem.runs, parts, strict=True))
     beside = tuple(replace(one, J=side_by_side(one.J[..., :starts], more)) for one, more in zip(linear, parts, strict=True))
     return replace(problem, runs=runs, likelihood=replace(problem.likelihood, variance=variance)), beside

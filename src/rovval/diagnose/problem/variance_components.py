@@ -6,7 +6,7 @@ Both are found together, by expectation and maximisation (Dempster, Laird and Ru
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from rovval.diagnose.effort import (
     INITIAL_DISTURBANCE,
     LARGEST_CHANGE,
 )
-from rovval.diagnose.problem.disturbance import LEAST, covariance, moments
+from rovval.diagnose.problem.disturbance import LEAST, covariance, inverse, moments
 from rovval.diagnose.residuals.normal_equations import Linearisation
 from rovval.diagnose.residuals.nuisances import initial_state_sd
 from rovval.diagnose.windows.windows import Windows
@@ -50,6 +50,11 @@ class Components:
         return np.concatenate([np.log(np.maximum(self.share, LEAST)), np.log(self.correlation / (1.0 - self.correlation)), np.log(self.noise)])
 
     @classmethod
+    def initial(cls, noise: Array) -> Components:
+        """Where the search for them begins, where nothing but some ``noise`` (c,) of each channel is known."""
+        return cls(np.full(len(AXES), INITIAL_DISTURBANCE), np.full(len(AXES), INITIAL_CORRELATION), noise)
+
+    @classmethod
     def unpacked(cls, x: Array) -> Components:
         """The reverse, correlations within their limits (`SEGMENT_CORRELATION`)."""
         axes = len(AXES)
@@ -75,15 +80,13 @@ def evenly_spread(runs: Sequence[Windows]) -> slice:
     return slice(None, None, max(1, -(-sum(windows.count for windows in runs) // COMPONENT_WINDOWS)))
 
 
-def variance_components(runs: Sequence[Windows], left: Sequence[Linearisation], segments: Sequence[Array], noise: Array) -> Components:
-    """The components under which the residuals of ``left`` are most likely, of some windows of all runs (`evenly_spread`).
+def variance_components(runs: Sequence[Windows], left: Sequence[Linearisation], segments: Sequence[Array], begin: Components) -> Components:
+    """The components under which the residuals of ``left`` are most likely, of some windows of all runs (`evenly_spread`), searched for from ``begin`` on.
 
-    ``segments`` are the responses (m, n, c, 6 s) to forces of the thrusters' rms (`disturbance.segment_responses`); ``noise`` (c,) of each channel is where the
-    search begins.
+    ``segments`` are the responses (m, n, c, 6 s) to forces of the thrusters' rms (`disturbance.segment_responses`).
     """
     data = _equations(runs, left, segments, evenly_spread(runs))
-    axes, before = len(AXES), -np.inf
-    x = Components(np.full(axes, INITIAL_DISTURBANCE), np.full(axes, INITIAL_CORRELATION), np.maximum(noise, data.least)).packed()
+    before, x = -np.inf, replace(begin, noise=np.maximum(begin.noise, data.least)).packed()
     for _ in range(COMPONENT_CYCLES):
         _, one = _round(data, Components.unpacked(x))
         likely, two = _round(data, one)
@@ -123,10 +126,10 @@ def _round(data: _Equations, at: Components) -> tuple[float, Components]:
     A, b = (weight @ data.A.reshape(channels, -1)).reshape(m, k, k), np.tensordot(weight, data.b, 1)
     prior = np.eye(k)
     prior[data.starts :, data.starts :] = np.linalg.inv(covariance(at.share, at.correlation))
-    cover = np.linalg.inv(A + prior)
+    cover, smaller = inverse(A + prior)
     mean = np.einsum("wij,wj->wi", cover, b)
     samples = data.count.sum(axis=1)
-    volume = float(np.linalg.slogdet(cover)[1].sum()) + m * float(np.linalg.slogdet(prior)[1]) - 2.0 * float(samples @ np.log(at.noise))
+    volume = smaller + m * float(np.linalg.slogdet(prior)[1]) - 2.0 * float(samples @ np.log(at.noise))
     likely = 0.5 * (volume - float((weight @ data.c).sum()) + float((b * mean).sum()))
     second = cover + mean[:, :, None] * mean[:, None, :]
     left = data.c.sum(axis=1) - 2.0 * np.einsum("cwi,wi->c", data.b, mean) + data.A.reshape(channels, -1) @ second.reshape(-1)

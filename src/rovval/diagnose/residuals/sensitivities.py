@@ -48,13 +48,13 @@ def linearise(
         windows: windows of one run.
         beta: parameters of the plant.
         columns: slots, by central differences.
-        directions: displaced columns, behind these.
-        coarse: slots, last, by one-sided differences.
+        directions: displaced columns, last.
+        coarse: slots, behind ``columns``, by one-sided differences.
         starts: whether sensitivities to the windows' initial states are taken.
     """
     states, drifting, m = initial_states(windows) if starts else [], drifting_channels(windows), windows.count
     lanes = perturbations(windows, beta, states, columns, directions) + forward_differences(windows, beta, coarse)
-    ids = (*columns, *(d.id for d in directions), *coarse)
+    ids = (*columns, *coarse, *(d.id for d in directions))
     shape = (m, windows.steps + 1, len(windows.channels))
     pushed = 0 if windows.disturbance_response is None else windows.disturbance_response.shape[-1]
     r, J, valid = np.zeros(shape), columns_first(*shape, columns=len(states) + len(drifting) + pushed), np.zeros(m, dtype=bool)

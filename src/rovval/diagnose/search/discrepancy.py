@@ -124,10 +124,10 @@ class Beside(NamedTuple):
     axes: tuple[str, ...]
 
 
-def forces_beside(problem: Problem, point: Posterior, fine: bool = True) -> Beside:
-    """Those beside the fit that ended at ``point``, and, where ``fine`` asks for it, those in the fine metric."""
+def forces_beside(problem: Problem, point: Posterior, segments: Sequence[Array] = ()) -> Beside:
+    """Those beside the fit that ended at ``point``, and, where the responses of its ``segments`` are given (`segment_responses`), those in the fine metric."""
     linear = point.linear
-    finer = in_fine_metric(problem, point.beta, linear) if fine else None
+    finer = in_fine_metric(problem, segments, linear) if segments else None
     names, answers = generic_force_responses(problem.runs, point.beta)
     prior, expected = (point.precision, point.precision * point.departure), expected_forces(problem, names)
     forces = beside(problem, names, answers, linear, *prior, expected)

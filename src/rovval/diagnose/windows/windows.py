@@ -127,7 +127,7 @@ def channel_difference(windows: Windows, a: Array, b: Array, out: Array | None =
     """a - b (..., c) by channel, angles wrapped to (-pi, pi]; rotation vectors are no longer than that. It is written to ``out`` where that is given."""
     out = np.asarray(np.subtract(a, b, out=out))
     for i, name in enumerate(windows.channels):
-        if name in ANGLES and (np.abs(out[..., i]) > np.pi).any():
+        if name in ANGLES and (out[..., i].max(initial=0.0) > np.pi or out[..., i].min(initial=0.0) < -np.pi):
             out[..., i] = wrap(out[..., i])
     return out
 
