@@ -21,8 +21,9 @@ INPUTS = {c: c for c in ABSENT} | {"psi": "turned"}  # what inputs hold of a cha
 def checked(
     found: Sequence[slots.Slot], null: Array, thrusters: int, inputs: Inputs, start: Indices, steps: int, nu0: Array, eta0: Array, beta: Array,
     extra: Indices | None, extra_gain: Array | None,
-) -> tuple[Indices, Array, Array, Array, Indices, Array]:  # fmt: skip
-    """Start samples, first states, parameters, extra wrenches and their factors as arrays, (B,) or (B, k); see `Plant.simulate` for what they are.
+) -> tuple[Indices, Array, Array, Array, Indices, Array, Indices, Indices]:  # fmt: skip
+    """Start samples, first states, parameters, extra wrenches and their factors as arrays, (B,) or (B, k); see `Plant.simulate` for what they are. And of each
+    row of neighbours with equal parameters the first lane (P,), and the row (B,) that each lane is of.
 
     Raises:
         BadInput: shapes that do not fit, samples that the log does not hold, states that are not finite; all at once.
@@ -36,7 +37,8 @@ def checked(
     given: dict[str, Array | Indices] = {"nu0": nu0, "eta0": eta0, "beta": beta, "extra": which, "extra_gain": gain}
     if problems := _misfits(given, len(found), thrusters, inputs, start, steps):
         raise BadInput(all_at_once(problems, "simulate"))
-    rows = beta[in_a_row(beta)[0]]
+    first, numbers = _in_a_row(beta)
+    rows = beta[first]
     slots.check_bounds(found, rows)
     moved = [found[int(c)] for c in np.flatnonzero((rows != null).any(axis=0))]
     missing = [f"{n} needs {c}" for n in sorted({s.effect for s in moved}) for c in effects.load(n).needs if c in ABSENT and _absent(inputs, c)]
@@ -44,10 +46,10 @@ def checked(
     missing += _nothing_instead(found, null, rows, inputs)
     if missing:
         raise UsageProblem(all_at_once(missing, "channels that the log does not hold"))
-    return start, nu0, eta0, beta, which, gain
+    return start, nu0, eta0, beta, which, gain, first, numbers
 
 
-def in_a_row(beta: Array) -> tuple[Indices, Indices]:
+def _in_a_row(beta: Array) -> tuple[Indices, Indices]:
     """The first lane (P,) of each row of neighbours with equal parameters ``beta`` (B, K), and the row (B,) that each lane is of."""
     begins = np.concatenate([[True], (beta[1:] != beta[:-1]).any(axis=1)])
     return np.flatnonzero(begins), np.cumsum(begins) - 1

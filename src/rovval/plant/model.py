@@ -14,7 +14,7 @@ from rovval.core.errors import UsageProblem
 from rovval.effects.lanes import nominal
 from rovval.effects.log import Log
 from rovval.plant import platforms, sensors, slots
-from rovval.plant.arguments import checked, in_a_row
+from rovval.plant.arguments import checked
 from rovval.plant.codegen.layout import RATE_LIMIT, SPEED_LIMIT
 from rovval.plant.inputs import Inputs, prepare
 from rovval.plant.integration import Integrator, Starts
@@ -95,9 +95,10 @@ class Plant:
             UsageProblem: parameters out of bounds, or an effect whose channel the inputs do not hold.
         """
         thrusters = len(self.vehicle.thruster)
-        start, nu0, eta0, beta, which, gain = checked(self.slots, self.null, thrusters, inputs, start, steps, nu0, eta0, beta, extra, extra_gain)
+        start, nu0, eta0, beta, which, gain, first, numbers = checked(
+            self.slots, self.null, thrusters, inputs, start, steps, nu0, eta0, beta, extra, extra_gain
+        )
         prepared = prepare(inputs, self.vehicle)
-        first, numbers = in_a_row(beta)
         lowered = lower(self.nominal, self.slots, self.index, self.null, beta[first], self._resting)
         starts = Starts(start, *sensors.unobserve(self.vehicle, self.index, self.null, beta, nu0, eta0), which, gain, numbers)
         motion = partial(self.integrator.motion, inputs, prepared, lowered, self.integrator.packed(lowered, inputs.dt, starts))

@@ -192,8 +192,8 @@ def _weighed(problem: Problem, model: Model, fit: HypothesisFit, nominal: Mappin
     if model.names in before and before[model.names].of == of:
         return before[model.names]
     there, fit = _where_at_work(problem, model, fit)
-    segments = responses_about(there, fit.posterior)
-    beside = forces_beside(there, fit.posterior, () if model.part else segments)
+    segments = () if model.part else responses_about(there, fit.posterior)
+    beside = forces_beside(there, fit.posterior, segments)
     left, at_first = unlogged_forces(there, fit.posterior, segments), unlogged_forces(there) if model.part else nominal
     wanders = any(h.effect.wanders for h in model.causes)
     unlogged = unlogged_where_they_act(there, left, at_first, wanders) if left and at_first else None

@@ -42,7 +42,9 @@ class ForceLeft(NamedTuple):
 
 def responses_about(problem: Problem, point: Posterior | None = None) -> tuple[Array, ...]:
     """Response of each run's windows (m, n, c, 6 s) to a force of the thrusters' rms on one axis in one of their s segments, about a fit or about the nominal
-    vehicle."""
+    vehicle; none where windows are too few for it to say something."""
+    if problem.components is None:
+        return ()
     return segment_responses(problem.runs, problem.origin if point is None else point.beta, typical_wrench(problem.runs))
 
 
