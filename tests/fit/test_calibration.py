@@ -19,7 +19,8 @@ from rovval.simulation import carried_effects, simulate
 from rovval.simulation.fitted_commands import beyond_fitted, fitted
 from rovval.simulation.fitted_tolerances import fitted_tolerances
 from rovval.vehicle import load, parse
-from rovval.vehicle.model import Vehicle
+from rovval.vehicle.audit import audit
+from rovval.vehicle.model import Vehicle, inertia
 from rovval.vehicle.write import to_toml
 
 WRONG = {"thrust.gain": -0.5, "quadratic_drag[surge]": 0.6, "linear_drag[yaw]": 0.7, "thrust.height": 0.1, "thrust.ahead": 0.08, "trim.buoyancy": 30.0}
@@ -130,6 +131,20 @@ def test_every_log_that_cannot_be_used_is_told():
 def test_none_at_all_is_refused():
     with pytest.raises(BadInput, match="windows of 10 s"):
         calibrate([dive(4, 15.0)], merlin())
+
+
+@pytest.mark.parametrize("along", ["x", "y", "z"])
+@pytest.mark.parametrize("factor", [-6.0, -0.5, 0.5, 6.0])
+def test_mass_may_be_spread_otherwise_and_is_that_of_a_body_still(along: str, factor: float):
+    """A moment of inertia had been scaled by itself, and a calibration on tank runs wrote a vehicle that no program would take any more."""
+    flat = load("bluerov2_heavy")
+    flat = flat.model_copy(update={"body": flat.body.model_copy(update={"Ixz": 0.02})})
+    [one] = [one for one in unknowns(flat, CHANNELS) if one.key == f"mass.spread.{along}"]
+    assert audit(applied(flat, (one,), np.array([factor]))) == ()
+    moved = np.diag(inertia(applied(flat, (one,), np.array([factor])).body)) / np.diag(inertia(flat.body))
+    mine = "xyz".index(along)
+    assert moved[mine] == pytest.approx(1.0), "it does not lie off its own axis"
+    assert ((np.delete(moved, mine) - 1.0) * factor > 0).all()
 
 
 def test_drag_that_a_file_leaves_out_is_there_with_a_first_guess():

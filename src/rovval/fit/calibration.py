@@ -244,7 +244,9 @@ def _problem(records: Sequence[Record], vehicle: Vehicle, chosen: Sequence[Unkno
 
     mean = np.array([-vehicle.calibration.get(one.key, 0.0) for one in chosen])
     sd, (low, high) = np.array([one.sd for one in chosen]), bounds(vehicle, chosen)
-    return Problem(residuals, [one.ok for one in records], records[0].run.dt, _floor(records), mean, sd, low, high)
+    return Problem(
+        residuals, [one.ok for one in records], records[0].run.dt, _floor(records), mean, sd, low, high, [one.kinematics.of(chosen) for one in records]
+    )  # fmt: skip
 
 
 def _floor(records: Sequence[Record]) -> Array:

@@ -27,10 +27,26 @@ Residuals = Callable[[Array], Sequence[Array]]
 
 
 @dataclass(frozen=True, slots=True)
+class Quadratic:
+    """A log likelihood that is quadratic in the values: its ``curvature`` (k, k), turned positive, and its ``slope`` (k,) where all values are 0."""
+
+    curvature: Array
+    slope: Array
+
+    def cost(self, values: Array) -> float:
+        """Minus the log likelihood of ``values`` (k,), up to a constant."""
+        return float(0.5 * values @ self.curvature @ values - self.slope @ values)
+
+    def downhill(self, values: Array) -> Array:
+        """Slope (k,) of that cost."""
+        return self.curvature @ values - self.slope
+
+
+@dataclass(frozen=True, slots=True)
 class Problem:
     """``residuals`` of values (k,): one array (..., channels) a run, NaN where the simulation stopped or the values are none that a vehicle may have;
     ``ok`` of the same shapes; ``dt`` s a sample; ``floor`` (channels,) noise of the sensors; ``mean`` and ``sd`` (k,) of the prior; ``low`` and ``high``
-    (k,) bounds of the values."""
+    (k,) bounds of the values; ``besides``, what each run says without any simulation."""
 
     residuals: Residuals
     ok: Sequence[Flags]
@@ -40,11 +56,12 @@ class Problem:
     sd: Array
     low: Array
     high: Array
+    besides: Sequence[Quadratic]
 
     def log_likelihood(self, values: Array, scale: Array) -> float:
         """Log likelihood at ``values`` (k,) and a ``scale`` (channels,), up to a constant; minus infinity where the simulation stops."""
         residuals = self.residuals(values)
-        return -_misfit(self, residuals, scale) if _finite(residuals) else -np.inf
+        return -_misfit(self, values, residuals, scale) if _finite(residuals) else -np.inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,16 +154,16 @@ def _scale(problem: Problem, residuals: Sequence[Array]) -> Array:
 
 def _cost(problem: Problem, values: Array, residuals: Sequence[Array], scale: Array) -> float:
     """Minus the log posterior at a scale of each channel, up to a constant."""
-    return 0.5 * float((((values - problem.mean) / problem.sd) ** 2).sum()) + _misfit(problem, residuals, scale)
+    return 0.5 * float((((values - problem.mean) / problem.sd) ** 2).sum()) + _misfit(problem, values, residuals, scale)
 
 
-def _misfit(problem: Problem, residuals: Sequence[Array], scale: Array) -> float:
-    """Minus the log likelihood of Student-t residuals, correlated in time, up to a constant."""
+def _misfit(problem: Problem, values: Array, residuals: Sequence[Array], scale: Array) -> float:
+    """Minus the log likelihood of Student-t residuals, correlated in time, and of what the runs say besides, up to a constant."""
     total = 0.0
     for r, ok in zip(residuals, problem.ok, strict=True):
         z = np.where(ok, r / scale, 0.0)
         total += float((FREEDOM + 1) / 2 * np.log1p(z**2 / FREEDOM).sum() + (ok * np.log(scale)).sum())
-    return total * min(problem.dt / INDEPENDENT_S, 1.0)
+    return total * min(problem.dt / INDEPENDENT_S, 1.0) + sum(one.cost(values) for one in problem.besides)
 
 
 def _beside(problem: Problem, values: Array, j: int) -> tuple[Sequence[Array], float]:
@@ -187,9 +204,9 @@ def _by_run(problem: Problem, values: Array, residuals: Sequence[Array], scale: 
     """The likelihood's part of both, of each run: (m, k, k) and (m, k)."""
     beside, step = zip(*(_beside(problem, values, j) for j in range(len(values))), strict=True)
     share, found = min(problem.dt / INDEPENDENT_S, 1.0), []
-    for i, (r, ok) in enumerate(zip(residuals, problem.ok, strict=True)):
+    for i, (r, ok, known) in enumerate(zip(residuals, problem.ok, problem.besides, strict=True)):
         J = np.stack([(np.nan_to_num(one[i]) - r) / step[j] for j, one in enumerate(beside)], axis=-1)
         weight = share * (FREEDOM + 1) / (FREEDOM + (r / scale) ** 2) / scale**2 * ok
         flat, w = J.reshape(-1, J.shape[-1]), weight.reshape(-1)
-        found.append((flat.T @ (w[:, None] * flat), flat.T @ (w * r.reshape(-1))))
+        found.append((flat.T @ (w[:, None] * flat) + known.curvature, flat.T @ (w * r.reshape(-1)) + known.downhill(values)))
     return np.stack([A for A, _ in found]), np.stack([b for _, b in found])

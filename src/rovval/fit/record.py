@@ -12,6 +12,7 @@ from rovval.core.channels import VELOCITIES
 from rovval.core.data import Array, Flags, Run
 from rovval.core.errors import BadInput
 from rovval.core.frames import rotation_from_euler
+from rovval.fit.kinematics import Kinematics, kinematics
 from rovval.plant import Plant
 from rovval.simulation.actuation import Actuation, recorded_actuation, start_states, startable
 from rovval.vehicle.model import Vehicle
@@ -24,7 +25,7 @@ FEWEST = 2  # windows of a run: with one nothing is restarted
 @dataclass(frozen=True, slots=True)
 class Record:
     """``start`` (m,) first samples of the windows, ``steps`` samples each; ``nu0`` and ``eta0`` (m, 6) measured there; ``measured`` and ``ok``
-    (m, steps + 1, 10) by `CHANNELS`."""
+    (m, steps + 1, 10) by `CHANNELS`; and what ``kinematics`` say of the sensors."""
 
     run: Run
     actuation: Actuation
@@ -34,6 +35,7 @@ class Record:
     eta0: Array
     measured: Array
     ok: Flags
+    kinematics: Kinematics
 
 
 def record(run: Run, vehicle: Vehicle, window_s: float) -> Record:
@@ -64,7 +66,7 @@ def record(run: Run, vehicle: Vehicle, window_s: float) -> Record:
     good = np.column_stack([*(run.ok(c) for c in VELOCITIES), level, level, level, run.ok("z")])
     measured, ok = seen[at_samples], good[at_samples]
     ok[:, 0] = False  # where the window begins, measured and simulated are the same
-    return Record(run, actuation, first, steps, nu0, eta0, measured, ok)
+    return Record(run, actuation, first, steps, nu0, eta0, measured, ok, kinematics(run, vehicle, window_s))
 
 
 def begun(one: Record, seconds: float) -> Record:

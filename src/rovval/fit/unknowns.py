@@ -26,7 +26,7 @@ Diagonal = tuple[float, ...]
 
 WIDE = log(3.0)  # gain, lag and drag: two published sets of one vehicle differ by as much (Wu 2018; von Benzon et al. 2022)
 ADDED = log(1.5)  # added mass: spread of strip theory, panel codes and tests of one hull
-INERTIA = log(1.3)  # rigid-body inertia: from weighed parts it is known to a third (chosen)
+SPREAD = log(1.3)  # second moments of mass: from weighed parts they are known to a third (chosen)
 SINGLE = 0.1  # one thruster's gain about the others': spread of a batch (chosen)
 ASTERN = 0.1  # ratio of thrust astern to ahead about the thruster's table (chosen)
 VERTICAL = log(1.5)  # ratio of vertical to horizontal thrusters: shrouding by frame and buoyancy (chosen)
@@ -54,7 +54,7 @@ RIGHTED = (  # the same three where weight and buoyancy bring the vehicle back
     "let go from as much {0} as the thrusters can hold: how its first, large swings die away",
     "let go from a held {0} with all thrusters off: the period of its swings",
 )
-PENDULUM = "no motion in water, which shows only its sum with the added mass in {0}: swing the vehicle in air, or add up weighed parts"
+PENDULUM = "no motion in water, which shows moments of inertia only with the added mass: swing the vehicle in air, or add up weighed parts"
 DRIFT = "half a minute submerged and level with all thrusters off: how it rises or sinks"
 LEVEL = "fast steady {0} with a depth sensor: a false angle is depth that changes where the attitude says it should not"
 STRAIGHT = "fast straight runs in {0} and in {1}: in a turned frame one of them shows in the other"
@@ -110,7 +110,7 @@ def unknowns(vehicle: Vehicle, channels: Sequence[str]) -> tuple[Unknown, ...]:
         found.append(Unknown(f"linear_drag[{axis}]", "factor", WIDE, "1", f"linear drag in {axis}", slow))
         found.append(Unknown(f"quadratic_drag[{axis}]", "factor", WIDE, "1", f"quadratic drag in {axis}", fast))
         found.append(Unknown(f"added_mass[{axis}]", "factor", ADDED, "1", f"added mass in {axis}", jerk))
-    found += [Unknown(f"inertia[{axis}]", "factor", INERTIA, "1", f"moment of inertia in {axis}", PENDULUM.format(axis)) for axis in AXES[3:]]
+    found += [Unknown(f"mass.spread.{c}", "factor", SPREAD, "1", f"second moment of mass along {c}", PENDULUM) for c in "xyz"]
     found.append(Unknown("trim.buoyancy", "offset", TRIM * vehicle.weight, "N", "buoyancy beyond the file's", DRIFT))
     found += [Unknown(f"trim.centre.{c}", "offset", CENTRE * arm, "m", f"centre of buoyancy, {c}", how) for c, how in SETTLES.items()]
     if {"phi", "theta"} & set(channels):
@@ -192,10 +192,21 @@ def _body(vehicle: Vehicle, at: Mapping[str, float]) -> Body:
         name: _scaled(getattr(body, name), diagonal, np.array([at.get(f"{name}[{axis}]", 1.0) for axis in AXES]))
         for name, diagonal in guess.items()
     }
-    changed |= {f"I{c}{c}": getattr(body, f"I{c}{c}") * at.get(f"inertia[{axis}]", 1.0) for c, axis in zip("xyz", AXES[3:], strict=True)}
+    changed |= _inertia(body, np.array([at.get(f"mass.spread.{c}", 1.0) for c in "xyz"]))
     centre = tuple(was + at.get(f"trim.centre.{c}", 0.0) for was, c in zip(body.centre_of_buoyancy, "xyz", strict=True))
     volume = body.volume + at.get("trim.buoyancy", 0.0) / (vehicle.water.density * vehicle.water.gravity)
     return body.model_copy(update={**changed, "centre_of_buoyancy": centre, "volume": volume})
+
+
+def _inertia(body: Body, factor: Array) -> dict[str, float]:
+    """Moments and products of inertia of a body whose second moments of mass along the axes are larger by a ``factor`` (3,) each: of these none is negative,
+    whatever the factors, so that no moment of inertia exceeds the sum of the others."""
+    if (factor == 1.0).all():
+        return {}
+    tensor = inertia(body)
+    spread = (0.5 * np.trace(tensor) * np.eye(3) - tensor) * np.sqrt(np.outer(factor, factor))
+    found = np.trace(spread) * np.eye(3) - spread
+    return {f"I{a}{b}": float(found[i, j] if i == j else -found[i, j]) for i, a in enumerate("xyz") for j, b in enumerate("xyz") if i <= j}
 
 
 def _scaled(was: tuple[float, ...] | tuple[tuple[float, ...], ...], diagonal: Array, factor: Array) -> Diagonal | tuple[Diagonal, ...]:

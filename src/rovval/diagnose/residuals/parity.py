@@ -8,8 +8,8 @@ dynamics, so that a sensor fault has to explain both.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -69,6 +69,16 @@ class ParityResiduals:
     def delays(self) -> tuple[int, ...]:
         """Slots of sensors' delays."""
         return tuple(c for c, is_delay in zip(self.equations.columns, self.is_delay, strict=True) if is_delay)
+
+    def only(self, names: Collection[str]) -> ParityResiduals:
+        """The same of these relations alone."""
+        which, own = [i for i, name in enumerate(self.relations) if name in names], [self.columns.index(c) for c in self.equations.columns]
+        at = [i for i in range(self.rows.shape[1]) if i % len(self.relations) in which]
+        rows, signatures = self.rows[:, at], self.signatures[:, at]
+        return replace(
+            self, rows=rows, signatures=signatures, equations=_equations(rows, signatures[..., own], self.equations.columns),
+            relations=tuple(self.relations[i] for i in which), sigma=tuple(self.sigma[i] for i in which), left=tuple(self.left[i] for i in which),
+        )  # fmt: skip
 
     def at_delays(self, beta: Array) -> tuple[Array, Array]:
         """Residuals (m, q) without the part that the delays of ``beta`` (k,), in seconds, cause, and signatures (m, q, k) at these delays."""
