@@ -136,7 +136,7 @@ def test_none_at_all_is_refused():
 @pytest.mark.parametrize("along", ["x", "y", "z"])
 @pytest.mark.parametrize("factor", [-6.0, -0.5, 0.5, 6.0])
 def test_mass_may_be_spread_otherwise_and_is_that_of_a_body_still(along: str, factor: float):
-    """A moment of inertia had been scaled by itself, and a calibration on tank runs wrote a vehicle that no program would take any more."""
+    """A moment of inertia had been scaled by itself, and a calibration on tank runs wrote a vehicle that rovval then refused to read."""
     flat = load("bluerov2_heavy")
     flat = flat.model_copy(update={"body": flat.body.model_copy(update={"Ixz": 0.02})})
     [one] = [one for one in unknowns(flat, CHANNELS) if one.key == f"mass.spread.{along}"]

@@ -9,8 +9,6 @@ from rovval.fit.estimate import Problem, Quadratic, maximum
 
 MEASURED, FLOOR = np.array([2.0, 1.5]), np.array([0.1])
 OK = [np.ones((200, 1), dtype=bool)]
-
-
 NOTHING = Quadratic(np.zeros((2, 2)), np.zeros(2))
 
 

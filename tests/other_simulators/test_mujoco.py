@@ -42,8 +42,6 @@ CASES: dict[str, tuple[Fault, tuple[str, ...]]] = {
     "roll off by 4 degrees": (Fault(roll=math.radians(4.0)), ("attitude_bias",)),
     "yaw rate off by 2 deg/s": (Fault(yaw=math.radians(2.0)), ("gyro_bias",)),
 }
-
-
 CALIBRATED_ON = ("first", "second", "third")
 SEEDS = (1, 8)  # a vehicle takes six minutes
 
