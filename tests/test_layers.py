@@ -46,6 +46,7 @@ INSIDE = {
         ("documentation",), ("inspection",), ("",), ("formats",), ("autopilot",), ("assembly",), ("clocks",), ("contents",), ("table",),
         ("profile", "bags", "files"),
     ),
+    "fit": (("",), ("bench", "calibration")),
     "plant": (("reference",), ("",), ("codegen",), ("platforms",)),
 }
 DEEPEST = 4  # files in the longest chain of imports inside a room of `diagnose`

@@ -21,7 +21,7 @@ from rovval import vehicle
 from rovval.core.code_version import source_hash
 from rovval.core.data import Run
 from rovval.fit.calibration import calibrate
-from rovval.fit.unknowns import applied, unknowns
+from rovval.fit.calibration.unknowns import applied, unknowns
 from rovval.storage.archive import open_run
 from rovval.storage.atomic import write_text
 from rovval.vehicle.model import Vehicle

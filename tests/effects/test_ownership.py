@@ -16,7 +16,7 @@ OTHERS = ("effects", "blind", "vehicle", "fly")
 # Strings that hold a name and decide nothing by it.
 JUSTIFIED = {
     "demo/__init__.py": {"inflow_loss:loss=0.3"},  # what is planted in the sample log
-    "fit/unknowns.py": {  # numbers of a vehicle's file, which effects that scale them are named after; and what a calibration writes into its [effects]
+    "fit/calibration/unknowns.py": {  # numbers of a file, which effects that scale them are named after; and what a calibration writes into its [effects]
         "added_mass", "added_mass[", "linear_drag", "linear_drag[", "quadratic_drag", "quadratic_drag[", "attitude_bias", "dvl_lever_arm",
         "dvl_misalignment", "tether_drag", "thrust_lag",
     },

@@ -16,7 +16,7 @@ from real_answers import Answer, Question, ask, confidence, named_first, overcon
 
 from rovval import vehicle
 from rovval.fit.calibration import Calibration, calibrate
-from rovval.fit.unknowns import SENSORS
+from rovval.fit.calibration.unknowns import SENSORS
 from rovval.vehicle.write import to_toml
 
 pytestmark = pytest.mark.slow

@@ -13,7 +13,7 @@ from rovval import vehicle
 from rovval.core.data import Array
 from rovval.fit import FitResult
 from rovval.fit.calibration import AxisError, Calibration, Row
-from rovval.fit.unknowns import unknowns
+from rovval.fit.calibration.unknowns import unknowns
 from rovval.report import write_fit
 from rovval.report.calibration import answer, foremost, heat_map, html, rest, whisker
 from rovval.report.drawings.drawing import Box, Dot, Text

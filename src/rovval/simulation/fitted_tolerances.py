@@ -1,15 +1,21 @@
 """What a healthy vehicle may show, as large as it was in the logs that it was calibrated on.
 
-The numbers stand in the vehicle file's table `[calibration]`, standard deviations all of them: of what every vehicle has to some degree and no file states,
-loss of thrust under way, say, one a parameter of such an effect (`effects.Effect.option`) in its unit; and of forces that no equation of the vehicle has,
-two an axis, N or N m (`fit.discrepancy`); and of sizes that effects of the library only seem to have (`fit.apparent_sizes`).
+The numbers stand in the vehicle file's table `[calibration]`, standard deviations all of them: of what the vehicle's own numbers are off by from run to run,
+and what every vehicle has to some degree and no file states, loss of thrust under way, say, one a parameter in its unit (`fit.calibration.random_effects`);
+of forces that no equation of the vehicle has, two an axis, N or N m (`fit.calibration.discrepancy`); and of sizes that effects of the library only seem to
+have (`fit.calibration.apparent_sizes`). Correlations of the first are a table of their own, `[tolerance_correlation]`: by key those with the keys before it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
+from numpy.typing import NDArray
+
 from rovval.vehicle.model import Vehicle
+
+Array = NDArray[np.float64]
 
 TOLERANCE = "tolerance."  # before the parameter's key
 DISCREPANCY = "discrepancy."  # before the kind of force
@@ -21,9 +27,20 @@ def fitted_tolerances(vehicle: Vehicle) -> Mapping[str, float]:
     return _known(vehicle, TOLERANCE)
 
 
-def with_tolerances(vehicle: Vehicle, found: Mapping[str, float]) -> Vehicle:
-    """The vehicle with these in place of those that its file has, in four digits."""
-    return _with(vehicle, TOLERANCE, found)
+def fitted_correlation(vehicle: Vehicle) -> tuple[tuple[str, ...], Array]:
+    """Keys of the c parameters whose tolerances go together, and their correlations (c, c); none where the vehicle's file does not say."""
+    keys = tuple(vehicle.tolerance_correlation)
+    found = np.eye(len(keys))
+    for i, row in enumerate(vehicle.tolerance_correlation.values()):
+        found[i, :i] = found[:i, i] = row
+    return keys, found
+
+
+def with_tolerances(vehicle: Vehicle, found: Mapping[str, float], correlation: Array | None = None) -> Vehicle:
+    """The vehicle with these in place of those that its file has, in four digits, and with their ``correlation`` (k, k), none by default, in five places."""
+    known = [] if correlation is None or not np.tril(correlation, -1).any() else correlation.tolist()
+    rows = {key: tuple(round(x, 5) for x in row[:i]) for i, (key, row) in enumerate(zip(found, known, strict=False))}
+    return _with(vehicle, TOLERANCE, found).model_copy(update={"tolerance_correlation": rows})
 
 
 def fitted_discrepancy(vehicle: Vehicle) -> Mapping[str, float]:

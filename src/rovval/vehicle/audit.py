@@ -15,7 +15,7 @@ LEVER_TOLERANCE = 1e-6  # N or N m of 1 N of thrust: less than that is rounding 
 
 def audit(vehicle: Vehicle) -> tuple[str, ...]:
     """Problems that make the vehicle unusable, one sentence each with value and limit; empty for a sound one."""
-    return (*_mass(vehicle), *_damping(vehicle), *_trim(vehicle), *_thrusters(vehicle), *_commands(vehicle))
+    return (*_mass(vehicle), *_damping(vehicle), *_trim(vehicle), *_thrusters(vehicle), *_commands(vehicle), *_tolerances(vehicle))
 
 
 def unsourced(vehicle: Vehicle) -> tuple[str, ...]:
@@ -57,6 +57,20 @@ def _mass(vehicle: Vehicle) -> list[str]:
     if total[0] <= 0:
         problems.append(f"M_RB + M_A is not positive definite (smallest eigenvalue {total[0]:.4g}, limit > 0)")
     return problems
+
+
+def _tolerances(vehicle: Vehicle) -> list[str]:
+    """Correlations must be those of a covariance."""
+    rows = vehicle.tolerance_correlation
+    wrong = {key: (len(row), i) for i, (key, row) in enumerate(rows.items()) if len(row) != i}
+    problems = [f"tolerance_correlation of {key}: {count} numbers, {before} expected, one for each key before it" for key, (count, before) in wrong.items()]
+    if problems or not rows:
+        return problems
+    matrix = np.eye(len(rows))
+    for i, row in enumerate(rows.values()):
+        matrix[i, :i] = row
+    least = float(np.linalg.eigvalsh(matrix)[0])  # of the lower triangle
+    return [] if least > 0 else [f"tolerance_correlation is not positive definite (smallest eigenvalue {least:.3g}, limit > 0): write it with `rovval fit`"]
 
 
 def _damping(vehicle: Vehicle) -> list[str]:

@@ -122,6 +122,7 @@ class Vehicle(Strict):
     """One vehicle. ``sources`` names where each number comes from; ``convention`` guards against drag stored as negative.
 
     ``calibration`` is how far `rovval fit` has moved each of its unknowns from the numbers that it began with: the next fit counts from there.
+    ``tolerance_correlation`` is how its tolerances go together: correlations of each with those before it.
     """
 
     name: str
@@ -137,6 +138,7 @@ class Vehicle(Strict):
     uuv: Uuv | None = None
     effects: dict[str, dict[str, float]] = {}
     calibration: dict[str, float] = {}
+    tolerance_correlation: dict[str, tuple[float, ...]] = {}
 
     @property
     def thrusters(self) -> tuple[str, ...]:
@@ -162,7 +164,8 @@ class Vehicle(Strict):
     def hash(self) -> str:
         """Short content hash: two vehicles with one hash move alike."""
         left_out: Any = {
-            "sources": True, "notes": True, "title": True, "calibration": True, "thruster": {"__all__": {"rpm_max"}}, "mixer": {"frame": True},
+            "sources": True, "notes": True, "title": True, "calibration": True, "tolerance_correlation": True,
+            "thruster": {"__all__": {"rpm_max"}}, "mixer": {"frame": True},
         }  # fmt: skip
         numbers = self.model_dump(mode="json", exclude=left_out)
         if (table := numbers["pulse_table"]) and not table["k_pos"]:

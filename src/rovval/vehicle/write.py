@@ -30,7 +30,8 @@ def with_effects(vehicle: Vehicle, settings: Sequence[str]) -> str:
 def to_toml(vehicle: Vehicle) -> str:
     """TOML text of a vehicle, floats in full so that they round-trip."""
     data = vehicle.model_dump(mode="json", exclude_none=True)
-    tables = {k: data.pop(k) for k in ("sources", "body", "water", "mixer", "pulse_table", "uuv", "effects", "calibration") if k in data}
+    named = ("sources", "body", "water", "mixer", "pulse_table", "uuv", "effects", "calibration", "tolerance_correlation")
+    tables = {k: data.pop(k) for k in named if k in data}
     thrusters = data.pop("thruster")
     lines = [f"{key} = {_value(value)}" for key, value in data.items()]
     for name, table in tables.items():

@@ -27,7 +27,7 @@ from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
 from rovval.diagnose.inference.map_fit import healthy_fit
 from rovval.diagnose.problem.problem import Problem, corrected_residuals
 from rovval.diagnose.search.model import Model, ModelPrior
-from rovval.fit.record import rms
+from rovval.fit.calibration.record import rms
 from rovval.plant import Plant
 from rovval.simulation.fitted_errors import fitted_errors, kept
 

@@ -40,7 +40,7 @@ def test_from_where_the_place_of_a_cause_is_counted_is_no_part_of_its_size():
     at = [problem.plant.slots[slot].key for slot in point.columns].index("density_gradient.depth")
     moved, b = point.departure.copy(), point.total.b.copy()
     moved[at] += 20.0
-    b[0, at] += 20.0 * point.precision[at]  # the prior pulls no more than before
+    b[0] += 20.0 * point.precision[at]  # the prior pulls no more than before
     elsewhere = replace(point, departure=moved, total=replace(point.total, b=b))
     assert variation(problem, elsewhere, [h]).form == pytest.approx(variation(problem, point, [h]).form, abs=1e-9)
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from diagnose_case import posed, slot, turned
+from scipy.linalg import block_diag
 
 from rovval.diagnose.criteria import GENERIC_SIZES
 from rovval.diagnose.inference.map_fit import map_fit
@@ -26,7 +27,7 @@ def forces(at_work: dict[int, float]) -> GenericForces:
     r = rng.normal(size=(30, 12)) + sum(size * X[..., 4 + i] for i, size in at_work.items())
     data = NormalEquations(np.einsum("wni,wnj->wij", X, X), np.einsum("wni,wn->wi", X, r), (r**2).sum(axis=1), tuple(range(X.shape[-1])))
     none = np.zeros(len(AXES))
-    return GenericForces(tuple((axis, str(i)) for i, axis in enumerate(AXES)), data, np.full(4, 2.0), rng.normal(size=4), 1.7, none)
+    return GenericForces(tuple((axis, str(i)) for i, axis in enumerate(AXES)), data, 2.0 * np.eye(4), rng.normal(size=4), 1.7, none)
 
 
 def only(forces: GenericForces, *which: int) -> GenericForces:
@@ -39,7 +40,7 @@ def only(forces: GenericForces, *which: int) -> GenericForces:
 def evidence(forces: GenericForces, size: float) -> float:
     """Of all forces with a prior of this size over none, worked out with the whole matrix."""
     k = len(forces.precision)
-    H = forces.data.A.sum(axis=0) + np.diag([*forces.precision, *np.full(len(forces.names), forces.tempering / size**2)])
+    H = forces.data.A.sum(axis=0) + block_diag(forces.precision, np.eye(len(forces.names)) * forces.tempering / size**2)
     slope = forces.data.b.sum(axis=0) - [*forces.pull, *np.zeros(len(forces.names))]
     without = slope[:k] @ np.linalg.solve(H[:k, :k], slope[:k])
     volume = np.linalg.slogdet(H)[1] - np.linalg.slogdet(H[:k, :k])[1] - len(forces.names) * np.log(forces.tempering / size**2)
@@ -73,7 +74,7 @@ def test_of_forces_that_are_expected_only_what_goes_beyond_them_has_evidence():
         A, b = both.data.A[:, own][..., own], both.data.b[:, own]
         whole = GenericForces(
             both.names[i : i + 1], NormalEquations(A, b, both.data.c, tuple(range(len(own)))),
-            np.concatenate([both.precision, both.tempering / expected[known] ** 2]), np.concatenate([both.pull, np.zeros(len(known))]),
+            block_diag(both.precision, np.diag(both.tempering / expected[known] ** 2)), np.concatenate([both.pull, np.zeros(len(known))]),
             both.tempering, np.zeros(1),
         )  # fmt: skip
         assert both.alone(1.0)[i] == pytest.approx(evidence(whole, 1.0), abs=1e-6)
@@ -110,7 +111,7 @@ def test_a_force_that_a_coefficient_undoes_is_no_force_of_its_own(own: float, co
     X[..., 1] = own * X[..., 0] + np.sqrt(1.0 - own**2) * X[..., 1]
     r = rng.normal(size=(30, 12)) + 20.0 * (X[..., 1] - own * X[..., 0])
     data = NormalEquations(np.einsum("wni,wnj->wij", X, X), np.einsum("wni,wn->wi", X, r), (r**2).sum(axis=1), (0, 1))
-    beside = GenericForces((("surge", "u"),), data, np.full(1, 1e-3), np.zeros(1), 1.0, np.zeros(1))
+    beside = GenericForces((("surge", "u"),), data, np.full((1, 1), 1e-3), np.zeros(1), 1.0, np.zeros(1))
     assert max(evidence(beside, size) for size in GENERIC_SIZES) > 100.0
     assert bool(beside.sparse()[1]) is counts
 

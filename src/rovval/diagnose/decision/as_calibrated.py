@@ -4,9 +4,9 @@ What is left goes with the motion, so that causes of the library explain a part 
 larger than it was where the cause acts. How much larger it is, of squared errors above noise, is log-normal about 1 where nothing came, as wide as the
 runs of the calibration differ among themselves; where something came it is 1 + x times that, and x log-logistic of median 1: as much as there was, or any.
 
-A cause that came since then is larger, too, than it seemed to be in the runs of the calibration (`fit.apparent_sizes`): what a vehicle is off by resembles one
-thruster that is a little weak on every log, and not one that is dead. Where nothing came the size is Student's t about none, with a degree of freedom for each
-run and one for other vehicles; where something came it is larger than that, and its square as many times as the gap.
+A cause that came since then is larger, too, than it seemed to be in the runs of the calibration (`fit.calibration.apparent_sizes`): what a vehicle is off by
+resembles one thruster that is a little weak on every log, and not one that is dead. Where nothing came the size is Student's t about none, with a degree of
+freedom for each run and one for other vehicles; where something came it is larger than that, and its square as many times as the gap.
 """
 
 from __future__ import annotations

@@ -16,7 +16,6 @@ from rovval.diagnose.effort import MOST_CAUSES, SETS_WEIGHED
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import map_fit, map_refit
 from rovval.diagnose.problem.problem import Problem
-from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.search.model import Names
 
@@ -44,7 +43,7 @@ def numbers_off(problem: Problem, selection: Selection, point: Posterior, causes
 
 def _fitted(problem: Problem, point: Posterior, file: Departures) -> float:
     """Evidence of a file that is off, fitted by re-simulation from where the linearisation begins: far from there it says little."""
-    wide = Prior({s: sd * (FILE_WIDTH if s in file.slots else 1.0) for s, sd in problem.tolerance.sd.items()})
+    wide = problem.tolerance.off_by_more({s: FILE_WIDTH * problem.tolerance.sd[s] for s in file.slots})
     there = replace(problem, tolerance=wide)
     fit = map_refit(there, point) if point.whitened else map_fit(there, point.beta, point.columns[: point.effect_count])
     return laplace_evidence(there, fit) - file.cost
@@ -68,8 +67,8 @@ class Departures:
 def departures(problem: Problem, point: Posterior, among: Sequence[int]) -> list[Departures]:
     """Files of which one, two, three ... of the numbers ``among`` (slots) are off by as much as `FILE_WIDTH` has it: those that explain most.
 
-    It ends where one more explains no more. In the linearisation about a fit, the ``point`` (automatic relevance determination; MacKay 1992); a prior that
-    is widened changes the curvature by a matrix of rank one.
+    It ends where one more explains no more. In the linearisation about a fit, the ``point`` (automatic relevance determination; MacKay 1992); a variance that
+    is larger changes the precision of the prior, and so the curvature, by a matrix of rank one (Sherman and Morrison 1950).
     """
     moves = (point.bound_side == 0) | (point.solve(point.curvature, point.descent) != 0.0)  # what stays on its bound at the best step is held there
     precision, evidence, found = point.precision.copy(), laplace_evidence(problem, point), list[Departures]()
@@ -77,20 +76,22 @@ def departures(problem: Problem, point: Posterior, among: Sequence[int]) -> list
     columns = [i for s in among if moves[i := point.columns.index(s)]]
     A, b = point.total.A.sum(axis=0), point.total.b.sum(axis=0)
     while columns:
-        inverse = np.linalg.inv((A + np.diag(precision))[np.ix_(moves, moves)])
-        slope = (b - precision * point.departure)[moves]
-        at = (np.cumsum(moves) - 1)[columns]
-        freed, off = precision[columns] * (1.0 - FILE_WIDTH**-2.0), point.departure[columns]
-        step, own = inverse @ slope, np.diag(inverse)[at]
+        toward = precision[:, columns]
+        more = (FILE_WIDTH**2 - 1.0) * np.diag(np.linalg.inv(precision))[columns]
+        larger = 1.0 + more * precision[columns, columns]
+        freed, off = more / larger, point.departure @ toward
+        inverse = np.linalg.inv((A + precision)[np.ix_(moves, moves)])
+        step = (b - precision @ point.departure)[moves] @ inverse @ toward[moves]
+        own = np.einsum("ij,ij->j", toward[moves], inverse @ toward[moves])
         left = 1.0 - freed * own
-        gained = freed * off * (off + 2.0 * step[at] + freed * off * own) + freed / left * (step[at] + freed * off * own) ** 2
-        worth = gained / problem.tempering - np.log(left) - 2.0 * np.log(FILE_WIDTH) - each
+        gained = freed * off * (off + 2.0 * step + freed * off * own) + freed / left * (step + freed * off * own) ** 2
+        worth = gained / problem.tempering - np.log(left) - np.log(larger) - each
         best = int(np.argmax(worth))
         if len(found) > MOST_CAUSES and worth[best] <= 0.0:
             break
         evidence += float(worth[best])
         chosen = (*(found[-1].slots if found else ()), point.columns[columns[best]])
         found.append(Departures(chosen, evidence, len(chosen) * each))
-        precision[columns[best]] /= FILE_WIDTH**2
+        precision = precision - freed[best] * np.outer(toward[:, best], toward[:, best])
         del columns[best]
     return found

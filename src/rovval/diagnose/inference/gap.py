@@ -96,9 +96,10 @@ def explainable_gap(problem: Problem) -> Array:
 
 
 def tolerated_gap(problem: Problem) -> float:
-    """Squared error of the dynamics that coefficients and sensors make which are off by one standard deviation of their tolerance, each by itself."""
-    gap, sd = problem.gap.dynamics, np.array(list(problem.tolerance.sd.values()))
-    return float((gap.A.sum(axis=0).diagonal()[gap.place(tuple(problem.tolerance.sd))] * sd**2).sum())
+    """Squared error of the dynamics that coefficients and sensors make which are off by as much as their tolerance has it, expected."""
+    gap, columns = problem.gap.dynamics, tuple(problem.tolerance.sd)
+    at = gap.place(columns)
+    return float((gap.A.sum(axis=0)[np.ix_(at, at)] * problem.tolerance.covariance(columns)).sum())
 
 
 def floor_losses(problem: Problem) -> Array:

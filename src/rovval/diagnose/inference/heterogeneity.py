@@ -43,14 +43,14 @@ def by_run(problem: Problem, fitted: HypothesisFit) -> dict[int, ByRun]:
     point, count = fitted.posterior, len(fitted.slots)
     own = [i for i, s in enumerate(point.columns) if i < count or not effects.load(problem.plant.slots[s].effect).in_file]
     step, shared = point.solve(point.curvature, point.descent), np.ix_(own, own)
-    pull = (point.precision * (point.departure + step))[own]
+    pull = (point.precision @ (point.departure + step))[own]
     pull[:count] = 0.0  # towards the joint value, not towards no cause
     score = (point.total.b - point.total.A @ step)[:, own]
     values, variances = np.empty((2, len(problem.runs), count))
     for run in range(len(problem.runs)):
         these = problem.run_of_window == run
         A = point.total.A[these][:, own][..., own]
-        inverse = np.linalg.inv(A.sum(axis=0) + np.diag(point.precision[own]))
+        inverse = np.linalg.inv(A.sum(axis=0) + point.precision[shared])
         moved = inverse @ (score[these].sum(axis=0) - pull)
         values[run] = fitted.beta[list(fitted.slots)] + step[:count] + moved[:count]
         variances[run] = problem.design_effect * np.diag(inverse)[:count]

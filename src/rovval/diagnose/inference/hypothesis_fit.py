@@ -130,7 +130,7 @@ def standard_errors(problem: Problem, fitted: HypothesisFit, fixed: Sequence[int
     bread[np.ix_(free, free)] = np.linalg.inv(point.curvature[np.ix_(free, free)])
     score = point.total.b - np.einsum("wij,j->wi", point.total.A, point.solve(point.curvature, point.descent))
     sandwich = sandwich_variance(bread[:k], score - score.mean(axis=0))  # the mean is not zero on a bound, which takes up the rest
-    by_tolerance = problem.tempering * (bread[:k, k:] ** 2 @ point.precision[k:])
+    by_tolerance = problem.tempering * np.einsum("ij,jl,il->i", bread[:k, k:], point.precision[k:, k:], bread[:k, k:])
     normal = float(stats.norm.ppf(0.5 + INTERVAL_PROBABILITY / 2)) / _quantile(problem.window_count)
     known = problem.design_effect * np.diag(bread)[:k] * normal**2
     return np.asarray(np.sqrt(np.maximum(sandwich + by_tolerance, known)))

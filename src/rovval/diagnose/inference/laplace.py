@@ -26,7 +26,7 @@ class Posterior:
         columns: the k slots that move: first the ``effect_count`` of the effects, then those that have a tolerance.
         whitened: linearisation of each run in the metric of the likelihood; empty where it was dropped.
         dynamics, total: normal equations without and with parity.
-        precision: of each column's prior (k,), times the tempering.
+        precision: of the columns' prior (k, k), times the tempering.
         tempering: what squared residuals are divided by (`problem.Problem.tempering`).
         departure: of each column from the mean of its prior (k,).
         bound_side: -1 and 1 for a column on its lower and upper bound, else 0 (k,).
@@ -51,14 +51,19 @@ class Posterior:
         return tuple(one.linear for one in self.whitened)
 
     @property
+    def pull(self) -> Array:
+        """Half the gradient of the prior's part of the cost (k,)."""
+        return np.asarray(self.precision @ self.departure)
+
+    @property
     def descent(self) -> Array:
         """Negative half gradient of the cost (k,)."""
-        return np.asarray(self.total.b.sum(axis=0) - self.precision * self.departure)
+        return np.asarray(self.total.b.sum(axis=0) - self.pull)
 
     @property
     def curvature(self) -> Array:
         """Half the Hessian of the cost (k, k), Gauss-Newton approximation."""
-        return np.asarray(self.total.A.sum(axis=0) + np.diag(self.precision))
+        return np.asarray(self.total.A.sum(axis=0) + self.precision)
 
     def cost(self) -> float:
         """Cost at the point, columns that are moved in the linearisation only at their optimum."""
@@ -70,8 +75,7 @@ class Posterior:
 
     def step(self, which: np.ndarray) -> Array:
         """Gauss-Newton step (k,) of the windows ``which`` (m,)."""
-        slope = self.total.b[which].sum(axis=0) - self.precision * self.departure
-        return self.solve(self.total.A[which].sum(axis=0) + np.diag(self.precision), slope)
+        return self.solve(self.total.A[which].sum(axis=0) + self.precision, self.total.b[which].sum(axis=0) - self.pull)
 
     def simulated_step(self) -> Array:
         """Gauss-Newton step (k,) in the columns that are moved in the simulation; zero in the others."""
@@ -97,7 +101,9 @@ class Posterior:
 
     def standardised_departures(self) -> Array:
         """Standardised departure of each coefficient within tolerance, in standard deviations of its prior, one linear step ahead."""
-        return np.asarray(self.predicted_departure()[self.effect_count :] * np.sqrt(self.precision[self.effect_count :] / self.tempering))
+        own = slice(self.effect_count, None)
+        variance = self.tempering * np.diag(np.linalg.inv(self.precision[own, own]))
+        return np.asarray(self.predicted_departure()[own] / np.sqrt(variance))
 
     def largest_departure(self) -> float:
         """Largest absolute standardised departure; 0 without tolerances."""
@@ -125,7 +131,7 @@ class Posterior:
     def _below(self, among: np.ndarray) -> float:
         """Cost after one linear step in the columns ``among`` (k,)."""
         slope = self.descent
-        whole = float(self.total.c.sum()) + float((self.precision * self.departure**2).sum())
+        whole = float(self.total.c.sum()) + float(self.departure @ self.pull)
         return whole - float(slope @ self.solve(self.curvature, slope, among))
 
 
@@ -135,10 +141,9 @@ def resampled_evidence(problem: Problem, point: Posterior, counts: Array) -> Arr
     found = np.empty(len(counts))
     k = len(point.columns)
     flat = point.total.A.reshape(len(point.total.A), -1)
-    volume = -float(np.log(point.precision).sum())
-    pull = point.precision * point.departure
+    volume, pull = -float(np.linalg.slogdet(point.precision)[1]), point.pull
     for i, count in enumerate(counts):
-        H = (count @ flat).reshape(k, k) + np.diag(point.precision)
+        H = (count @ flat).reshape(k, k) + point.precision
         slope = count @ point.total.b - pull
         loss = float(count @ point.total.c) + float(pull @ point.departure) - float(slope @ point.solve(H, slope))
         found[i] = (float(count @ problem.likelihood.total.c) - loss) / problem.tempering - (np.linalg.slogdet(H)[1] + volume)

@@ -145,13 +145,13 @@ def _point(problem: Problem, beta: Array, own: int, there: tuple[Whitened, ...])
     dynamic, data = equations_of(problem, beta, there)
     columns = data.columns
     parameters = [problem.plant.slots[s].parameter for s in columns]
-    width = np.array([PRIOR_WIDTH * p.typical for p in parameters[:own]] + [problem.tolerance.sd[s] for s in columns[own:]])
+    prior = problem.tolerance.replaced({s: PRIOR_WIDTH * p.typical for s, p in zip(columns[:own], parameters[:own], strict=True)})
     at = beta[list(columns)]
     side = np.array([float(x >= p.high) - float(x <= p.low) for x, p in zip(at, parameters, strict=True)])
     sensors = tangent_slots(problem.plant)
     still = np.array([i >= own and s in sensors for i, s in enumerate(columns)], dtype=bool)
     tempering, departure = problem.tempering, at - problem.prior_mean[list(columns)]
-    return Posterior(beta, columns, own, there, dynamic, data, tempering / width**2, tempering, departure, side, still)
+    return Posterior(beta, columns, own, there, dynamic, data, tempering * prior.precision(columns), tempering, departure, side, still)
 
 
 def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...]) -> Posterior | None:

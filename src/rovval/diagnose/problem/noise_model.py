@@ -138,12 +138,11 @@ def _expected_variance(runs: Sequence[Windows], linear: Sequence[Linearisation],
     least = np.array([LEAST_NOISE[c] for c in runs[0].channels])
     noise = np.maximum(np.mean([windows.noise for windows in runs], axis=0), least)
     total = np.tile(noise**2, (runs[0].steps + 1, 1))
-    count = sum(windows.count for windows in runs)
+    count, covariance = sum(windows.count for windows in runs), tolerance.covariance(tuple(tolerance.sd))
     for one in linear:
         place = [one.columns.index(c) for c in tolerance.sd]
-        sd = np.array(list(tolerance.sd.values()))
         for S in one.S:
-            total = total + S[..., place] ** 2 @ sd**2 / count
+            total = total + ((S[..., place] @ covariance) * S[..., place]).sum(axis=-1) / count
     return total
 
 

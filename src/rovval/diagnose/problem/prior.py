@@ -15,12 +15,12 @@ from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.windows.windows import Windows
 from rovval.effects import Parameter
 from rovval.plant import Plant
-from rovval.simulation.fitted_tolerances import fitted_tolerances
+from rovval.simulation.fitted_tolerances import fitted_correlation, fitted_tolerances
 
 
 def tolerance_prior(plant: Plant, relative: float) -> Prior:
-    """Prior of the plant's parameters at a healthy vehicle, as each effect states it, about the values of the vehicle's file; of what every vehicle has to some
-    degree as the logs of its calibration have it.
+    """Prior of the plant's parameters at a healthy vehicle about the values of the vehicle's file: as each effect states it, each by itself, or as the logs of
+    the vehicle's calibration have it, together.
 
     ``relative`` is the calibration tolerance, a relative standard deviation; the prior is empty where it is zero.
     """
@@ -28,7 +28,10 @@ def tolerance_prior(plant: Plant, relative: float) -> Prior:
         return Prior({})
     stated, known = ((i, slot, slot.parameter.tolerance) for i, slot in enumerate(plant.slots)), fitted_tolerances(plant.vehicle)
     found = {i: t.of(slot.parameter, plant.vehicle, slot.target, relative) for i, slot, t in stated if t is not None}
-    return Prior(found | {i: known[slot.key] for i, slot in enumerate(plant.slots) if slot.key in known})
+    slots, (keys, correlation) = {slot.key: i for i, slot in enumerate(plant.slots)}, fitted_correlation(plant.vehicle)
+    at = [i for i, key in enumerate(keys) if key in slots]
+    own = tuple(slots[keys[i]] for i in at)
+    return Prior(found | {slots[key]: sd for key, sd in known.items() if key in slots}, own, correlation[np.ix_(at, at)])
 
 
 def prior_mean(parameter: Parameter, runs: Sequence[Windows], otherwise: float) -> float:
@@ -46,9 +49,5 @@ def loosened_by_closed_loop(prior: Prior, plant: Plant, gain: Mapping[str, float
 
     ``gain`` is the loop gain by axis (`windows.closed_loop.loop_gains`).
     """
-    sd = dict(prior.sd)
-    for s in sd:
-        slot = plant.slots[s]
-        if slot.parameter.tolerance is not None:
-            sd[s] = slot.parameter.tolerance.widened(sd[s], slot.target, gain)
-    return Prior(sd)
+    stated = ((s, sd, plant.slots[s].target, plant.slots[s].parameter.tolerance) for s, sd in prior.sd.items())
+    return prior.off_by_more({s: t.widened(sd, target, gain) for s, sd, target, t in stated if t is not None})

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -15,17 +15,65 @@ ROUNDING = 1e-20  # of the most informative column: a column that says less is r
 
 @dataclass(frozen=True, slots=True)
 class Prior:
-    """Gaussian prior of independent parameters: standard deviation ``sd`` of each about its nominal value, by column, in the parameter's unit. Columns not
-    named are fixed."""
+    """Gaussian prior of parameters about their nominal values.
+
+    Attributes:
+        sd: standard deviation of each by itself, by column, in the parameter's unit. Columns not named are fixed.
+        correlated: the c columns that are not independent of one another.
+        correlation: their correlations (c, c).
+    """
 
     sd: Mapping[int, float]
+    correlated: tuple[int, ...] = ()
+    correlation: Array = field(default_factory=lambda: np.eye(0))
+
+    def covariance(self, columns: Sequence[int]) -> Array:
+        """Covariance (k, k) of k ``columns``."""
+        at, correlation = self._correlated(columns)
+        sd = np.array([self.sd[c] for c in columns])
+        found = np.diag(sd**2)
+        found[np.ix_(at, at)] = correlation * np.outer(sd[at], sd[at])
+        return found
+
+    def precision(self, columns: Sequence[int]) -> Array:
+        """Inverse of the covariance (k, k) of k ``columns``, whatever the others are."""
+        at, correlation = self._correlated(columns)
+        sd = np.array([self.sd[c] for c in columns])
+        found = np.diag(sd**-2.0)
+        found[np.ix_(at, at)] = np.linalg.inv(correlation) / np.outer(sd[at], sd[at])
+        return found
+
+    def _correlated(self, columns: Sequence[int]) -> tuple[list[int], Array]:
+        """Places among the ``columns`` of those that are not independent, and their correlations."""
+        place = {c: i for i, c in enumerate(columns)}
+        known = [i for i, c in enumerate(self.correlated) if c in place]
+        return [place[self.correlated[i]] for i in known], self.correlation[np.ix_(known, known)]
+
+    def without(self, columns: Collection[int]) -> Prior:
+        """The prior with these columns fixed."""
+        kept = [i for i, c in enumerate(self.correlated) if c not in columns]
+        sd = {c: sd for c, sd in self.sd.items() if c not in columns}
+        return Prior(sd, tuple(self.correlated[i] for i in kept), self.correlation[np.ix_(kept, kept)])
 
     def widened(self, other: Prior) -> Prior:
         """The columns of both priors, those in both with the larger standard deviation."""
-        merged = dict(self.sd)
-        for column, value in other.sd.items():
-            merged[column] = max(value, merged.get(column, 0.0))
-        return Prior(merged)
+        return self.replaced({c: sd for c, sd in other.sd.items() if sd > self.sd.get(c, 0.0)})
+
+    def replaced(self, sd: Mapping[int, float]) -> Prior:
+        """The prior with the columns of ``sd`` independent of all others and of these standard deviations."""
+        others = self.without(sd)
+        return Prior({**self.sd, **sd}, others.correlated, others.correlation)
+
+    def off_by_more(self, sd: Mapping[int, float]) -> Prior:
+        """The prior of columns that may be off by as much as they are, and besides, each by itself, by so much that ``sd`` is what they are off by in all.
+
+        Those for which it is less stay as they are.
+        """
+        total = {c: max(own, sd.get(c, 0.0)) for c, own in self.sd.items()}
+        share = np.array([self.sd[c] / total[c] for c in self.correlated])
+        correlation = self.correlation * np.outer(share, share)
+        np.fill_diagonal(correlation, 1.0)
+        return Prior(total, self.correlated, correlation)
 
 
 def ridge_step(data: NormalEquations, prior: Prior, design_effect: float) -> Array:
@@ -38,8 +86,9 @@ def ridge_step(data: NormalEquations, prior: Prior, design_effect: float) -> Arr
 
 def free_columns(data: NormalEquations, prior: Prior, design_effect: float) -> tuple[np.ndarray, Array, Array]:
     """Of the f columns that ``prior`` frees: places among ``data.columns`` (f,), ridge (f, f), and departure from the mean of the prior (f,)."""
-    sd, free = np.array(list(prior.sd.values())), data.place(tuple(prior.sd))
-    return free, np.diag(design_effect / sd**2), np.zeros(len(free)) if data.offset is None else data.offset[free]
+    columns = tuple(prior.sd)
+    free = data.place(columns)
+    return free, design_effect * prior.precision(columns), np.zeros(len(free)) if data.offset is None else data.offset[free]
 
 
 def eliminated(A: Array, b: Array, free: np.ndarray, ridge: Array, pull: Array) -> tuple[Array, Array]:

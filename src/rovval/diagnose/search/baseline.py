@@ -17,7 +17,6 @@ from rovval.diagnose.inference.hypothesis_fit import HypothesisFit
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import map_fit
 from rovval.diagnose.problem.problem import Problem, gap_equations_at
-from rovval.diagnose.residuals.ridge import Prior
 
 Losses = tuple[Array, Array]  # (m,) held-out weighted squared error of every window, with and without the parity residuals
 
@@ -81,7 +80,7 @@ def healthy_without(problem: Problem, healthy: Posterior, slots: Sequence[int]) 
         return healthy
     start = healthy.beta.copy()
     start[own] = problem.origin[own]
-    others = replace(problem, tolerance=Prior({s: sd for s, sd in problem.tolerance.sd.items() if s not in own}))
+    others = replace(problem, tolerance=problem.tolerance.without(own))
     return map_fit(others, start, healthy.columns[: healthy.effect_count], healthy.whitened, QUICK_STEPS)
 
 

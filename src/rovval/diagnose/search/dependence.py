@@ -48,7 +48,7 @@ def dependence(problem: Problem, point: Posterior, causes: Sequence[Hypothesis])
             answer[..., at : at + len(own)] = _responses(problem, point, windows, one, h, [along[name] for name in own])
             at += len(own)
         answers.append(answer)
-    prior = point.precision, point.precision * point.departure
+    prior = point.precision, point.pull
     found, k = beside(problem, names, answers, linear, *prior, np.zeros(len(names))), len(point.columns)
     parity = by_fold(replace(point.total, A=point.total.A - point.dynamics.A, b=point.total.b - point.dynamics.b), problem.folds)
     found.data.A[:, :k, :k] += parity.A

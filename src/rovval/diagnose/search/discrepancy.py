@@ -3,8 +3,8 @@ depth and thrusters.
 
 They are never the explanation. Set free beside what was found and beside coefficients within tolerance, their evidence says how much of the gap is
 systematic and still unexplained, so that an effect of the library that is only the least bad is not named; and on which axis and with what the
-unexplained force varies. A calibrated vehicle has such forces as large as the logs of its calibration had them (`fit.discrepancy`); of these there is no
-evidence, but of what goes beyond them.
+unexplained force varies. A calibrated vehicle has such forces as large as the logs of its calibration had them (`fit.calibration.discrepancy`); of
+these there is no evidence, but of what goes beyond them.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ class GenericForces:
     Attributes:
         names: (axis, feature) of each force: what it acts on, and what it varies with.
         data: normal equations of the fit's k columns and of the forces behind them, of the windows that are held out together as of one.
-        precision: (k,) of the priors of the fit's columns.
-        pull: (k,) gradient that those priors add.
+        precision: (k, k) of the prior of the fit's columns.
+        pull: (k,) gradient that it adds.
         tempering: what squared residuals are divided by (`problem.Problem.tempering`).
         expected: (f,) standard deviations of the forces that are there anyway (`expected_forces`); 0 where nothing is known of them.
     """
@@ -94,7 +94,7 @@ class GenericForces:
     def beside_the_fit(self) -> tuple[Array, Array]:
         """Curvature (f, f) and slope (f,) of the forces, the fit's columns eliminated with their priors."""
         k = len(self.precision)
-        A, b = eliminated(self.data.A.sum(axis=0), self.data.b.sum(axis=0), np.arange(k), np.diag(self.precision), self.pull)
+        A, b = eliminated(self.data.A.sum(axis=0), self.data.b.sum(axis=0), np.arange(k), self.precision, self.pull)
         return A[k:, k:], b[k:]
 
     def _beyond_expected(self, A: Array, b: Array) -> tuple[Array, Array]:
@@ -111,7 +111,7 @@ class GenericForces:
 def generic_forces(problem: Problem, point: Posterior) -> GenericForces:
     """Every feature on every axis, simulated about a fit, beside its columns."""
     names, answers = generic_force_responses(problem.runs, point.beta)
-    return beside(problem, names, answers, point.linear, point.precision, point.precision * point.departure, expected_forces(problem, names))
+    return beside(problem, names, answers, point.linear, point.precision, point.pull, expected_forces(problem, names))
 
 
 class Beside(NamedTuple):
@@ -129,7 +129,7 @@ def forces_beside(problem: Problem, point: Posterior, segments: Sequence[Array] 
     linear = point.linear
     finer = in_fine_metric(problem, segments, linear) if segments else None
     names, answers = generic_force_responses(problem.runs, point.beta)
-    prior, expected = (point.precision, point.precision * point.departure), expected_forces(problem, names)
+    prior, expected = (point.precision, point.pull), expected_forces(problem, names)
     forces = beside(problem, names, answers, linear, *prior, expected)
     evidence, few = forces.sparse()
     all_of_it = beside(finer[0], names, answers, finer[1], *prior, np.zeros(len(names))).by_axis() if finer else {}
@@ -139,7 +139,7 @@ def forces_beside(problem: Problem, point: Posterior, segments: Sequence[Array] 
 def nominal_forces(problem: Problem) -> GenericForces:
     """The same about the nominal vehicle, with nothing beside them: what the gap itself looks like."""
     names, answers = generic_force_responses(problem.runs, problem.origin)
-    return beside(problem, names, answers, problem.nominal, np.zeros(0), np.zeros(0), expected_forces(problem, names))
+    return beside(problem, names, answers, problem.nominal, np.zeros((0, 0)), np.zeros(0), expected_forces(problem, names))
 
 
 def expected_forces(problem: Problem, names: Sequence[tuple[str, str]]) -> Array:
@@ -156,8 +156,8 @@ def beside(
     problem: Problem, names: tuple[tuple[str, str], ...], answers: Sequence[Array], linear: Sequence[Linearisation], precision: Array, pull: Array,
     expected: Array,
 ) -> GenericForces:  # fmt: skip
-    """Named responses ``answers`` (m, n, c, f) of each run's windows as further columns beside those of ``linear``, whose priors have ``precision`` and add the
-    gradient ``pull`` (k,), and beside forces of ``expected`` size (f,)."""
+    """Named responses ``answers`` (m, n, c, f) of each run's windows as further columns beside those of ``linear``, whose prior has ``precision`` (k, k) and
+    adds the gradient ``pull`` (k,), and beside forces of ``expected`` size (f,)."""
     ids = tuple(range(len(problem.origin), len(problem.origin) + len(names)))
     held = np.stack([fold.test for fold in problem.folds])
     parts = []

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from math import log
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from rovval.core.data import Array, Flags
 from rovval.core.large_arrays import zeros
@@ -227,7 +228,7 @@ class _Switch:
             begun,
             columns=columns, whitened=(),
             dynamics=switched(self.before.dynamics, begun.dynamics), total=switched(self.before.total, begun.total),
-            precision=np.concatenate([begun.precision, begun.tempering / self.tolerance**2]),
+            precision=block_diag(begun.precision, np.diag(begun.tempering / self.tolerance**2)),
             departure=np.concatenate([begun.departure, self.before.departure[taken]]),
             bound_side=np.concatenate([begun.bound_side, none]), tangent_only=np.concatenate([begun.tangent_only, none > 0]),
         )  # fmt: skip

@@ -65,4 +65,4 @@ def _evidence(data: NormalEquations, A: Array, b: Array, prior: Prior, tempering
     H, pull = A[np.ix_(free, free)] + ridge, ridge @ offset
     slope = b[free] - pull
     explained = (slope @ np.linalg.solve(H, slope) - pull @ offset) / tempering
-    return float(explained - np.linalg.slogdet(H)[1] + np.log(np.diag(ridge)).sum())
+    return float(explained - np.linalg.slogdet(H)[1] + np.linalg.slogdet(ridge)[1])

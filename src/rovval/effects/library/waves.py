@@ -40,11 +40,11 @@ EFFECT = Effect(
         ),
         *(
             parameter
-            for of in COMPONENTS[1:]
+            for train in COMPONENTS[1:]
             for parameter in (
-                Parameter(f"cosine{of}", "m", -3.0, 3.0, 0.0, 0.2, SEA),
-                Parameter(f"sine{of}", "m", -3.0, 3.0, 0.0, 0.2, SEA),
-                Parameter(f"period{of}", "s", 2.0, 20.0, 6.0, 2.0, "as period", role="further period"),
+                Parameter(f"cosine{train}", "m", -3.0, 3.0, 0.0, 0.2, SEA),
+                Parameter(f"sine{train}", "m", -3.0, 3.0, 0.0, 0.2, SEA),
+                Parameter(f"period{train}", "s", 2.0, 20.0, 6.0, 2.0, "as period", role="further period"),
             )
         ),
     ),
@@ -58,17 +58,18 @@ EFFECT = Effect(
     ),
     needs=("z",),
     wanders=True,
-    refines=tuple(f"{name}{of}" for of in COMPONENTS[1:] for name in ("cosine", "sine", "period")),
+    refines=tuple(f"{name}{train}" for train in COMPONENTS[1:] for name in ("cosine", "sine", "period")),
 )
-ROWS = ("north", "east", *(f"{row}{of}" for of in COMPONENTS for row in ("a", "b", "omega", "k")))
+ROWS = ("north", "east", *(f"{row}{train}" for train in COMPONENTS for row in ("a", "b", "omega", "k")))
 
 
 def rows(lanes: Lanes, p: Mapping[str, Array]) -> dict[str, Array]:
     """Direction; and of each train orbital speeds at the surface, frequency and wave number."""
     found = {"north": np.cos(p["direction"]), "east": np.sin(p["direction"])}
-    for of in COMPONENTS:
-        omega = 2.0 * np.pi / p[f"period{of}"]
-        found |= {f"a{of}": p[f"cosine{of}"] * omega, f"b{of}": p[f"sine{of}"] * omega, f"omega{of}": omega, f"k{of}": omega**2 / lanes.vehicle.water.gravity}
+    for train in COMPONENTS:
+        omega = 2.0 * np.pi / p[f"period{train}"]
+        found |= {f"a{train}": p[f"cosine{train}"] * omega, f"b{train}": p[f"sine{train}"] * omega}
+        found |= {f"omega{train}": omega, f"k{train}": omega**2 / lanes.vehicle.water.gravity}
     return found
 
 

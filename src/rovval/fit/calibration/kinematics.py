@@ -24,9 +24,9 @@ from rovval.diagnose.problem.prior import tolerance_prior
 from rovval.diagnose.residuals.parity import parity_residuals
 from rovval.diagnose.residuals.ridge import eliminated
 from rovval.diagnose.windows.multiple_shooting import cut
-from rovval.fit.estimate import Quadratic
-from rovval.fit.random_effects import SLOP
-from rovval.fit.unknowns import LEVER, SENSORS, TILT, Unknown
+from rovval.fit.calibration.estimate import Quadratic
+from rovval.fit.calibration.random_effects import SLOP
+from rovval.fit.calibration.unknowns import LEVER, SENSORS, TILT, Unknown
 from rovval.plant import parse_settings
 from rovval.simulation import carried_effects
 from rovval.vehicle.model import Vehicle

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rovval.fit.estimate import Problem, Quadratic, maximum
+from rovval.fit.calibration.estimate import Problem, Quadratic, maximum
 
 MEASURED, FLOOR = np.array([2.0, 1.5]), np.array([0.1])
 OK = [np.ones((200, 1), dtype=bool)]

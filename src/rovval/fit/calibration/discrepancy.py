@@ -19,7 +19,7 @@ from rovval.core.data import Array, Run
 from rovval.diagnose.inference.map_fit import healthy_fit
 from rovval.diagnose.residuals.external_forces import damps, typical_wrench
 from rovval.diagnose.search.discrepancy import generic_forces
-from rovval.fit.random_effects import posed, variances
+from rovval.fit.calibration.random_effects import posed, variances
 from rovval.simulation.fitted_tolerances import kind_of_force, with_discrepancy
 from rovval.vehicle.model import Vehicle
 

@@ -14,8 +14,8 @@ from rovval.diagnose.problem.problem import pose
 from rovval.diagnose.residuals.perturbations import Columns
 from rovval.diagnose.search.discrepancy import forces_beside
 from rovval.diagnose.windows.multiple_shooting import cut
-from rovval.fit.discrepancy import discrepancy
-from rovval.fit.random_effects import variances
+from rovval.fit.calibration.discrepancy import discrepancy
+from rovval.fit.calibration.random_effects import variances
 from rovval.simulation.fitted_tolerances import fitted_discrepancy, fitted_tolerances, with_discrepancy, with_tolerances
 from rovval.vehicle import parse
 from rovval.vehicle.write import to_toml

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from real_data import real
 
-from rovval.fit import motor_law
+from rovval.fit.bench import motor_law
 
 
 def test_equation_2_4_recovers_a_motor_and_states_its_fit_error():

@@ -18,7 +18,7 @@ from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.ridge import eliminated
-from rovval.fit.random_effects import posed, variances
+from rovval.fit.calibration.random_effects import posed, variances
 from rovval.vehicle.model import Vehicle
 
 
@@ -57,12 +57,12 @@ def _asked(run: Run, vehicle: Vehicle, model: str, window_s: float) -> dict[str,
 
 def _of_each(problem: Problem, slots: tuple[int, ...]) -> tuple[Array, Array]:
     """Curvature and slope (k,) of the log likelihood in each of the ``slots`` by itself, all that has a tolerance but for it at its most probable beside it."""
-    data, tolerance = problem.likelihood.total, problem.tolerance.sd
+    data, tolerance = problem.likelihood.total, problem.tolerance
     A, b = data.A.sum(axis=0) / problem.tempering, data.b.sum(axis=0) / problem.tempering
     found = np.empty((len(slots), 2))
     for i, slot in enumerate(slots):
-        others = tuple(s for s in tolerance if s != slot)
-        place, precision = data.place((slot, *others)), np.array([1.0 / tolerance[s] ** 2 for s in others])
-        left, toward = eliminated(A[np.ix_(place, place)], b[place], np.arange(1, len(place)), np.diag(precision), np.zeros(len(others)))
+        others = tuple(s for s in tolerance.sd if s != slot)
+        place = data.place((slot, *others))
+        left, toward = eliminated(A[np.ix_(place, place)], b[place], np.arange(1, len(place)), tolerance.precision(others), np.zeros(len(others)))
         found[i] = left[0, 0], toward[0]
     return found[:, 0], found[:, 1]

@@ -11,8 +11,8 @@ from kinematic import spoilt
 
 from rovval.core.channels import POSE
 from rovval.core.data import Run
-from rovval.fit.kinematics import kinematics
-from rovval.fit.unknowns import SENSORS, unknowns
+from rovval.fit.calibration.kinematics import kinematics
+from rovval.fit.calibration.unknowns import SENSORS, unknowns
 from rovval.vehicle.model import Vehicle
 
 CHANNELS = ("u", "v", "w", "p", "q", "r", "phi", "theta", "z")

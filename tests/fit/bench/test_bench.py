@@ -11,7 +11,7 @@ from real_data import real
 
 from rovval.core.errors import BadInput, UsageProblem
 from rovval.fit import bench
-from rovval.fit.step_response import steps
+from rovval.fit.bench.step_response import steps
 
 
 def test_the_motor_s_law_that_made_a_table_is_found_in_it(tmp_path):

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rovval.core.errors import BadInput, all_at_once
-from rovval.fit import motor_law, step_response
+from rovval.fit.bench import motor_law, step_response
 
 Array = NDArray[np.float64]
 MOST_PROBLEMS = 5  # wrong lines that are named

@@ -12,7 +12,7 @@ from rovval.core.channels import VELOCITIES
 from rovval.core.data import Array, Flags, Run
 from rovval.core.errors import BadInput
 from rovval.core.frames import rotation_from_euler
-from rovval.fit.kinematics import Kinematics, kinematics
+from rovval.fit.calibration.kinematics import Kinematics, kinematics
 from rovval.plant import Plant
 from rovval.simulation.actuation import Actuation, recorded_actuation, start_states, startable
 from rovval.vehicle.model import Vehicle

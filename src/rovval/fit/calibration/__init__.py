@@ -21,12 +21,12 @@ from rovval.diagnose.criteria import HELD_OUT_RUNS
 from rovval.diagnose.effort import PROGRESSIVE_S
 from rovval.diagnose.inference.identifiability import seen_together
 from rovval.diagnose.windows.noise import clean_channels
-from rovval.fit.apparent_sizes import apparent_sizes
-from rovval.fit.discrepancy import discrepancy
-from rovval.fit.estimate import Estimate, Problem, held_out_gain, maximum
-from rovval.fit.random_effects import tolerances
-from rovval.fit.record import Record, begun, record, residual, rms
-from rovval.fit.unknowns import Unknown, applied, bounds, unknowns
+from rovval.fit.calibration.apparent_sizes import apparent_sizes
+from rovval.fit.calibration.discrepancy import discrepancy
+from rovval.fit.calibration.estimate import Estimate, Problem, held_out_gain, maximum
+from rovval.fit.calibration.random_effects import tolerances
+from rovval.fit.calibration.record import Record, begun, record, residual, rms
+from rovval.fit.calibration.unknowns import Unknown, applied, bounds, unknowns
 from rovval.plant import Plant, parse_settings
 from rovval.plant.platforms import USUAL
 from rovval.plant.slots import slots
@@ -170,12 +170,11 @@ def calibrate(runs: Sequence[Run], vehicle: Vehicle, *, model: str = "fossen", w
     say("simulating the logs with the calibrated vehicle", 0.8)
     by = others or (estimate,) * len(records)
     left = _left(records, vehicle, chosen, model, by)
-    own, apart = [one.run for one in records], [applied(vehicle, chosen, e.values) for e in by]
-    known = tolerances(own, apart, model, window_s)
-    apart = [with_tolerances(v, known) for v in apart]
+    own, calibrated = [one.run for one in records], _remembering(applied(vehicle, chosen, estimate.values), records, left)
+    known = tolerances(own, calibrated, model, window_s)
+    apart = [with_tolerances(applied(vehicle, chosen, e.values), *known) for e in by]
     unmodelled, sizes = discrepancy(own, apart, model, window_s), apparent_sizes(own, apart, model, window_s)
-    calibrated = _remembering(applied(vehicle, chosen, estimate.values), records, left)
-    calibrated = with_sizes(with_discrepancy(with_tolerances(calibrated, known), unmodelled), sizes)
+    calibrated = with_sizes(with_discrepancy(with_tolerances(calibrated, *known), unmodelled), sizes)
     errors = _errors(records, vehicle, calibrated, chosen, model, others)
     accepted = tuple(name for name, by_run in gains.items() if min(by_run) > 0)
     rows = tuple(_row(vehicle, one, estimate, i) for i, one in enumerate(chosen))

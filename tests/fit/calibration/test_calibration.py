@@ -12,7 +12,7 @@ from diagnose_case import merlin, own
 from rovval.core.data import Run
 from rovval.core.errors import BadInput
 from rovval.fit.calibration import Calibration, calibrate
-from rovval.fit.unknowns import applied, unknowns
+from rovval.fit.calibration.unknowns import applied, unknowns
 from rovval.plant import Plant, parse_settings
 from rovval.report.fit import html, text
 from rovval.simulation import carried_effects, simulate

@@ -9,7 +9,7 @@ import pytest
 from diagnose_case import merlin, own
 
 from rovval import effects
-from rovval.fit.apparent_sizes import apparent_sizes
+from rovval.fit.calibration.apparent_sizes import apparent_sizes
 from rovval.simulation.fitted_tolerances import fitted_sizes, with_sizes
 from rovval.vehicle import parse
 from rovval.vehicle.write import to_toml
