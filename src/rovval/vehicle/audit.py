@@ -66,10 +66,7 @@ def _tolerances(vehicle: Vehicle) -> list[str]:
     problems = [f"tolerance_correlation of {key}: {count} numbers, {before} expected, one for each key before it" for key, (count, before) in wrong.items()]
     if problems or not rows:
         return problems
-    matrix = np.eye(len(rows))
-    for i, row in enumerate(rows.values()):
-        matrix[i, :i] = row
-    least = float(np.linalg.eigvalsh(matrix)[0])  # of the lower triangle
+    least = float(np.linalg.eigvalsh(vehicle.correlation)[0])
     return [] if least > 0 else [f"tolerance_correlation is not positive definite (smallest eigenvalue {least:.3g}, limit > 0): write it with `rovval fit`"]
 
 

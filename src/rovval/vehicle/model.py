@@ -161,6 +161,14 @@ class Vehicle(Strict):
         return self.water.density * self.water.gravity * self.body.volume
 
     @property
+    def correlation(self) -> Array:
+        """Correlations (c, c) of the c tolerances that go together, in the order of ``tolerance_correlation``."""
+        found = np.eye(len(self.tolerance_correlation))
+        for i, row in enumerate(self.tolerance_correlation.values()):
+            found[i, :i] = found[:i, i] = row
+        return found
+
+    @property
     def hash(self) -> str:
         """Short content hash: two vehicles with one hash move alike."""
         left_out: Any = {

@@ -1,4 +1,4 @@
-"""`tolerances`: what every vehicle has to some degree, and no file states, is as large as the logs have it; and a diagnosis blames none of that."""
+"""`tolerances`: what a vehicle is off by from run to run is as large as its logs have it, each number and all together; and a diagnosis blames none of it."""
 
 from __future__ import annotations
 
@@ -97,6 +97,18 @@ def test_the_file_remembers_them_and_a_new_calibration_replaces_them():
     keys, correlation = fitted_correlation(vehicle)
     assert keys == tuple(both) and correlation.tolist() == [[1.0, -0.25], [-0.25, 1.0]]
     assert fitted_tolerances(merlin()) == {} and fitted_correlation(with_tolerances(vehicle, both))[0] == ()
+
+
+def test_what_is_known_well_together_is_still_known_when_it_is_read_again():
+    """Seventy numbers of which runs know some combinations far better than any by itself, as on tank runs: digits that the file leaves out do not blur them."""
+    rng, count = np.random.default_rng(4), 70
+    way = np.linalg.qr(rng.normal(size=(count, count)))[0]
+    known = (way * np.geomspace(1e-4, 1.0, count)) @ way.T
+    sd = np.sqrt(np.diag(known))
+    correlation = known / np.outer(sd, sd)
+    vehicle = with_tolerances(merlin(), {f"a{i}": 1.0 for i in range(count)}, correlation)
+    again = fitted_correlation(parse(to_toml(vehicle), "again"))[1]
+    assert np.linalg.inv(again).diagonal() == pytest.approx(np.linalg.inv(correlation).diagonal(), rel=1e-3)
 
 
 @pytest.mark.parametrize(("rows", "said"), [((0.5, 0.2), "2 numbers, 1 expected"), ((1.5,), "not positive definite")])

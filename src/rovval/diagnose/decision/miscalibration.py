@@ -71,15 +71,15 @@ def departures(problem: Problem, point: Posterior, among: Sequence[int]) -> list
     is larger changes the precision of the prior, and so the curvature, by a matrix of rank one (Sherman and Morrison 1950).
     """
     moves = (point.bound_side == 0) | (point.solve(point.curvature, point.descent) != 0.0)  # what stays on its bound at the best step is held there
-    precision, evidence, found = point.precision.copy(), laplace_evidence(problem, point), list[Departures]()
+    precision, evidence, found = point.precision, laplace_evidence(problem, point), list[Departures]()
+    more = (FILE_WIDTH**2 - 1.0) * np.diag(np.linalg.inv(precision))  # variance of a number that is off, beside its own
     each = 2.0 * float(np.log(max(len(among), 1)))
     columns = [i for s in among if moves[i := point.columns.index(s)]]
     A, b = point.total.A.sum(axis=0), point.total.b.sum(axis=0)
     while columns:
         toward = precision[:, columns]
-        more = (FILE_WIDTH**2 - 1.0) * np.diag(np.linalg.inv(precision))[columns]
-        larger = 1.0 + more * precision[columns, columns]
-        freed, off = more / larger, point.departure @ toward
+        larger = 1.0 + more[columns] * precision[columns, columns]
+        freed, off = more[columns] / larger, point.departure @ toward
         inverse = np.linalg.inv((A + precision)[np.ix_(moves, moves)])
         step = (b - precision @ point.departure)[moves] @ inverse @ toward[moves]
         own = np.einsum("ij,ij->j", toward[moves], inverse @ toward[moves])

@@ -132,8 +132,8 @@ def noise_by_part(problem: Problem) -> dict[str, float]:
 
 
 def tolerated_by_part(problem: Problem) -> dict[str, float]:
-    """What of them coefficients and sensors make which are off by one standard deviation of their tolerance, each by itself; on the axes in proportion to the
-    gap there, since the sensitivities by axis are not kept."""
+    """What of them coefficients and sensors make which are off by as much as their tolerance has it, expected; on the axes in proportion to the gap there,
+    since the sensitivities by axis are not kept."""
     nominal, noise = weighted_errors(problem, corrected_residuals(problem)), noise_by_part(problem)
     share = tolerated_gap(problem) / max(float(explainable_gap(problem)[0]), TINY)
     axes = {axis: share * (value - noise[axis]) for axis, value in nominal.items()}
