@@ -71,9 +71,16 @@ def test_a_long_lag_is_found_though_it_is_no_multiple_of_a_short_one():
 def test_a_change_with_depth_begins_at_depths_of_the_log():
     p, library = posed()
     z = np.concatenate([part.eta0[:, 2] for part in p.runs])
-    for name in ("density_gradient", "current_shear"):
-        data = [dict(h.at)[slot(p, f"{name}.depth")] for h in library if h.name == name]
-        assert len(data) == 3 and z.min() < min(data) < max(data) < z.max()
+    data = [dict(h.at)[slot(p, "density_gradient.depth")] for h in library if h.name == "density_gradient"]
+    assert len(data) == 3 and z.min() < min(data) < max(data) < z.max()
+
+
+def test_a_current_with_shear_begins_with_and_without_a_velocity_in_the_middle_of_the_depths():
+    p, library = posed()
+    begun = [h for h in library if h.name == "current_shear"]
+    z = np.concatenate([part.depths() for part in p.runs])
+    assert [slot(p, "current_shear.north_at_depth") in h.slots for h in begun] == [False, True]
+    assert all(dict(h.at)[slot(p, "current_shear.depth")] == pytest.approx(float(np.median(z))) for h in begun)
 
 
 def test_a_threshold_begins_at_speeds_at_which_the_thruster_turns_in_the_log():
