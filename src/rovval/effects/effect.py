@@ -70,7 +70,7 @@ class Parameter:
     - ``needs``: the channel without which it does nothing and is refused.
     - ``role``: what it says of the effect. ``size``: how strong it is; ``onset``: when it begins (s since the run's start); ``period`` (s) and
       ``direction`` (rad from north) of a swing, and ``further period`` (s) of another one that comes with it; ``datum``: the depth (m) at which what
-      changes with depth is zero; ``level``: a depth (m) from which another place is counted; ``bottom``: the depth (m) of the seabed; ``extent``: how
+      changes with depth is zero; ``level``: a depth (m) from which others are counted; ``bottom``: the depth (m) of the seabed; ``extent``: how
       far it reaches or how long it takes; ``anchor``: a coordinate of a point that it is tied to; ``lever``: a coordinate, body axes, of the point
       where its force acts; ``threshold``: the shaft speed below which it acts, for which the search begins at speeds that the log holds.
     - ``starts``: values from which the search begins, for what a linearisation at the null value cannot see.
