@@ -25,7 +25,7 @@ EFFECT = Effect(
     },
     parameters=(
         Parameter("gradient", "kg/m4", -20.0, 20.0, 0.0, 1.0, "some kg/m3 over some metres (chosen); a halocline: 30 over two"),
-        Parameter("depth", "m", -10.0, 6000.0, 0.0, 10.0, "where the change is zero: set it to the log's mean depth", role="datum"),
+        Parameter("depth", "m", -10.0, 6000.0, 0.0, 1.0, "where the change is zero: a vehicle is trimmed where it works (chosen)", role="datum"),
         Parameter("layer", "m", 0.2, 1000.0, 3.0, 3.0, "a halocline: two metres; a thermocline: some tens", role="extent"),
     ),
     signature="a vertical force that grows with depth, at every heading and speed",
