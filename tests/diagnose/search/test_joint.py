@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
-from diagnose_case import merlin, own, posed
+from diagnose_case import foreign, merlin, own, posed
 
 from rovval.diagnose import diagnose
 from rovval.diagnose.criteria import LEAST_EVIDENCE
@@ -14,7 +15,7 @@ from rovval.diagnose.hypotheses.hypothesis import Hypothesis
 from rovval.diagnose.hypotheses.library import initialised
 from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis, fit_quickly
 from rovval.diagnose.inference.map_fit import healthy_fit
-from rovval.diagnose.search.joint import settled, with_relatives
+from rovval.diagnose.search.joint import refitted, settled, with_relatives, without_each
 from rovval.diagnose.search.model import Model, ModelPrior
 
 
@@ -65,3 +66,25 @@ def test_what_stands_in_for_a_cause_is_fitted_in_its_place():
     best = max(found, key=lambda m: m.log_posterior)
     assert best.names == {"inflow_loss", "buoyancy_error"} and best.evidence > whole.evidence + LEAST_EVIDENCE
     assert with_relatives(problem, prior, initialised_library, whole, known) == []
+
+
+def test_what_is_left_when_a_cause_is_taken_out_is_fitted_from_where_it_was_beside_it():
+    problem, library = posed(("inflow_loss:loss=0.3", "buoyancy_error:force=60"))
+    prior, first = ModelPrior.of(library), {h.name: h for h in library}
+    both = (first["inflow_loss"], first["buoyancy_error"])
+    fit = fit_hypothesis(problem, problem.origin, tuple(s for h in both for s in h.slots))
+    found = without_each(problem, prior, Model(both, fit, fit.evidence, prior.log_mass(both)))
+    assert [m.names for m in found] == [{"buoyancy_error"}, {"inflow_loss"}]
+    for model, (h,) in ((m, m.causes) for m in found):
+        alone = fit_hypothesis(problem, problem.origin, h.slots)
+        assert model.log_prior == prior.log_mass((h,)) and refitted(problem, model).evidence == pytest.approx(alone.evidence, abs=1.0)
+    assert without_each(problem, prior, Model(both[:1], fit, fit.evidence, 0.0)) == []  # of a single cause nothing is left
+
+
+@pytest.mark.slow
+def test_a_set_of_two_that_only_a_larger_one_leads_to_is_met(tmp_path: Path):
+    """A log of plant a, from a set that was opened: beside a reversed thruster the bottom nearby was fitted first, and a change of density, without which the
+    bottom is worth nothing, only beside both."""
+    log = foreign(tmp_path, (("density_gradient", "", -1.7), ("thruster_reversed", "HFS", 1.275)), 1779042858, 300.0, 0.03, mission="protocol")
+    found = diagnose([log], merlin()).document()
+    assert [c["effect"] for c in found["causes"]] == ["thruster_reversed[HFS]", "density_gradient"], found["sentence"]

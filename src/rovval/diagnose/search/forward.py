@@ -2,7 +2,8 @@
 
 Every model that is fitted is kept with its evidence and its prior mass; which of them is believed is decided elsewhere (`decision`). The search only has
 to meet the probable ones. It goes one cause beyond the best set, since of two causes that offset each other neither explains the logs alone, and one beyond a
-cause that may well be the form error of the others. And it goes a second way, from the next best single cause, where that is not far behind.
+cause that may well be the form error of the others. And it goes a second way, from the next best single cause, where that is not far behind. Where a set beyond
+the best one fits better, each of its causes is taken out again: the first may have been no more than the nearest to those that came after it.
 """
 
 from __future__ import annotations
@@ -102,13 +103,14 @@ class _Space:
 
 @dataclass(frozen=True, slots=True)
 class _Met:
-    """What a search met so far: models, the healthy vehicle first; candidates of each step that had any; when something seems to begin (s); and the library
-    as it was last linearised."""
+    """What a search met so far: models, the healthy vehicle first; candidates of each step that had any; when something seems to begin (s); the library
+    as it was last linearised; and the best model of each step, with its sensitivities."""
 
     models: list[Model]
     tried: list[list[Candidate]]
     onset: float | None
     linear: NormalEquations | None = None
+    fronts: tuple[Model, ...] = ()
 
     @property
     def best(self) -> Model:
@@ -119,6 +121,7 @@ class _Met:
 def _grown(over: _Space, met: _Met, front: Model, most: int, progress: Callable[[str, float], None]) -> _Met:
     """What was met and what is met on the way from ``front`` on, to which one cause after the other is added, up to ``most``."""
     models, tried, onset, linear, doubted, best = list(met.models), list(met.tried), met.onset, met.linear, False, met.best
+    fronts = list(met.fronts)
     for number in range(len(front.causes), most):
         progress(f"adding each of {len(over.library)} hypotheses to {number} causes", 0.7 - 0.4 * 0.7**number)
         found, suspected, linear = _extended(over, front, best.log_posterior + log(NEGLIGIBLE), linear)
@@ -130,10 +133,11 @@ def _grown(over: _Space, met: _Met, front: Model, most: int, progress: Callable[
         models += added
         before, front = front, max(added, key=lambda m: m.log_posterior)
         best = max(best, front, key=lambda m: m.log_posterior)
+        fronts.append(front)
         before_doubted, doubted = doubted, _looks_like_form_error(over.problem, before, front)
         if front.log_posterior < best.log_posterior + log(NEGLIGIBLE) or len(front.causes) > len(best.causes) + 1 or (doubted and before_doubted):
             break
-    return _Met(models, tried, onset, linear)
+    return _Met(models, tried, onset, linear, tuple(fronts))
 
 
 def _rival(met: _Met) -> Model | None:
@@ -181,17 +185,19 @@ def _model(prior: ModelPrior, front: Model, one: Candidate) -> Model:
 
 
 def _exchanged(over: _Space, met: _Met) -> tuple[Posterior, list[Model], Model]:
-    """The healthy fit, tried from where it is beside the causes, too; the models with those that came of taking causes out and of exchanging them; and the best
-    of them."""
+    """The healthy fit, tried from where it is beside the causes, too; the models with those that came of taking causes out, of the best set and of those of one
+    cause more that fit better, and of exchanging them; and the best of them."""
     problem, models, best = over.problem, met.models, met.best
     if best.fit is None:
         return over.healthy, models, best
     healthy = refit_healthy(problem, over.healthy, best.fit.posterior, best.fit.slots)
     models = [Model((), None, laplace_evidence(problem, healthy), models[0].log_prior), *models[1:]]
-    known = {m.names for m in models}
-    while len(best.causes) > 1:
-        exchanged = [*without_each(problem, over.prior, best, known), *with_relatives(problem, over.prior, over.library, best, known, met.linear)]
-        models = settled(problem, [*models, *exchanged], 1)
+    known, beyond = {m.names for m in models}, [m for m in met.fronts if len(m.causes) == len(best.causes) + 1 and m.evidence > best.evidence]
+    while len(best.causes) > 1 or beyond:
+        fewer = [one for whole in (best, *beyond) for one in without_each(problem, over.prior, whole)]
+        known |= {m.names for m in fewer}
+        exchanged, beyond = with_relatives(problem, over.prior, over.library, best, known, met.linear), []
+        models = settled(problem, [*models, *fewer, *exchanged], 1)
         better = max(models, key=lambda m: m.log_posterior)
         if better.fit is None or better.log_posterior <= best.log_posterior:
             break

@@ -26,16 +26,11 @@ from rovval.diagnose.search.model import Model, ModelPrior, Names, best_of_each_
 from rovval.diagnose.search.screening import linearised, screened
 
 
-def without_each(problem: Problem, prior: ModelPrior, whole: Model, known: set[Names]) -> list[Model]:
-    """Models of a set of causes, its fit with sensitivities, without each of them (`some_of`). ``known`` are names of the sets that were fitted already; those
-    that are fitted here are added to it."""
+def without_each(problem: Problem, prior: ModelPrior, whole: Model) -> list[Model]:
+    """Models of a set of causes, its fit with sensitivities, without each of them, fitted from where the others are beside it (`some_of`): a set that was
+    fitted before may have ended in another minimum."""
     assert whole.fit is not None
-    found = list[Model]()
-    for cause in whole.causes:
-        if (names := whole.names - {cause.name}) not in known:
-            found.append(some_of(problem, prior, whole.fit, tuple(h for h in whole.causes if h is not cause)))
-            known.add(names)
-    return found
+    return [some_of(problem, prior, whole.fit, tuple(h for h in whole.causes if h is not cause)) for cause in whole.causes if len(whole.causes) > 1]
 
 
 def with_relatives(
