@@ -47,7 +47,7 @@ def test_a_depth_is_expected_where_the_log_was_and_a_bottom_below_it():
 
 
 @pytest.mark.slow
-def test_water_that_changes_with_depth_is_that_of_which_the_vehicle_is_trimmed_for_a_depth_nearby(tmp_path: Path):
+def test_a_change_with_depth_is_expected_to_be_zero_near_the_depths_of_the_log(tmp_path: Path):
     """A log of plant b, from a set that was opened: with any depth as good as another the vertical thrusters had been blamed for it (0.98)."""
     flight = fly(LIBRARY / "merlin.toml", "square", [Planted("density_gradient", None, 2.126)], 1626879146, 300.0, 0.05)
     write_csv(flight, tmp_path / "log.csv")

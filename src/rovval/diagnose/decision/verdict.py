@@ -223,8 +223,8 @@ def _needed(problem: Problem, selection: Selection, met: Sequence[Model], best: 
     is the healthy vehicle for causes that begin together in mid-log where no other was fitted."""
     known = best_of_each_set(met)
     while True:
-        if best.fit and best.part is None and any(best.names - {h.name} not in known for h in best.causes):
-            known = {m.names: m for m in without_each(problem, selection.prior, best)} | known
+        if best.fit and best.part is None:
+            known |= {m.names: m for m in without_each(problem, selection.prior, best, known.keys())}
         without = {h.name: known.get(best.names - {h.name}, known[frozenset()]) for h in best.causes}
         if len(without) < 2 or max(m.log_posterior for m in without.values()) < best.log_posterior:
             return best, without

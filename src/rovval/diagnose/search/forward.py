@@ -103,25 +103,30 @@ class _Space:
 
 @dataclass(frozen=True, slots=True)
 class _Met:
-    """What a search met so far: models, the healthy vehicle first; candidates of each step that had any; when something seems to begin (s); the library
-    as it was last linearised; and the best model of each step, with its sensitivities."""
+    """What a search met so far: models, the healthy vehicle first, of which the best one of each step has its sensitivities; candidates of each step that had
+    any; when something seems to begin (s); and the library as it was last linearised."""
 
     models: list[Model]
     tried: list[list[Candidate]]
     onset: float | None
     linear: NormalEquations | None = None
-    fronts: tuple[Model, ...] = ()
 
     @property
     def best(self) -> Model:
         """The most probable of the models."""
         return max(self.models, key=lambda m: m.log_posterior)
 
+    @property
+    def beyond(self) -> list[Model]:
+        """The best models of steps that have one cause more than the most probable model, and fit better."""
+        best = self.best
+        stepped = [m for m in self.models if m.fit and m.fit.posterior.whitened]
+        return [m for m in stepped if len(m.causes) == len(best.causes) + 1 and m.evidence > best.evidence]
+
 
 def _grown(over: _Space, met: _Met, front: Model, most: int, progress: Callable[[str, float], None]) -> _Met:
     """What was met and what is met on the way from ``front`` on, to which one cause after the other is added, up to ``most``."""
     models, tried, onset, linear, doubted, best = list(met.models), list(met.tried), met.onset, met.linear, False, met.best
-    fronts = list(met.fronts)
     for number in range(len(front.causes), most):
         progress(f"adding each of {len(over.library)} hypotheses to {number} causes", 0.7 - 0.4 * 0.7**number)
         found, suspected, linear = _extended(over, front, best.log_posterior + log(NEGLIGIBLE), linear)
@@ -133,11 +138,10 @@ def _grown(over: _Space, met: _Met, front: Model, most: int, progress: Callable[
         models += added
         before, front = front, max(added, key=lambda m: m.log_posterior)
         best = max(best, front, key=lambda m: m.log_posterior)
-        fronts.append(front)
         before_doubted, doubted = doubted, _looks_like_form_error(over.problem, before, front)
         if front.log_posterior < best.log_posterior + log(NEGLIGIBLE) or len(front.causes) > len(best.causes) + 1 or (doubted and before_doubted):
             break
-    return _Met(models, tried, onset, linear, tuple(fronts))
+    return _Met(models, tried, onset, linear)
 
 
 def _rival(met: _Met) -> Model | None:
@@ -192,7 +196,7 @@ def _exchanged(over: _Space, met: _Met) -> tuple[Posterior, list[Model], Model]:
         return over.healthy, models, best
     healthy = refit_healthy(problem, over.healthy, best.fit.posterior, best.fit.slots)
     models = [Model((), None, laplace_evidence(problem, healthy), models[0].log_prior), *models[1:]]
-    known, beyond = {m.names for m in models}, [m for m in met.fronts if len(m.causes) == len(best.causes) + 1 and m.evidence > best.evidence]
+    known, beyond = {m.names for m in models}, met.beyond
     while len(best.causes) > 1 or beyond:
         fewer = [one for whole in (best, *beyond) for one in without_each(problem, over.prior, whole)]
         known |= {m.names for m in fewer}

@@ -8,7 +8,7 @@ tell from it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from dataclasses import replace
 from math import log
 
@@ -26,11 +26,12 @@ from rovval.diagnose.search.model import Model, ModelPrior, Names, best_of_each_
 from rovval.diagnose.search.screening import linearised, screened
 
 
-def without_each(problem: Problem, prior: ModelPrior, whole: Model) -> list[Model]:
+def without_each(problem: Problem, prior: ModelPrior, whole: Model, known: Set[Names] = frozenset()) -> list[Model]:
     """Models of a set of causes, its fit with sensitivities, without each of them, fitted from where the others are beside it (`some_of`): a set that was
-    fitted before may have ended in another minimum."""
+    fitted before may have ended in another minimum. Sets that are ``known`` are left out."""
     assert whole.fit is not None
-    return [some_of(problem, prior, whole.fit, tuple(h for h in whole.causes if h is not cause)) for cause in whole.causes if len(whole.causes) > 1]
+    fewer = [tuple(h for h in whole.causes if h is not cause) for cause in whole.causes]
+    return [some_of(problem, prior, whole.fit, causes) for causes in fewer if causes and frozenset(h.name for h in causes) not in known]
 
 
 def with_relatives(
