@@ -13,7 +13,7 @@ import numpy as np
 from rovval import vehicle
 from rovval.blind.cases.csv_log import write_csv
 from rovval.blind.cases.flight import fly
-from rovval.blind.plant.spec import Planted
+from rovval.blind.plant.spec import Flight, Planted
 from rovval.core.channels import POSE, VELOCITIES
 from rovval.core.data import Array, ClockReport, Reason, Run
 from rovval.diagnose import Diagnosis, diagnose
@@ -96,6 +96,12 @@ def slot(problem: Problem, key: str) -> int:
     return next(i for i, s in enumerate(problem.plant.slots) if s.key == key)
 
 
+def logged(flight: Flight, path: Path) -> Run:
+    """A flight of either plant of the blind check, written to ``path`` and read as Merlin's CSV is."""
+    write_csv(flight, path)
+    return open_run(path, "merlin", path.parent / "archive")
+
+
 @functools.cache
 def foreign(
     folder: Path, planted: Sequence[tuple[str, str, float]], seed: int, seconds: float = 200.0, slop: float = 0.0, v: str = "merlin",
@@ -103,17 +109,13 @@ def foreign(
 ) -> Run:  # fmt: skip
     """A log of the independent plant, written and read as Merlin's CSV; ``planted``: (effect, target, severity)."""
     effects = [Planted(name, target or None, severity, onset) for name, target, severity in planted]
-    flight = fly(LIBRARY / f"{v}.toml", mission, effects, seed, seconds, slop)
-    path = folder / f"foreign{seed}.csv"
-    write_csv(flight, path)
-    return open_run(path, "merlin", folder / "archive")
+    return logged(fly(LIBRARY / f"{v}.toml", mission, effects, seed, seconds, slop), folder / f"foreign{seed}.csv")
 
 
 def bluerov2(folder: Path, name: str, seed: int, seconds: float, slop: float, *effects: tuple[str, str, float]) -> Run:
     """A log of the independent plant of a BlueROV2, flown open-loop; ``effects``: (effect, target, severity)."""
     planted = [Planted(name, target or None, severity) for name, target, severity in effects]
-    write_csv(fly(LIBRARY / "bluerov2_heavy.toml", "rich", planted, seed, seconds, slop), folder / name)
-    return open_run(folder / name, "merlin")
+    return logged(fly(LIBRARY / "bluerov2_heavy.toml", "rich", planted, seed, seconds, slop), folder / name)
 
 
 def turned(damping: float, answers: bool, seed: int = 4) -> Run:

@@ -6,9 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnose_case import LIBRARY, merlin, own, with_values
+from diagnose_case import LIBRARY, logged, merlin, own, with_values
 
-from rovval.blind.cases.csv_log import write_csv
 from rovval.blind.plant.spec import Planted
 from rovval.blind.second.flight import fly
 from rovval.core.errors import UsageProblem
@@ -16,7 +15,6 @@ from rovval.diagnose import diagnose
 from rovval.plant import Inputs, Plant, parse_settings
 from rovval.plant.stepping import Stepper
 from rovval.simulation.actuation import recorded_actuation
-from rovval.storage.archive import open_run
 
 
 def test_the_turns_of_a_log_are_counted_and_begin_at_its_start():
@@ -59,10 +57,8 @@ def test_a_closed_loop_counts_its_own_turns():
 
 @pytest.mark.slow
 def test_another_plant_s_twisted_tether_is_named_with_its_stiffness(tmp_path: Path):
-    log = tmp_path / "second.csv"
     flight = fly(LIBRARY / "merlin.toml", "pirouette", [Planted("twisted_tether", None, 1.0)], 7000, 200.0)
-    write_csv(flight, log)
-    [cause] = diagnose([open_run(log, "merlin")], merlin()).causes
+    [cause] = diagnose([logged(flight, tmp_path / "second.csv")], merlin()).causes
     assert cause.effect == "tether_torsion" and cause.probability > 0.9
     assert cause.parameters["stiffness"].value == pytest.approx(flight.truth["effects"][0]["values"]["stiffness"], rel=0.1)
 

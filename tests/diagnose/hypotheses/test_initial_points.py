@@ -6,9 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnose_case import LIBRARY, foreign, merlin, own, posed, slot
+from diagnose_case import LIBRARY, foreign, logged, merlin, own, posed, slot
 
-from rovval.blind.cases.csv_log import write_csv
 from rovval.blind.plant.spec import Planted
 from rovval.blind.second import flight as second
 from rovval.diagnose import diagnose
@@ -17,7 +16,6 @@ from rovval.diagnose.hypotheses.hypothesis import prior_of
 from rovval.diagnose.hypotheses.initial_points import Hints
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.windows.multiple_shooting import cut
-from rovval.storage.archive import open_run
 
 
 @pytest.mark.slow
@@ -44,8 +42,8 @@ def test_waves_of_the_independent_plant_are_found(tmp_path: Path):
 @pytest.mark.slow
 def test_a_sea_of_many_waves_from_all_over_a_sector_is_found(tmp_path: Path):
     """Ten Airy waves of a JONSWAP spectrum by another plant, which keeps its station: more than a few trains are seen, and close most of the gap."""
-    write_csv(second.fly(LIBRARY / "merlin.toml", "hover", [Planted("waves", None, 1.5)], 31, 240.0), tmp_path / "sea.csv")
-    document = diagnose([open_run(tmp_path / "sea.csv", "merlin", tmp_path / "archive")], merlin()).document()
+    sea = second.fly(LIBRARY / "merlin.toml", "hover", [Planted("waves", None, 1.5)], 31, 240.0)
+    document = diagnose([logged(sea, tmp_path / "sea.csv")], merlin()).document()
     assert [c["effect"] for c in document["causes"]] == ["waves"], document["sentence"]
     assert len(document["causes"][0]["parameters"]) > 4 + 3 * 2 and document["shrinkage"]["total"] > 0.5
 

@@ -7,10 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnose_case import LIBRARY, merlin, own
+from diagnose_case import LIBRARY, logged, merlin, own
 
 from rovval import vehicle
-from rovval.blind.cases.csv_log import write_csv
 from rovval.blind.cases.flight import fly
 from rovval.blind.plant.environment import Background
 from rovval.blind.plant.nominal_vehicle import read_vehicle
@@ -38,7 +37,6 @@ from rovval.diagnose.problem.problem import pose
 from rovval.diagnose.residuals.sensitivities import linearise
 from rovval.diagnose.search.discrepancy import forces_beside
 from rovval.diagnose.windows.multiple_shooting import cut
-from rovval.storage.archive import open_run
 
 
 @pytest.fixture(scope="module")
@@ -94,17 +92,13 @@ def test_fewer_columns_hold_the_same_covariance(quiet):
 @pytest.fixture(scope="module")
 def on_station(tmp_path_factory) -> Run:
     """The independent plant's BlueROV2 under its autopilot, in water that pushes it: thrusters answer pushes that no log holds."""
-    log = tmp_path_factory.mktemp("station") / "station.csv"
-    write_csv(fly(Path(LIBRARY / "bluerov2_heavy.toml"), "station", (), 6, 240.0, 0.03), log)
-    return open_run(log, "merlin")
+    return logged(fly(LIBRARY / "bluerov2_heavy.toml", "station", (), 6, 240.0, 0.03), tmp_path_factory.mktemp("station") / "station.csv")
 
 
 @pytest.fixture(scope="module")
 def pilot_in_gusts(tmp_path_factory) -> Run:
     """Plant b's healthy BlueROV2 round a square: gusts that no log holds turn it, and its pilot answers within a sample."""
-    log = tmp_path_factory.mktemp("gusts") / "square.csv"
-    write_csv(second.fly(Path(LIBRARY / "bluerov2_heavy.toml"), "square", (), 7, 240.0, 0.05), log)
-    return open_run(log, "merlin")
+    return logged(second.fly(LIBRARY / "bluerov2_heavy.toml", "square", (), 7, 240.0, 0.05), tmp_path_factory.mktemp("gusts") / "square.csv")
 
 
 @pytest.mark.slow

@@ -7,17 +7,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnose_case import LIBRARY, merlin, own
+from diagnose_case import LIBRARY, logged, merlin, own
 
 from rovval import vehicle
-from rovval.blind.cases.csv_log import write_csv
 from rovval.blind.plant.spec import Planted
 from rovval.blind.second.flight import fly
 from rovval.diagnose import diagnose
 from rovval.diagnose.problem.prior import loosened_by_closed_loop, prior_mean, tolerance_prior
 from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.plant import Plant
-from rovval.storage.archive import open_run
 
 
 def test_only_what_turns_about_a_steadied_axis_is_loosened():
@@ -50,8 +48,7 @@ def test_a_depth_is_expected_where_the_log_was_and_a_bottom_below_it():
 def test_a_change_with_depth_is_expected_to_be_zero_near_the_depths_of_the_log(tmp_path: Path):
     """A log of plant b, from a set that was opened: with any depth as good as another the vertical thrusters had been blamed for it (0.98)."""
     flight = fly(LIBRARY / "merlin.toml", "square", [Planted("density_gradient", None, 2.126)], 1626879146, 300.0, 0.05)
-    write_csv(flight, tmp_path / "log.csv")
-    found = diagnose([open_run(tmp_path / "log.csv", "merlin", tmp_path / "archive")], merlin())
+    found = diagnose([logged(flight, tmp_path / "log.csv")], merlin())
     assert [c.effect for c in found.causes] == ["density_gradient"]
     z = flight.measured["Depth"]
     assert z.min() - 1.0 < found.causes[0].parameters["depth"].value < z.max() + 1.0

@@ -10,12 +10,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from diagnose_case import LIBRARY, diagnosed, foreign, merlin
+from diagnose_case import LIBRARY, diagnosed, foreign, logged, merlin
 from diagnosis_schema import check_document
 from real_data import real
 
 from rovval import vehicle
-from rovval.blind.cases.csv_log import write_csv
 from rovval.blind.cases.flight import fly
 from rovval.comparison import compare
 from rovval.core.data import ChannelError, Run
@@ -55,10 +54,9 @@ OFF = {
 @functools.cache
 def flown(folder: Path, seed: int, off_in: str = "many") -> Run:
     """A log of the independent plant with that vehicle."""
-    file, log = folder / f"{off_in}.toml", folder / f"{off_in}{seed}.csv"
+    file = folder / f"{off_in}.toml"
     file.write_text(to_toml(OFF[off_in]), encoding="utf-8")
-    write_csv(fly(file, "rich", [], seed, 150.0, 0.0), log)
-    return open_run(log, "merlin", folder / "archive")
+    return logged(fly(file, "rich", [], seed, 150.0, 0.0), folder / f"{off_in}{seed}.csv")
 
 
 @functools.cache

@@ -9,10 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from diagnose_case import LIBRARY, merlin, own
+from diagnose_case import LIBRARY, logged, merlin, own
 
 from rovval import effects
-from rovval.blind.cases.csv_log import write_csv
 from rovval.blind.cases.flight import fly
 from rovval.blind.plant.spec import Planted
 from rovval.core.data import Run
@@ -36,7 +35,6 @@ from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.diagnose.windows.windows import Windows
 from rovval.report.diagnosis.json import document as written
 from rovval.report.diagnosis.sentences.sentence import since
-from rovval.storage.archive import open_run
 
 BEGINS = 120.0
 
@@ -47,9 +45,7 @@ def logs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Run, Run]:
     folder, runs = tmp_path_factory.mktemp("since"), []
     for i, onset in enumerate((BEGINS, None)):
         flight = fly(LIBRARY / "merlin.toml", "rich", [Planted("inflow_loss", None, 1.5, onset)], 21, 240.0, 0.02)
-        path = folder / f"log{i}.csv"
-        write_csv(flight, path)
-        runs.append(open_run(path, "merlin", folder / f"archive{i}"))
+        runs.append(logged(flight, folder / f"log{i}.csv"))
     return runs[0], runs[1]
 
 
@@ -79,8 +75,7 @@ def test_what_begins_by_itself_is_told_from_what_begins_in_mid_log(tmp_path: Pat
     """A weight from mid-log on, which is a model with an onset, and a payload that is taken up, which has one of its own, compete on the same log: a payload
     has mass, too."""
     flight = fly(LIBRARY / "merlin.toml", "rich", [Planted(planted, None, 1.5, BEGINS)], 22, 240.0, 0.02)
-    write_csv(flight, tmp_path / "log.csv")
-    [cause] = diagnose([open_run(tmp_path / "log.csv", "merlin", tmp_path / "archive")], merlin()).causes
+    [cause] = diagnose([logged(flight, tmp_path / "log.csv")], merlin()).causes
     assert cause.effect == planted
     assert cause.onset_s == pytest.approx(BEGINS, abs=15.0)
 
@@ -232,8 +227,7 @@ def test_the_part_after_an_onset_is_searched_where_the_whole_log_has_no_answer(
 
 
 def a_log_of_an_opened_set(folder: Path, mission: str, seed: int, planted: Planted) -> Run:
-    write_csv(fly(LIBRARY / "merlin.toml", mission, [planted], seed, 300.0, 0.03), folder / "log.csv")
-    return open_run(folder / "log.csv", "merlin", folder / "archive")
+    return logged(fly(LIBRARY / "merlin.toml", mission, [planted], seed, 300.0, 0.03), folder / "log.csv")
 
 
 @pytest.mark.slow
