@@ -42,11 +42,8 @@ def _gaps(raw: RawLog, name: str, series: Series) -> list[Finding]:
     if not len(wide):
         return slow
     longest = wide[np.argmax(steps[wide])]
-    detail = (
-        f"{len(wide)} gaps longer than {limit:g} s, {steps[wide].sum():.1f} s in all; "
-        f"the longest {steps[longest]:.2f} s from t = {series.t[longest]:.1f} s; not bridged"
-    )
-    return [*slow, Finding("gap", name, detail)]
+    found = f"{len(wide)} gaps longer than {limit:g} s, {steps[wide].sum():.1f} s in all; the longest" if len(wide) > 1 else "a gap of"
+    return [*slow, Finding("gap", name, f"{found} {steps[longest]:.2f} s from t = {series.t[longest]:.1f} s; not bridged")]
 
 
 def _slow(name: str, period_s: float, limit_s: float) -> Finding:

@@ -11,8 +11,9 @@ from rovval.report.diagnosis.sentences.words import parameter, sensor_tolerance
 
 NOISE = "sensor noise"
 STEADY = "constant"  # of the generic forces, the one that depends on nothing
-SHORT = {  # what may be the most probable kind of answer and is not given, since it is not probable enough
-    "causes": "an effect of the library is the likeliest answer", "healthy": "a vehicle that is as its file has it, within tolerance, is the likeliest answer",
+KINDS = {  # of answers
+    "causes": "an effect of the library", "healthy": "a vehicle that is as its file has it, within tolerance,", "file": "a file that is off in many numbers",
+    "else": "something that the library lacks, or has in another form,",
 }  # fmt: skip
 WORTH_A_FORMULA = 0.95  # of the rms error: a formula that leaves more of it helps nobody (chosen)
 
@@ -23,8 +24,9 @@ def undecided(d: Diagnosis) -> bool:
 
 
 def short(d: Diagnosis) -> bool:
-    """Whether the most probable answer is one that would be given, were it more probable."""
-    return d.verdict == "unknown" and _likeliest(d) in SHORT
+    """Whether even the most probable kind of answer is not probable enough to be given (`NAMED_FROM`)."""
+    kind, value = _likeliest(d)
+    return d.verdict == "unknown" and (kind in ("causes", "healthy") or (kind != "" and value <= NAMED_FROM))
 
 
 def nothing(d: Diagnosis) -> str:
@@ -37,12 +39,11 @@ def nothing(d: Diagnosis) -> str:
 def unknown(d: Diagnosis) -> str:
     """Why no cause is named though there is a gap: the kind of model that is the most probable, or a log that contradicts itself."""
     opposed = [row for row in d.log if row.finding == "contradicted"]
-    p, likely = d.probabilities, _likeliest(d)
+    p, (likely, value) = d.probabilities, _likeliest(d)
     if opposed and likely in ("causes", ""):
         return f"No cause is named, because the log contradicts itself: {opposed[0].channel} {opposed[0].detail}."
-    if p and likely in SHORT:
-        value = probability(p.causes if likely == "causes" else p.healthy)
-        return f"Undecided: {SHORT[likely]} (probability {value}), which is less than the {NAMED_FROM:g} from which an answer is given."
+    if short(d):
+        return f"Undecided: {KINDS[likely]} is the likeliest answer (probability {probability(value)}), less than the {NAMED_FROM:g} from which one is given."
     if p and likely == "file":
         return f"No single cause: many numbers of the vehicle's file seem to be off at once (probability {probability(p.miscalibrated_file)})."
     sure = f" (probability {probability(p.something_else)})" if p else ""
@@ -52,11 +53,11 @@ def unknown(d: Diagnosis) -> str:
     return f"There is a gap that no effect of the library explains: something else is at work{sure}{missed}{_acting(d)}."
 
 
-def _likeliest(d: Diagnosis) -> str:
-    """The most probable kind of answer; "" where no probabilities are known."""
+def _likeliest(d: Diagnosis) -> tuple[str, float]:
+    """The most probable kind of answer, and its probability; "" where none are known."""
     p = d.probabilities
-    kinds = {"causes": p.causes, "healthy": p.healthy, "file": p.miscalibrated_file, "else": p.something_else + p.not_found} if p else {}
-    return max(kinds, key=lambda kind: kinds[kind], default="")
+    kinds = {"causes": p.causes, "healthy": p.healthy, "file": p.miscalibrated_file, "else": p.something_else + p.not_found} if p else {"": 0.0}
+    return max(kinds.items(), key=lambda row: row[1])
 
 
 def unexplained(d: Diagnosis) -> str:
@@ -100,10 +101,9 @@ def next_step(d: Diagnosis) -> str:
         return "Check the sensor, or fly longer: more data decides."
     if d.verdict == "no_gap":
         return ""
-    likely = _likeliest(d)
     if short(d):
         return "Give further logs of this vehicle along with this one: more data decides."
-    if likely == "file":
+    if _likeliest(d)[0] == "file":
         return "Calibrate the vehicle's file with `rovval fit` and diagnose again."
     return "Look at the worst stretches below; log what nobody logged (tether, current), or fly the same again."
 
