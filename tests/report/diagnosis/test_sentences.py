@@ -14,7 +14,7 @@ from rovval.diagnose.result.diagnosis import Diagnosis
 from rovval.report.diagnosis import html
 from rovval.report.diagnosis.json import document
 from rovval.report.diagnosis.sentences.first_screen import first_screen
-from rovval.report.diagnosis.sentences.plain import falls, of_what, regime, titled
+from rovval.report.diagnosis.sentences.plain import falls, of_what, regime, titled, when
 from rovval.report.diagnosis.sentences.sentence import answer, sentence, verdict
 
 SURE = {"healthy": 0.02, "causes": 0.03, "miscalibrated_file": 0.05, "something_else": 0.9}
@@ -90,6 +90,17 @@ def test_causes_explain_no_gap_that_does_not_shrink_with_them(verdict_: str) -> 
 )  # fmt: skip
 def test_a_regime_is_what_the_vehicle_does(name: str, said: str) -> None:
     assert regime(name) == said
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("|r| > 3.6 deg/s", "when turning faster than 3.6 deg/s"), ("time 20 to 80 s", "from 20 to 80 s"), ("HFP turning forward", "when HFP turns forward"),
+        ("depth > 28.6 m", "when depth > 28.6 m"),
+    ],
+)  # fmt: skip
+def test_a_regime_is_told_in_a_sentence(name: str, said: str) -> None:
+    assert when(name) == said
 
 
 def test_an_error_is_told_as_rms() -> None:

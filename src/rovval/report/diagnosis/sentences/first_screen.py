@@ -7,7 +7,7 @@ from typing import NamedTuple
 from rovval.diagnose.result.diagnosis import Cause, Diagnosis
 from rovval.report.common.numbers import listed, per_cent, probability, quantity
 from rovval.report.diagnosis.sentences import no_cause
-from rovval.report.diagnosis.sentences.plain import falls, falls_to, of_what, regime
+from rovval.report.diagnosis.sentences.plain import falls, falls_to, of_what, when
 from rovval.report.diagnosis.sentences.words import alone, group, moved, parameter, shown_to_shrink, unmoved
 
 MOST_VALUES = 2  # parameters of a cause that fit the first screen
@@ -51,7 +51,7 @@ def where(d: Diagnosis) -> str:
     if d.verdict == "no_gap" or not d.gap.axes:
         return "" if d.gap.axes else "Nothing was measured on any axis."
     axis = max(d.gap.axes, key=lambda one: d.gap.axes[one].share)
-    at = next((f", most when {regime(one.regime)}" for one in d.gap.where if one.axis == axis), "")
+    at = next((f", most {when(one.regime)}" for one in d.gap.where if one.axis == axis), "")
     return f"{axis.capitalize()}: {per_cent(d.gap.axes[axis].share)} of the gap{at}."
 
 

@@ -54,6 +54,12 @@ def regime(name: str) -> str:
     return f"{MOVING[channel][kind]} {level}"
 
 
+def when(name: str) -> str:
+    """The same in a sentence: when moving ahead faster than 0.33 m/s, when HFP turns forward, from 20 to 80 s."""
+    said = regime(name)
+    return said if said.startswith("from ") else f"when {said.replace(' turning ', ' turns ')}"
+
+
 def holds(run: Run, name: str) -> Flags | None:
     """When a regime holds (n,), from the run's own channels; None for one that cannot be told from them."""
     if found := _TIMES.fullmatch(name):

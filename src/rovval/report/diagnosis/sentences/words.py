@@ -8,7 +8,7 @@ from rovval import effects
 from rovval.core.units import in_degrees
 from rovval.diagnose.result.diagnosis import AxisGap, Cause, Coefficient, Diagnosis, GapSlice, Parameter, SensorFault, Shrinkage
 from rovval.report.common.numbers import MISSING, estimate, number, per_cent, probability, share
-from rovval.report.diagnosis.sentences.plain import falls_to, regime, remaining
+from rovval.report.diagnosis.sentences.plain import falls_to, remaining, when
 
 SCOPE = "Every number is about this simulator, this log and this library of effects."
 SQUARED = "Errors are told as rms. Shares of the gap are of squared errors, which add up: an error that falls to a half leaves a quarter of them."
@@ -108,7 +108,7 @@ def where(diagnosis: Diagnosis, most: int = 5) -> list[str]:
 
 def gap_slice(s: GapSlice) -> str:
     """68 % of the yaw gap arises when turning faster than 3.6 deg/s, in 21 % of the time."""
-    return f"{per_cent(s.share)} of the {s.axis} gap arises when {regime(s.regime)}, in {per_cent(s.time_share)} of the time"
+    return f"{per_cent(s.share)} of the {s.axis} gap arises {when(s.regime)}, in {per_cent(s.time_share)} of the time"
 
 
 def changes(diagnosis: Diagnosis) -> str:
