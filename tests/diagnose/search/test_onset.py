@@ -30,7 +30,7 @@ from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.search.model import Model, ModelPrior, Part
-from rovval.diagnose.search.onset import Change, moved_onset, onset_cost, windows_from, with_onset
+from rovval.diagnose.search.onset import Stretch, moved_onset, onset_cost, windows_from, with_onset
 from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.diagnose.windows.windows import Windows
 from rovval.report.diagnosis.json import document as written
@@ -80,31 +80,17 @@ def test_what_begins_by_itself_is_told_from_what_begins_in_mid_log(tmp_path: Pat
     assert cause.onset_s == pytest.approx(BEGINS, abs=15.0)
 
 
-def equations_of(x: np.ndarray, r: np.ndarray) -> NormalEquations:
-    """Of sensitivities (windows, samples, columns) and residuals (windows, samples)."""
-    return NormalEquations(np.einsum("wti,wtj->wij", x, x), np.einsum("wti,wt->wi", x, r), (r**2).sum(axis=1), tuple(range(x.shape[-1])))
-
-
-def test_a_cause_has_most_evidence_from_where_it_begins():
-    """One cause beside a coefficient within tolerance, in closed form: the size from the later windows makes the earlier ones worse, and windows that hold it
-    are missed where it begins after them."""
+def test_the_windows_before_deny_what_they_do_not_hold() -> None:
+    """One cause beside a coefficient within tolerance, in closed form: the size from the later windows makes the earlier ones worse."""
     rng = np.random.default_rng(0)
     x = rng.normal(size=(8, 30, 2))
     r = 0.1 * rng.normal(size=(8, 30)) + np.where(np.arange(8)[:, None] >= 4, 2.0, 0.0) * x[..., 0] + 0.03 * x[..., 1]
-    found = [Change.at(equations_of(x, r), first, Prior({1: 0.05}), 1.0).explained(np.array([0]), Prior({0: 4.0}), 1.0) for first in range(8)]
-    assert np.argmax(found) == 4 and found[4] > 50.0 + max(found[:4] + found[5:])
-
-
-def test_a_coefficient_that_is_off_all_through_is_no_cause_that_begins():
-    """Far beyond its tolerance it looks like the cause where both act, in the later windows; that it was as far off before is seen in the earlier ones, where
-    the cause would do nothing."""
-    rng = np.random.default_rng(1)
-    x = rng.normal(size=(8, 30, 2))
-    x[4:, :, 1], x[:4, :, 0] = x[4:, :, 0], 0.0
-    data, off = equations_of(x, 0.1 * rng.normal(size=(8, 30)) + 1.5 * x[..., 1]), (np.array([0]), Prior({0: 4.0}), 1.0)
-    later = NormalEquations(data.A[4:], data.b[4:], data.c[4:], data.columns)
-    assert Change.at(later, 0, Prior({1: 0.2}), 1.0).explained(*off) > 10.0
-    assert Change.at(data, 4, Prior({1: 0.2}), 1.0).explained(*off) < 0.0
+    data = NormalEquations(np.einsum("wti,wtj->wij", x, x), np.einsum("wti,wt->wi", x, r), (r**2).sum(axis=1), (0, 1))
+    tolerance, wide, at = Prior({1: 0.05}), Prior({0: 4.0}), np.array([0])
+    late, early = (Stretch.of(data, windows, tolerance, 1.0) for windows in (slice(4, None), slice(4)))
+    whole = Stretch.of(data, slice(None), tolerance, 1.0)
+    assert late.explained(at, wide, 1.0) > 200.0 + whole.explained(at, wide, 1.0)
+    assert early.explained(at, wide, 1.0) < 0.0
 
 
 def answered(onset: float) -> Finding:

@@ -1,9 +1,8 @@
 """Onset of a cause that has none of its own among its parameters: from when on it seems to be at work, and what it is then worth on the whole log.
 
 A cause that is there half of the time is fitted with half of its size, and its nearest relative, which moves in that half only, may fit as well.
-In the linearised model every window could be the first with the cause in it (likelihood ratio over all change points; Basseville and Nikiforov 1993), on a
-vehicle whose coefficients are the same before and after: it must have more evidence from there on than all through the log, beyond what the choice of the
-window costs (`onset_cost`).
+In the linearised model every window could be the first with the cause in it (likelihood ratio over all change points; Basseville and Nikiforov 1993):
+it must have more evidence from there on than on the whole log, beyond what the choice of the window costs (`onset_cost`): the windows before deny it.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import moved_within_bounds, posterior_at
 from rovval.diagnose.problem.problem import Problem, corrected_of, corrected_residuals, equations_with_frozen, gap_equations_of
 from rovval.diagnose.residuals.normal_equations import NormalEquations, Whitened
-from rovval.diagnose.residuals.ridge import Prior, free_columns
+from rovval.diagnose.residuals.ridge import Prior, eliminated, free_columns
 from rovval.diagnose.residuals.sensitivities import linearise
 from rovval.diagnose.search.model import Model, Part
 from rovval.diagnose.windows.windows import Windows
@@ -37,20 +36,17 @@ ANEW: Known = (None, None)
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
-    """Normal equations of causes that begin with some window, coefficients within tolerance, the same on all windows, eliminated: ``A`` (k, k), ``b`` (k,)."""
+class Stretch:
+    """Normal equations of neighbouring windows, summed, coefficients within tolerance eliminated: ``A`` (k, k), ``b`` (k,)."""
 
     A: Array
     b: Array
 
     @classmethod
-    def at(cls, data: NormalEquations, first: int, tolerance: Prior, tempering: float) -> Change:
-        """Of causes that begin with the window ``first``."""
+    def of(cls, data: NormalEquations, windows: slice, tolerance: Prior, tempering: float) -> Stretch:
+        """Coefficients are fitted on these windows alone."""
         free, ridge, offset = free_columns(data, tolerance, tempering)
-        A, b = data.A[first:].sum(axis=0), data.b[first:].sum(axis=0)
-        whole = data.A.sum(axis=0)[np.ix_(free, free)] + ridge
-        toward = np.linalg.solve(whole, np.concatenate([A[free], (data.b.sum(axis=0)[free] - ridge @ offset)[:, None]], axis=1))
-        return cls(A - A[:, free] @ toward[:, :-1], b - A[:, free] @ toward[:, -1])
+        return cls(*eliminated(data.A[windows].sum(axis=0), data.b[windows].sum(axis=0), free, ridge, ridge @ offset))
 
     def explained(self, at: np.ndarray, prior: Prior, tempering: float) -> float:
         """Twice the log Bayes factor of a hypothesis with the columns ``at`` over none."""
@@ -65,7 +61,7 @@ def suspected_onset(problem: Problem, data: NormalEquations, library: Sequence[H
     if len(problem.runs) > 1 or problem.window_count < LEAST_WINDOWS + FEW_WINDOWS:
         return None
     priors = {h.label: prior_of(problem, h) for h in library if not h.effect.begins}
-    whole = Change.at(data, 0, problem.tolerance, problem.tempering)
+    whole = Stretch.of(data, slice(None), problem.tolerance, problem.tempering)
     always = {label: whole.explained(data.place(tuple(prior.sd)), prior, problem.tempering) for label, prior in priors.items()}
     first, last = LEAST_WINDOWS, problem.window_count - FEW_WINDOWS
     step = max(1, (last - first) // ONSETS_TRIED)
@@ -79,12 +75,13 @@ def suspected_onset(problem: Problem, data: NormalEquations, library: Sequence[H
 
 
 def _evidence_from(problem: Problem, data: NormalEquations, priors: Mapping[str, Prior], always: Mapping[str, float], k: int) -> float:
-    """Most evidence of a hypothesis that begins with the ``k``-th window, of those with clearly more than at work all through; 0 where there is none."""
-    begun = Change.at(data, k, problem.tolerance, problem.tempering)
+    """Most evidence of a hypothesis in the windows from the ``k``-th on, of those with clearly more than on the whole log that the windows before deny;
+    0 where there is none."""
+    after = Stretch.of(data, slice(k, None), problem.tolerance, problem.tempering)
     best = 0.0
     for label, prior in priors.items():
         at = data.place(tuple(prior.sd))
-        evidence = begun.explained(at, prior, problem.tempering)
+        evidence = after.explained(at, prior, problem.tempering)
         if evidence > max(best, max(always[label], 0.0) + onset_cost(problem)):
             best = evidence
     return best
