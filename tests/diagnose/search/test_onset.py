@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from diagnose_case import LIBRARY, logged, merlin, own
+from diagnose_case import LIBRARY, foreign, logged, merlin, own
 
 from rovval import effects
 from rovval.blind.cases.flight import fly
@@ -74,8 +74,7 @@ def test_what_is_always_there_has_no_beginning(logs: tuple[Run, Run]) -> None:
 def test_what_begins_by_itself_is_told_from_what_begins_in_mid_log(tmp_path: Path, planted: str) -> None:
     """A weight from mid-log on, which is a model with an onset, and a payload that is taken up, which has one of its own, compete on the same log: a payload
     has mass, too."""
-    flight = fly(LIBRARY / "merlin.toml", "rich", [Planted(planted, None, 1.5, BEGINS)], 22, 240.0, 0.02)
-    [cause] = diagnose([logged(flight, tmp_path / "log.csv")], merlin()).causes
+    [cause] = diagnose([foreign(tmp_path, ((planted, "", 1.5),), 22, 240.0, 0.02, onset=BEGINS)], merlin()).causes
     assert cause.effect == planted
     assert cause.onset_s == pytest.approx(BEGINS, abs=15.0)
 
@@ -212,14 +211,11 @@ def test_the_part_after_an_onset_is_searched_where_the_whole_log_has_no_answer(
     assert may_begin(Finding(problem, {}, selection, [], (), decision), BEGINS + 80.0) is searched
 
 
-def a_log_of_an_opened_set(folder: Path, mission: str, seed: int, planted: Planted) -> Run:
-    return logged(fly(LIBRARY / "merlin.toml", mission, [planted], seed, 300.0, 0.03), folder / "log.csv")
-
-
 @pytest.mark.slow
 def test_a_change_of_density_from_mid_log_is_told_from_a_weight(tmp_path: Path) -> None:
     """On the whole log they are as good as each other, and a weight was named at 0.97."""
-    found = diagnose([a_log_of_an_opened_set(tmp_path, "survey", 144490247, Planted("density_gradient", None, -1.428, 107.1))], merlin()).document()
+    log = foreign(tmp_path, (("density_gradient", "", -1.428),), 144490247, 300.0, 0.03, mission="survey", onset=107.1)
+    found = diagnose([log], merlin()).document()
     assert [c["effect"] for c in found["causes"]] == ["density_gradient"] and found["causes"][0]["probability"] > 0.6
     assert found["since_s"] == pytest.approx(107.1, abs=15.0)
 
@@ -230,8 +226,8 @@ def test_a_gyro_s_bias_from_mid_log_has_its_size(tmp_path: Path) -> None:
     window in which it begins, with the bias in half of it, looks like a scale as well. The bias walks: its size is its mean from there on, by the same flight
     without it."""
     planted = Planted("gyro_bias", "roll", -2.156, 104.6)
-    found = diagnose([a_log_of_an_opened_set(tmp_path, "station", 1970485373, planted)], merlin()).document()
     flights = [fly(LIBRARY / "merlin.toml", "station", some, 1970485373, 300.0, 0.03) for some in ([planted], [])]
+    found = diagnose([logged(flights[0], tmp_path / "log.csv")], merlin()).document()
     after = flights[0].time_s > found["since_s"]
     biased, healthy = (flight.measured["AngVelX"][after].mean() for flight in flights)
     assert [c["effect"] for c in found["causes"]] == ["gyro_bias"]

@@ -44,8 +44,8 @@ def unknown(d: Diagnosis) -> str:
         return f"No cause is named, because the log contradicts itself: {opposed[0].channel} {opposed[0].detail}."
     if short(d):
         return f"Undecided: {KINDS[likely]} is the likeliest answer (probability {probability(value)}), less than the {NAMED_FROM:g} from which one is given."
-    if p and likely == "file":
-        return f"No single cause: many numbers of the vehicle's file seem to be off at once (probability {probability(p.miscalibrated_file)})."
+    if likely == "file":
+        return f"No single cause: many numbers of the vehicle's file seem to be off at once (probability {probability(value)})."
     sure = f" (probability {probability(p.something_else)})" if p else ""
     if d.left and d.left.accounted is not None:
         return f"There is a gap that nothing here explains{sure}: {known(d)} account for only {per_cent(d.left.accounted)} of it, and no effect for the rest."

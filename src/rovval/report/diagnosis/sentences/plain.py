@@ -57,7 +57,7 @@ def regime(name: str) -> str:
 def when(name: str) -> str:
     """The same in a sentence: when moving ahead faster than 0.33 m/s, when HFP turns forward, from 20 to 80 s."""
     said = regime(name)
-    return said if said.startswith("from ") else f"when {said.replace(' turning ', ' turns ')}"
+    return said if name.startswith("time ") else f"when {said.replace(' turning ', ' turns ')}"
 
 
 def holds(run: Run, name: str) -> Flags | None:
