@@ -138,6 +138,8 @@ def smooth_quaternions(euler: Array) -> Array:
     """Unit quaternions (..., n, 4) of series of Euler angles (..., n, 3), of the two signs that mean one attitude the one nearer to the sample before, so
     that they can be averaged and interpolated. NaN where an angle is."""
     q = quaternion_from_euler(euler)
-    turned_over = (q[..., 1:, :] * q[..., :-1, :]).sum(axis=-1) < 0.0
+    turned_over = np.einsum("...i,...i->...", q[..., 1:, :], q[..., :-1, :]) < 0.0
+    if not turned_over.any():
+        return q
     sign = np.where(np.cumsum(turned_over, axis=-1) % 2, -1.0, 1.0)
     return np.concatenate([q[..., :1, :], q[..., 1:, :] * sign[..., None]], axis=-2)

@@ -13,15 +13,13 @@ from collections.abc import Callable, Sequence
 from rovval import effects
 from rovval.core.data import Run
 from rovval.core.errors import BadInput
-from rovval.diagnose.decision.finding import Finding, began, may_begin, weighed_with
-from rovval.diagnose.decision.verdict import decide
+from rovval.diagnose.decision.finding import Search, began, decided, may_begin, weighed_with
 from rovval.diagnose.effort import MOST_BEGUN, MOST_CAUSES
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses, initialised
 from rovval.diagnose.hypotheses.observability import observable
 from rovval.diagnose.inference.map_fit import healthy_fit
-from rovval.diagnose.problem.problem import corrected_residuals, pose
-from rovval.diagnose.residuals.sensor_faults import sensor_faults
+from rovval.diagnose.problem.problem import pose
 from rovval.diagnose.result.assembly import assemble
 from rovval.diagnose.result.diagnosis import Diagnosis
 from rovval.diagnose.search.forward import search
@@ -64,37 +62,35 @@ def diagnose(
     """
     say = progress or _silent
     windows, left_out = cut(runs, vehicle, model, window_s)
-    found = analyse(windows, without, calibration_slop, say)
+    met = searched(windows, without, calibration_slop, say)
+    say("asking how much any systematic cause could explain", 0.85)
+    found = decided(met)
     if (time := found.selection.onset) and may_begin(found, time):
         say(f"searching the part from {time:.0f} s on", 0.85)
         unasked = [*without, *found.untestable]  # what the whole log does not show, a part of it does not
-        late = _analysed_from(time, windows[0], unasked, calibration_slop)
+        late = _searched_from(time, windows[0], unasked, calibration_slop)
         if late and (moved := began(late, found, time)) != time:
-            late, time = _analysed_from(moved, windows[0], unasked, calibration_slop), moved
-        found = weighed_with(late, found, time) if late else found
+            late, time = _searched_from(moved, windows[0], unasked, calibration_slop), moved
+        found = weighed_with(decided(late), found, time) if late else found
     return assemble(found, left_out, calibration_slop, seed, say)
 
 
-def analyse(windows: tuple[Windows, ...], without: Sequence[str], tolerance: float, say: Progress, most: int = MOST_CAUSES) -> Finding:
-    """One pass over the windows of the logs: pose the estimation problem, fit the healthy vehicle, search for ``most`` causes, decide."""
+def searched(windows: tuple[Windows, ...], without: Sequence[str], tolerance: float, say: Progress, most: int = MOST_CAUSES) -> Search:
+    """One pass over the windows of the logs: pose the estimation problem, fit the healthy vehicle, search for ``most`` causes."""
     library, untestable = hypotheses(windows, without)
     say(f"simulating every effect of the library on {sum(part.count for part in windows)} windows", 0.05)
     problem = pose(windows, columns_of(library), tolerance)
     library, unseen = observable(problem, library)
     healthy = healthy_fit(problem)
-    selection = search(problem, library, initialised(problem, library, healthy), healthy, say, most)
-    say("asking how much any systematic cause could explain", 0.85)
-    residuals = corrected_residuals(problem)
-    faults = tuple(f for check, part in zip(problem.parity, problem.runs, strict=True) for f in sensor_faults(check, part, problem.origin))
-    return Finding(problem, untestable | unseen, selection, residuals, faults, decide(problem, selection, residuals, faults))
+    return Search(problem, untestable | unseen, search(problem, library, initialised(problem, library, healthy), healthy, say, most))
 
 
-def _analysed_from(time: float, windows: Windows, without: Sequence[str], tolerance: float) -> Finding | None:
+def _searched_from(time: float, windows: Windows, without: Sequence[str], tolerance: float) -> Search | None:
     """The same over the windows from ``time`` (s) on, without the effects that have an onset of their own, which the whole log shows; None where too few
     windows can be simulated: the log as a whole was."""
     events = [name for name in effects.names() if effects.load(name).begins]
     try:
-        return analyse((windows_from(windows, time),), [*without, *events], tolerance, _silent, MOST_BEGUN)
+        return searched((windows_from(windows, time),), [*without, *events], tolerance, _silent, MOST_BEGUN)
     except BadInput:
         return None
 

@@ -105,13 +105,14 @@ def passes(monkeypatch: pytest.MonkeyPatch) -> tuple[Finding, list[tuple[int, li
     """What a pass over the whole log finds, and (windows, what was left out) of every pass that is asked for; of a part too few windows can be simulated."""
     whole, asked = replace(answered(40.0), untestable={"crossflow_loss": "no typical size of it shows"}), list[tuple[int, list[str]]]()
 
-    def analysed(some: tuple[Windows, ...], without: list[str], *_: Any) -> Any:
+    def searched(some: tuple[Windows, ...], without: list[str], *_: Any) -> Any:
         asked.append((some[0].count, list(without)))
         if len(asked) > 1:
             raise BadInput("too few windows can be simulated", "")
         return whole
 
-    monkeypatch.setattr(pipeline, "analyse", analysed)
+    monkeypatch.setattr(pipeline, "searched", searched)
+    monkeypatch.setattr(pipeline, "decided", lambda met: met)
     monkeypatch.setattr(pipeline, "assemble", lambda found, *_: found)
     return whole, asked
 

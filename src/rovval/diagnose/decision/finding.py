@@ -11,8 +11,8 @@ from rovval.core.data import Array
 from rovval.diagnose.decision.verdict import Decision, decide
 from rovval.diagnose.effort import NEGLIGIBLE, SETS_WEIGHED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis
-from rovval.diagnose.problem.problem import Problem
-from rovval.diagnose.residuals.sensor_faults import FittedFault
+from rovval.diagnose.problem.problem import Problem, corrected_residuals
+from rovval.diagnose.residuals.sensor_faults import FittedFault, sensor_faults
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.search.joint import refitted
 from rovval.diagnose.search.model import Model, Part, best_of_each_set
@@ -20,24 +20,40 @@ from rovval.diagnose.search.onset import evidence_with_onset, moved_onset, with_
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
-    """One pass of the algorithm.
+class Search:
+    """One pass of the algorithm, nothing decided yet.
 
     Attributes:
         problem: the estimation problem that was posed.
         untestable: effects and hypotheses that the log cannot test, with the reason.
-        selection: what the search found.
-        residuals: the nominal vehicle's, per run (windows, samples, channels).
-        faults: of sensors, each fitted to the parity residuals by itself.
-        decision: the verdict.
+        selection: what was met.
     """
 
     problem: Problem
     untestable: Mapping[str, str]
     selection: Selection
+
+
+@dataclass(frozen=True, slots=True)
+class Finding(Search):
+    """One pass of the algorithm, and what is decided by it.
+
+    Attributes:
+        residuals: the nominal vehicle's, per run (windows, samples, channels).
+        faults: of sensors, each fitted to the parity residuals by itself.
+        decision: the verdict.
+    """
+
     residuals: list[Array]
     faults: tuple[FittedFault, ...]
     decision: Decision
+
+
+def decided(met: Search) -> Finding:
+    """What a pass decides."""
+    problem, residuals = met.problem, corrected_residuals(met.problem)
+    faults = tuple(f for check, part in zip(problem.parity, problem.runs, strict=True) for f in sensor_faults(check, part, problem.origin))
+    return Finding(problem, met.untestable, met.selection, residuals, faults, decide(problem, met.selection, residuals, faults))
 
 
 def may_begin(whole: Finding, time: float) -> bool:
@@ -52,7 +68,7 @@ def may_begin(whole: Finding, time: float) -> bool:
     return evidence_with_onset(problem, best.fit, time, healthy) > best.evidence + 2.0 * log(NEGLIGIBLE)
 
 
-def began(late: Finding, whole: Finding, time: float) -> float:
+def began(late: Search, whole: Search, time: float) -> float:
     """When (s) the likeliest causes in the part of the ``whole`` log from ``time`` on began; ``time`` where there are none, and where they began in the window
     before: that holds them in part, and in a part of the log they would have to be at work all through."""
     best, windows = late.selection.best, whole.problem.runs[0]
@@ -70,7 +86,7 @@ def weighed_with(late: Finding, whole: Finding, time: float) -> Finding:
         log_prior = selection.prior.log_mass(causes)
         later.append(with_onset(problem, causes, log_prior, part, selection.healthy, later[0] if later else None))
     both = replace(selection, models=(*selection.models, *later))
-    decision = decide(problem, both, whole.residuals, whole.faults, whole.decision.weighed)
+    decision = decide(problem, both, whole.residuals, whole.faults, whole.decision)
     return replace(whole, decision=decision) if decision.since is None else replace(_with_the_rest(late, whole), decision=decision)
 
 

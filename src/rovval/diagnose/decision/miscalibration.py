@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import log
 
 import numpy as np
 
-from rovval.diagnose.criteria import FILE_WIDTH
-from rovval.diagnose.effort import MOST_CAUSES, SETS_WEIGHED
+from rovval.diagnose.criteria import FILE_WIDTH, PRIOR_FILE, PRIOR_HEALTHY
+from rovval.diagnose.effort import MOST_CAUSES, NEGLIGIBLE, SCREENED_WITHIN, SETS_WEIGHED
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
 from rovval.diagnose.inference.map_fit import map_fit, map_refit
 from rovval.diagnose.problem.problem import Problem
@@ -22,13 +23,15 @@ from rovval.diagnose.search.model import Names
 
 def file_evidence(problem: Problem, selection: Selection) -> dict[Names, float]:
     """Twice the log Bayes factor, over the file as it is, of one that is off (`FILE_WIDTH`) in more numbers than causes are sought, those of the causes
-    beside it counted, or in a few that no effect which competes is about: beside no cause, and beside each of the most probable sets of causes."""
+    beside it counted, or in a few that no effect which competes is about: beside no cause, and beside each of the most probable sets of causes; in the
+    linearisation alone where that promises nothing (`NEGLIGIBLE`, `SCREENED_WITHIN`) beside the most probable model."""
     causes = sorted((m for m in selection.models if m.fit and not m.part), key=lambda m: -m.log_posterior)[:SETS_WEIGHED]
+    least = 2.0 * (selection.log_posterior + log(NEGLIGIBLE) - log(PRIOR_FILE / PRIOR_HEALTHY)) - SCREENED_WITHIN
     found = dict[Names, float]()
     for model in (selection.models[0], *causes):
         point = model.fit.posterior if model.fit else selection.healthy
         if file := numbers_off(problem, selection, point, len(model.causes)):
-            found[model.names] = _fitted(problem, point, file)
+            found[model.names] = _fitted(problem, point, file) if file.evidence > least - 2.0 * model.log_prior else file.evidence
     return found
 
 

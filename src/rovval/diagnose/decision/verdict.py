@@ -53,6 +53,30 @@ class Weighed:
 
 
 @dataclass(frozen=True, slots=True)
+class Common:
+    """What all decisions about a log have in common.
+
+    Attributes:
+        forces: generic forces beside a healthy vehicle, in the fine metric, too.
+        unlogged: force (`unlogged_forces`) that nobody logged beside a healthy vehicle, by axis,
+        nominal: and beside the nominal one.
+        file: evidence of a file that is off in many numbers, beside no cause and beside the most probable sets of causes (`file_evidence`).
+    """
+
+    forces: Beside
+    unlogged: Mapping[str, float]
+    nominal: Mapping[str, float]
+    file: Mapping[Names, float]
+
+    @classmethod
+    def of(cls, problem: Problem, selection: Selection) -> Common:
+        """That of a log and of what the search met in all of it."""
+        segments = responses_about(problem, selection.healthy)
+        forces, unlogged = forces_beside(problem, selection.healthy, segments), unlogged_forces(problem, selection.healthy, segments)
+        return cls(forces, unlogged, unlogged_forces(problem), file_evidence(problem, selection))
+
+
+@dataclass(frozen=True, slots=True)
 class Decision:
     """What a diagnosis decides.
 
@@ -71,6 +95,7 @@ class Decision:
         departure: largest standardised departure of a coefficient that is no cause's, in standard deviations of its prior.
         accounted: what of the gap needs no cause.
         weighed: what was found beside the most probable sets of causes.
+        common: what further decisions about the same log have in common with this one.
         open_gap: what is left of the gap beyond noise, over what noise and tolerances are expected to make (1): with the causes that are named, on held-out
             windows.
         unlogged: of the best set, named or not, the force that nobody logged where it acts; None where that is not known.
@@ -92,6 +117,7 @@ class Decision:
     departure: float
     accounted: Accounted
     weighed: Mapping[Names, Weighed]
+    common: Common
     open_gap: float
     unlogged: ForceLeft | None
     unexplained: Unexplained | None
@@ -100,17 +126,18 @@ class Decision:
 
 
 def decide(
-    problem: Problem, selection: Selection, residuals: list[Array], faults: Sequence[FittedFault], before: Mapping[Names, Weighed] | None = None
+    problem: Problem, selection: Selection, residuals: list[Array], faults: Sequence[FittedFault], before: Decision | None = None
 ) -> Decision:
-    """The verdict on what a search met; ``residuals`` are the nominal vehicle's, ``faults`` of sensors those that parity residuals show, ``before`` what an
-    earlier decision found beside models of the same log."""
-    compared = _compared(problem, selection, before or {})
+    """The verdict on what a search met; ``residuals`` are the nominal vehicle's, ``faults`` of sensors those that parity residuals show, ``before`` an earlier
+    decision about the same log, of which all that is the same is kept."""
+    common = before.common if before else Common.of(problem, selection)
+    compared = _compared(problem, selection, common, before.weighed if before else {})
     belief, best, known = compared.belief, compared.best, accounted(problem, selection.healthy)
     beside_best = compared.weighed.get(best.names)
     found = Decision(
         "no_gap", belief, (), None, {}, {}, {},
-        evidence=best.evidence - selection.models[0].evidence, generic_instead=max(compared.forces, 0.0), generic_beside=0.0,
-        departure=selection.healthy.largest_departure(), accounted=known, weighed=compared.weighed, open_gap=compared.open_gap,
+        evidence=best.evidence - selection.models[0].evidence, generic_instead=max(common.forces.evidence, 0.0), generic_beside=0.0,
+        departure=selection.healthy.largest_departure(), accounted=known, weighed=compared.weighed, common=common, open_gap=compared.open_gap,
         unlogged=beside_best.unlogged if beside_best else None, unexplained=None,
     )  # fmt: skip
     contradicted = any(h.effect.place != "sensor" for h in best.causes) and _contradicted(problem, residuals)
@@ -122,7 +149,7 @@ def decide(
     inconstant = [h.name for h in best.causes] if belief.varying > 0.5 * belief.unexplained else []
     goes_with = beside_best.varying.goes_with if inconstant and beside_best else None
     imitated = belief.file > NEGLIGIBLE  # what is at work looks like many numbers of the file, and so goes with the motion
-    if belief.unexplained > max(belief.healthy, belief.causes) and compared.forces <= 0.0 and not inconstant and not imitated:
+    if belief.unexplained > max(belief.healthy, belief.causes) and common.forces.evidence <= 0.0 and not inconstant and not imitated:
         return replace(found, verdict="unknown", unexplained=unexplained_by_any(problem, known.share, residuals, selection.healthy))
     return replace(found, verdict="unknown", unexplained=unexplained(problem, nominal_forces(problem), selection.healthy, inconstant, goes_with))
 
@@ -130,38 +157,35 @@ def decide(
 @dataclass(frozen=True, slots=True)
 class _Compared:
     """Models that a search met and those that stand in for them, compared: their probabilities; the ``best`` set of causes and the models ``without`` each of
-    them; what was found beside the sets that were ``weighed``; evidence of generic ``forces`` on the healthy vehicle; and the gap that all leave open."""
+    them; what was found beside the sets that were ``weighed``; and the gap that all leave open."""
 
     belief: Probabilities
     best: Model
     without: Mapping[str, Model]
     weighed: Mapping[Names, Weighed]
-    forces: float
     open_gap: float
 
 
-def _compared(problem: Problem, selection: Selection, before: Mapping[Names, Weighed]) -> _Compared:
+def _compared(problem: Problem, selection: Selection, common: Common, before: Mapping[Names, Weighed]) -> _Compared:
     """The sets that lead are weighed, and then each that would be named, beside others in the place of each of its causes, until the one that is named has
     been, and those of as many causes that fit better."""
-    segments = responses_about(problem, selection.healthy)
-    alone, unlogged_alone = forces_beside(problem, selection.healthy, segments), unlogged_forces(problem, selection.healthy, segments)
-    file, met, nominal = file_evidence(problem, selection), list(selection.models), unlogged_forces(problem)
+    alone, met = common.forces, list(selection.models)
     gap = open_gap(problem, [selection.healthy, *(m.fit.posterior for m in met if m.fit)])
-    about_healthy = {frozenset[str](): unlogged_about_healthy(problem, unlogged_alone)} if unlogged_alone else {}
+    about_healthy = {frozenset[str](): unlogged_about_healthy(problem, common.unlogged)} if common.unlogged else {}
     weighed, weigh, exchanged = dict[Names, Weighed](), _leading(problem, selection), {selection.best.names}
     while True:
-        weighed |= {m.names: _weighed(problem, m, m.fit, nominal, before) for m in weigh if m.fit}
+        weighed |= {m.names: _weighed(problem, m, m.fit, common.nominal, before) for m in weigh if m.fit}
         adding = frozenset(names for names, one in weighed.items() if adds_to_forces(alone.fine, one.beside.fine))
         unlogged = about_healthy | {names: one.unlogged for names, one in weighed.items() if one.unlogged}
         left = replace(gap_left(problem, met), forced=alone.axes, unlogged=unlogged, adding=adding)
         beside, varying = {names: one.beside.evidence for names, one in weighed.items()}, {names: one.varying for names, one in weighed.items()}
-        belief = probabilities(met, file, alone.evidence, beside, varying, evidence_of_something_else(gap), left)
+        belief = probabilities(met, common.file, alone.evidence, beside, varying, evidence_of_something_else(gap), left)
         best, without = _needed(problem, selection, met, _fitted(problem, selection, met, belief.best))
         weigh = [best] if best.names not in weighed else []
         if best.names in exchanged:
             weigh = weigh or _rivals(problem, met, best, weighed)
         if best.fit is None or (best.names in exchanged and not weigh):
-            return _Compared(belief, best, without, weighed, alone.evidence, gap)
+            return _Compared(belief, best, without, weighed, gap)
         met = [best, *(m for m in met if m.names != best.names)]
         if best.names not in exchanged:
             met += with_relatives(problem, selection.prior, selection.library, best, {m.names for m in met})

@@ -8,7 +8,7 @@ from dataclasses import replace
 from rovval.effects.effect import Effect, Parameter
 from rovval.effects.lanes import Array, Lanes
 
-REVERSED_FROM = 0.75  # half-way from a dead thruster (0.5), which is `thruster_degraded`, to a reversed one (1)
+REVERSED_FROM = 0.625  # half-way by the speed of the shaft, whose square thrust goes by, from a dead thruster (0.5; `thruster_degraded`) to a reversed one (1)
 
 EFFECT = Effect(
     name="thruster_reversed",

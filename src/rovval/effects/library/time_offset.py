@@ -69,7 +69,8 @@ def observe(log: Log, p: Mapping[str, Array]) -> Log:
     lanes = np.flatnonzero(p["delay[attitude]"])
     if len(lanes):
         q = delayed(smooth_quaternions(eta[lanes, :, 3:]), p["delay[attitude]"][lanes] / log.dt)
-        eta[lanes, :, 3:] = euler_from_quaternion(q / np.linalg.norm(q, axis=-1, keepdims=True))
+        q /= np.sqrt(np.einsum("...i,...i->...", q, q))[..., None]
+        eta[lanes, :, 3:] = euler_from_quaternion(q)
     return replace(log, nu=nu, eta=eta)
 
 
