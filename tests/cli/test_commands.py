@@ -233,7 +233,7 @@ def test_blind_make(here):
         '[{"mission": "rich", "effects": [{"name": "buoyancy_error", "severity": 1.0}], "duration_s": 30, "seed": 7}]'
     )
     done = run("blind", "make", "cases", "--cases", "cases.json", "--seed", "1", "--workers", "1")
-    assert done.stdout.startswith("1 logs in cases/logs; labels sealed, SHA-256 ")
+    assert done.stdout.startswith("1 log in cases/logs; labels sealed, SHA-256 ")
     [log] = Path("cases/logs").iterdir()
     assert Path("cases.key").is_file()
     assert b"buoyancy_error" not in Path("cases/labels.sealed").read_bytes()

@@ -88,7 +88,7 @@ def test_blank_cells_are_missing_and_counted(tmp_path, blank):
     raw = edited(tmp_path, spoil)
     assert len(raw.channels["u"].t) == 297 and len(raw.channels["v"].t) == 300
     (finding,) = found(raw, "blank_cell")
-    assert finding.where == "LinVelX" and "3 cells" in finding.detail and "line 7" in finding.detail
+    assert finding.where == "LinVelX" and "3 blank cells" in finding.detail and "line 7" in finding.detail
 
 
 def test_cells_that_are_no_numbers_are_named_with_their_lines(tmp_path):
@@ -134,7 +134,7 @@ def test_repeated_rows_are_dropped_and_counted(tmp_path):
     head, body = rows(columns())
     raw = read(put(tmp_path, head, body[:50] + body[45:]))
     same(raw, read(write(tmp_path)))
-    assert "5 rows repeat" in found(raw, "repeated_row")[0].detail and not found(raw, "clock_step")
+    assert "5 rows repeated" in found(raw, "repeated_row")[0].detail and not found(raw, "clock_step")
 
 
 def test_swapped_rows_are_sorted_and_counted(tmp_path):
@@ -463,7 +463,7 @@ def test_what_is_true_of_every_thruster_is_said_once(tmp_path):
 
     raw = read(write(tmp_path, edit=edit))
     (blank,), (empty,) = found(raw, "blank_cell"), found(raw, "empty_channel")
-    assert blank.where.count("_PV") == 7 and blank.detail.startswith("300 cells") and empty.where.count("n:") == 7
+    assert blank.where.count("_PV") == 7 and blank.detail.startswith("300 blank cells") and empty.where.count("n:") == 7
 
 
 def test_an_endless_cell_is_quoted_by_its_beginning(tmp_path):

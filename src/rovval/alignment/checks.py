@@ -11,6 +11,7 @@ from rovval.alignment.kinematics import level_pose_against_velocities, pose_agai
 from rovval.alignment.series import bad_samples, longest_bridge, still_runs
 from rovval.alignment.thruster_commands import against_commands
 from rovval.core.channels import HELD, channel
+from rovval.core.counts import counted
 from rovval.core.data import RawLog, Series
 from rovval.core.errors import Finding, merged
 
@@ -81,7 +82,7 @@ def _stuck(raw: RawLog, name: str, series: Series) -> list[Finding]:
         return []
     first, last = max(runs, key=lambda run: series.t[run[1]] - series.t[run[0]])
     detail = (
-        f"{len(runs)} runs of equal values longer than {STUCK_S:g} s; the longest {series.t[last] - series.t[first]:.1f} s "
+        f"{counted(len(runs), 'run')} of equal values longer than {STUCK_S:g} s; the longest {series.t[last] - series.t[first]:.1f} s "
         f"from t = {series.t[first]:.1f} s; not masked (declare stuck_s in the profile to mask)"
     )
     return [Finding("stuck", name, detail)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rovval.core.channels import channel
+from rovval.core.counts import counted
 from rovval.core.data import Codes, RawLog, Reason, Series
 from rovval.core.errors import Finding
 
@@ -47,7 +48,7 @@ def bad_samples(name: str, series: Series, stuck_s: float | None) -> tuple[Codes
         for first, last in runs:
             code[first : last + 1] = Reason.STUCK
         if runs:
-            detail = f"{len(runs)} runs of equal values longer than {stuck_s:g} s, from t = {series.t[runs[0][0]]:.1f} s; masked"
+            detail = f"{counted(len(runs), 'run')} of equal values longer than {stuck_s:g} s, from t = {series.t[runs[0][0]]:.1f} s; masked"
             findings.append(Finding("stuck", name, detail))
     outside, most = series.outside(row), series.mostly_outside(row)
     code[outside | most] = Reason.OUT_OF_RANGE

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from rovval.cli import complete, options, output
+from rovval.core.counts import counted
 from rovval.core.progress import Progress
 
 app = typer.Typer(
@@ -68,7 +69,7 @@ def make(
         folder, path, seed, size, plant=PLANTS[plant], healthy=healthy, seconds=seconds, asked=asked, key=key, workers=workers, say=_steps(quiet)
     )
     manifest = made.manifest()
-    output.result(f"{manifest['count']} logs in {made.logs}; labels sealed, SHA-256 {manifest['labels_sha256']}")
+    output.result(f"{counted(manifest['count'], 'log')} in {made.logs}; labels sealed, SHA-256 {manifest['labels_sha256']}")
     output.say(f"key: {key or made.key}; next: rovval blind answer {folder}", quiet)
 
 

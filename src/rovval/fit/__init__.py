@@ -11,6 +11,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 from rovval import effects
+from rovval.core.counts import counted
 from rovval.core.version import __version__
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
@@ -65,11 +66,11 @@ def fit(
     why = {s: missing.get(plant.slots[s].hypothesis) or missing.get(plant.slots[s].key) for s in wanted}
     out = {s: Unidentified(reason) for s, reason in why.items() if reason}
     able = tuple(s for s in wanted if s not in out)
-    say(f"simulating {len(able)} parameters on {sum(p.count for p in windows)} windows", 0.1)
+    say(f"simulating {counted(len(able), 'parameter')} on {counted(sum(p.count for p in windows), 'window')}", 0.1)
     names = {plant.slots[s].hypothesis for s in able}
     kept = [h for h in library if not h.displaced and (h.name in names or effects.load(h.name.partition("[")[0]).place == "sensor")]
     problem = pose(windows, columns_of(kept), calibration_slop)
-    say(f"tuning {len(able)} parameters by re-simulation", 0.4)
+    say(f"tuning {counted(len(able), 'parameter')} by re-simulation", 0.4)
     found = fit_identifiable(problem, able)
     out |= found.unidentified
     say("asking how far the gap shrinks on held-out windows", 0.9)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rovval.core.channels import AXES
+from rovval.core.counts import counted
 from rovval.core.data import Array
 from rovval.fly.loop.allocation import Thrusters, thrusters_of
 from rovval.fly.loop.controllers import axis_of, strongest
@@ -74,7 +75,7 @@ def _does(phase: Phase) -> str:
             given = {name: getattr(leg, name) for name in WORDS if getattr(leg, name) is not None}
             return ", ".join(WORDS[name].format(f"{value:g}") for name, value in given.items())
         case WayPoints() as leg:
-            return f"{len(leg.points)} points at {leg.speed_m_s:g} m/s"
+            return f"{counted(len(leg.points), 'point')} at {leg.speed_m_s:g} m/s"
         case Speeds() | Protocol() | Singly():
             fastest = 0.0 if phase.speed is None else float(np.abs(phase.speed).max()) * 60.0
             return f"thrusters at up to {fastest:.4g} rpm" + (f", {' and '.join(phase.hold)} held" if phase.hold else "")

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from rovval.core.channels import AXES
+from rovval.core.counts import counted
 from rovval.core.data import RATE_HZ, Array
 from rovval.core.errors import UsageProblem, all_at_once
 from rovval.effects.lanes import reference_speed
@@ -55,7 +56,7 @@ def lay_out(mission: Mission, vehicle: Vehicle, thrusters: Thrusters) -> tuple[P
         match leg:
             case Speeds():
                 planned = read_speeds(mission.folder / leg.file, vehicle)
-                phases.append(Phase(first, first + len(planned), leg, f"{number} speeds of {Path(leg.file).name}", planned))
+                phases.append(Phase(first, first + len(planned), leg, f"{counted(number, 'speed')} of {Path(leg.file).name}", planned))
             case Protocol():
                 phases += _protocol(number, leg, first, thrusters)
             case Singly():

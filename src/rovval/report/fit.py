@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from rovval.core.counts import counted
 from rovval.core.units import in_degrees
 from rovval.report import calibration as calibration_page
 from rovval.report.common.numbers import interval, number, per_cent, share
@@ -27,7 +28,7 @@ def html(document: Mapping[str, Any]) -> str:
         return calibration_page.html(document)
     return render(
         "fit.html", title=f"{document['run']} · rovval fit", eyebrow="Fit", name=document["run"], banner="",
-        said=[f"{len(document['parameters'])} parameters tuned."], facts={key: document[key] for key in ("vehicle", "model", "windows")},
+        said=[f"{counted(len(document['parameters']), 'parameter')} tuned."], facts={key: document[key] for key in ("vehicle", "model", "windows")},
         parameters=document["parameters"], text=text(document), footer=foot(),
     )  # fmt: skip
 
@@ -89,7 +90,7 @@ def tuned(document: Mapping[str, Any]) -> str:
     rows, shrunk = document["parameters"], document["shrinkage"]
     lines = [f"{document['run']}: {document['vehicle']}, model {document['model']}, {document['windows']} windows of {document['window_s']:g} s"]
     if rows:
-        lines.append(f"The squared gap {changes(shrunk)} on held-out windows with {len(rows)} parameter{'s' if len(rows) > 1 else ''} tuned.")
+        lines.append(f"The squared gap {changes(shrunk)} on held-out windows with {counted(len(rows), 'parameter')} tuned.")
         lines += ["", *_table(rows)]
     if document["undetermined"]:
         lines += ["", "These logs cannot determine (left as they were):", *(f"  {u['parameter']}: {u['why']}" for u in document["undetermined"])]

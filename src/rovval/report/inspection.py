@@ -5,6 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime
 from typing import Any
 
+from rovval.core.counts import counted
 from rovval.ingest.inspection.inspect import Inspection
 from rovval.ingest.inspection.matches import Match
 from rovval.ingest.inspection.stamps_of_table import Stamps
@@ -99,7 +100,7 @@ def _profiles(found: Inspection) -> list[str]:
 def _match(m: Match, lacking: tuple[str, ...]) -> str:
     lacking = tuple(f"no {g.removeprefix('not ')} in it" if g.startswith("not ") else g for g in lacking)
     gone = ", ".join(lacking[:MOST_GONE]) + (f" and {len(lacking) - MOST_GONE} more" if len(lacking) > MOST_GONE else "")
-    said = f"{'does not read it' if lacking else 'reads it'}: finds {len(m.found)} channels" + (f" ({', '.join(m.found)})" if m.found else "")
+    said = f"{'does not read it' if lacking else 'reads it'}: finds {counted(len(m.found), 'channel')}" + (f" ({', '.join(m.found)})" if m.found else "")
     return f"  {m.profile}: {said}" + (f"; wants {gone}" if gone else "")
 
 

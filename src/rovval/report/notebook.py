@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from rovval.core.channels import AXES, POSE, VELOCITIES, channel
+from rovval.core.counts import counted
 from rovval.core.data import Array, Comparison, Run, SimResult
 from rovval.core.units import in_degrees
 from rovval.report import fit
@@ -72,7 +73,7 @@ def _run(run: Run) -> str:
     shown = {name: (channel(name).unit, [curves.series("measured", name, _drawn(run.get(name), channel(name).unit))]) for name in run.values}
     facts = {"vehicle": run.vehicle, "profile": run.profile, "length": duration(run.duration_s)}
     banner = f"SYNTHETIC DATA: {run.properties['synthetic']}" if "synthetic" in run.properties else ""
-    said = [f"{len(run.values)} channels at {number(1.0 / run.dt)} Hz."]
+    said = [f"{counted(len(run.values), 'channel')} at {number(1.0 / run.dt)} Hz."]
     return _curves("Log", run.id, banner, said, facts, shown, len(run), run.dt, [str(finding) for finding in run.findings])
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from rovval.core.channels import channel
+from rovval.core.counts import counted
 from rovval.core.data import Run, Series
 from rovval.core.units import in_degrees
 from rovval.ingest.inspection.check import Check
@@ -21,7 +22,7 @@ def page(check: Check, run: Run) -> str:
     raw = check.raw
     seconds = max(float(s.t[-1]) for s in raw.channels.values()) - min(float(s.t[0]) for s in raw.channels.values())
     begin = "" if raw.t0_ns is None else f" from {moment(raw.t0_ns * 1e-9, True)}"
-    lines = [f"{check.profile.name} reads {raw.source}: {len(raw.channels)} channels, {seconds:.6g} s{begin}"]
+    lines = [f"{check.profile.name} reads {raw.source}: {counted(len(raw.channels), 'channel')}, {seconds:.6g} s{begin}"]
     lines += [f"  zone of the stamps: {zone}"] if (zone := raw.properties.get("timezone")) else []
     lines += ["", "channel, from where, unit; the first values in SI (angles in degrees), range"]
     lines += [_channel(check, name, series) for name, series in raw.channels.items()]

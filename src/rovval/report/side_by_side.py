@@ -8,6 +8,7 @@ from typing import Any
 
 from rovval.comparison.error_growth import error_growth
 from rovval.core.channels import AXES
+from rovval.core.counts import counted
 from rovval.core.data import Comparison
 from rovval.core.units import in_degrees
 from rovval.report.common.numbers import MISSING, listed, number
@@ -46,12 +47,12 @@ def said(comparisons: Sequence[Comparison]) -> str:
     models, axes = list(dict.fromkeys(c.sim.model for c in comparisons)), _axes(comparisons)
     if len(models) > 1:
         wins = Counter(comparisons[k].sim.model for k, _ in _nearest(comparisons))
-        counted = listed(f"{model} in {wins[model]}" for model in sorted(models, key=lambda m: -wins[m]))
-        return f"Nearest to the vehicle, of {wins.total()} axes (rms in windows): {counted}."
+        won = listed(f"{model} in {wins[model]}" for model in sorted(models, key=lambda m: -wins[m]))
+        return f"Nearest to the vehicle, of {wins.total()} axes (rms in windows): {won}."
     columns = zip(*_values(comparisons), strict=True)
     known = {axis: [v for v in column if v is not None] for axis, column in zip(axes, columns, strict=True)}
     spans = listed(f"{axis} {number(min(values), 2)} to {number(max(values), 2)} {axes[axis]}" for axis, values in known.items())
-    return f"Over {len(comparisons)} runs, rms in windows: {spans}."
+    return f"Over {counted(len(comparisons), 'run')}, rms in windows: {spans}."
 
 
 def html(comparisons: Sequence[Comparison]) -> str:

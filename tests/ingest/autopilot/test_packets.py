@@ -91,7 +91,7 @@ def test_dataflash_is_read_past_damage_and_to_where_it_is_cut(tmp_path):
     (tmp_path / "a.BIN").write_bytes(whole[:100_000] + b"\xa3\x95\x01" + bytes(300) + whole[100_000:-7])
     log = read(tmp_path / "a.BIN", "ardusub_vectored")
     said = {f.code: f.detail for f in log.findings}
-    assert said["cut_file"].startswith("7,5") and "s after the start" in said["cut_file"] and "bytes in 1 places" in said["damaged_file"]
+    assert said["cut_file"].startswith("7,5") and "s after the start" in said["cut_file"] and "bytes in 1 place " in said["damaged_file"]
     assert expected - 3 <= len(log.channels["phi"].t) <= expected
     assert packets(whole).findings("x") == [] and packets(whole + bytes(200)).findings("x") == [], "a last page is filled up"
 

@@ -181,7 +181,7 @@ def test_values_that_are_missing_stay_missing(tmp_path, columns):
     pl.DataFrame(columns | {"LinVelX": [None if 100 <= i < 130 else x for i, x in enumerate(columns["LinVelX"])]}).write_parquet(tmp_path / "d.parquet")
     run = open_run(tmp_path / "d.parquet")
     assert np.isnan(run.values["u"][110]) and not np.isnan(run.values["v"][110])
-    assert any(f.code == "blank_cell" and "30 cells" in f.detail for f in run.findings)
+    assert any(f.code == "blank_cell" and "30 blank cells" in f.detail for f in run.findings)
 
 
 @pytest.mark.parametrize("name", WRITERS)

@@ -40,11 +40,11 @@ def test_blocks_of_any_size_hold_the_same_rows(writing, size, tmp_path):
     assert np.array_equal(values["a"], [1, np.nan, 3, 4, np.nan, 7, 1000, 5, 1], equal_nan=True)
     assert np.array_equal(values["b"], [2, 2.5, np.nan, 5, 6, 8, np.nan, 6, 1], equal_nan=True)
     assert findings == [
-        "ragged_row: lines 8, 11: 2 rows have not the header's 3 cells; dropped",
-        "repeated_row: line 13: 1 rows repeat an earlier one, stamp included; dropped",
-        "blank_cell: a: 1 cells are blank, from line 4; taken as missing",
-        "not_a_number: a: 1 cells are not numbers ('x'; line 7); dropped",
-        "blank_cell: b: 2 cells are blank, from line 5; taken as missing",
+        "ragged_row: lines 8, 11: 2 rows without the header's 3 cells; dropped",
+        "repeated_row: line 13: 1 row repeated, stamp included; dropped",
+        "blank_cell: a: 1 blank cell, from line 4; taken as missing",
+        "not_a_number: a: 1 cell without a number ('x'; line 7); dropped",
+        "blank_cell: b: 2 blank cells, from line 5; taken as missing",
     ]
 
 
@@ -71,7 +71,7 @@ def test_a_file_without_line_ends_is_no_table_and_needs_no_memory(tmp_path):
     path = tmp_path / "a.csv"
     path.write_bytes(b"\nt,a,b\n" + b"1,2,3" * 1000)
     _, _, lines, findings = read(path, 64)
-    assert lines == [] and findings and "rows have not the header's 3 cells" in findings[0]
+    assert lines == [] and findings and "1 row without the header's 3 cells" in findings[0]
 
 
 def test_a_log_of_many_blocks_is_read_as_one(tmp_path):

@@ -41,4 +41,4 @@ def test_a_flight_is_told_alike_for_machines_terminal_and_browser(tmp_path):
 
 def test_a_dry_run_prints_the_timeline():
     text = terminal.dry_run_text(dry_run(MISSION, vehicle.load("merlin")))
-    assert "0.0 to      4.0 s  1 hold" in text and "1 points at 0.3 m/s" in text and "nothing would be exceeded" in text
+    assert "0.0 to      4.0 s  1 hold" in text and "1 point at 0.3 m/s" in text and "nothing would be exceeded" in text

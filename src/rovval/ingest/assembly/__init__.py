@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from rovval.core.channels import Rule
+from rovval.core.counts import counted
 from rovval.core.data import Array, Flags, Marker, RawLog, Series
 from rovval.core.errors import BadInput, Finding, merged
 from rovval.core.frames import ENU_TO_NED, FLU_TO_FSD, euler_from_quaternion, rotation_from_euler, wrap
@@ -110,7 +111,7 @@ def _attitude(profile: Profile, signal: Signal, present: Flags, found: list[Find
     norm = np.linalg.norm(np.clip(q, -2.0, 2.0), axis=1)  # longer than one all the same, and the square of no number is too large
     unit = np.abs(norm - 1.0) < UNIT_WITHIN
     if not unit.all():
-        found.append(Finding("not_a_rotation", ATTITUDE, f"{(~unit).sum()} quaternions are not of length 1 to within {UNIT_WITHIN:g}; dropped"))
+        found.append(Finding("not_a_rotation", ATTITUDE, f"{counted((~unit).sum(), 'quaternion')} not of length 1 to within {UNIT_WITHIN:g}; dropped"))
     euler = euler_from_quaternion(q[unit] / norm[unit, None])
     return {n: Series(signal.t[present][unit], euler[:, i], signal.stamp) for i, n in enumerate(EULER)}
 
@@ -139,7 +140,7 @@ def _on_earth(series: Series, most_deg: float, found: list[Finding]) -> Series:
     on = np.abs(series.values) <= most_deg
     if on.all():
         return series
-    found.append(Finding("out_of_range", "x, y", f"{(~on).sum()} samples are beyond {most_deg:g} degrees, where there is no place on Earth; dropped"))
+    found.append(Finding("out_of_range", "x, y", f"{counted((~on).sum(), 'sample')} beyond {most_deg:g} degrees, where there is no place on Earth; dropped"))
     return Series(series.t[on], series.values[on], series.stamp)
 
 

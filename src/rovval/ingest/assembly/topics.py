@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from rovval.core.counts import counted
 from rovval.core.data import Array, Marker, RawLog
 from rovval.core.errors import BadInput, Finding, all_at_once
 from rovval.core.long_columns import at_rest
@@ -243,7 +244,7 @@ def _clocked(path: Path, profile: Profile, part: Part, findings: list[Finding]) 
         for name in fields:
             if gone := int(np.isnan(topic.numbers[name]).sum()):
                 first = int(np.flatnonzero(np.isnan(topic.numbers[name]))[0]) + 1
-                findings.append(Finding("blank_cell", name, f"{gone} cells are blank, from row {first}; taken as missing"))
+                findings.append(Finding("blank_cell", name, f"{counted(gone, 'blank cell')}, from row {first}; taken as missing"))
     return Clocked(rows, t, epoch_ns, stamp)
 
 

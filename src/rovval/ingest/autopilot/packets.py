@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 
+from rovval.core.counts import counted
 from rovval.core.errors import Finding
 from rovval.ingest.files.compression import scratch_folder
 
@@ -62,10 +63,10 @@ class Packets:
         found = []
         if self.tail:
             to = "" if self.last_us is None else f", to {_moment(self.last_us)}"
-            found.append(Finding("cut_file", where, f"{self.count:,} packets{to}; the file ends in the middle of one ({self.tail:,} bytes)"))
+            found.append(Finding("cut_file", where, f"{counted(self.count, 'packet')}{to}; the file ends in the middle of one ({counted(self.tail, 'byte')})"))
         size, places = self.lost()
         if size:
-            found.append(Finding("damaged_file", where, f"{size:,} bytes in {places:,} places are no whole packet; left out"))
+            found.append(Finding("damaged_file", where, f"{counted(size, 'byte')} in {counted(places, 'place')} are no whole packet; left out"))
         return found
 
 

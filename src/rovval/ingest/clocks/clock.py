@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from rovval.core.counts import counted
 from rovval.core.data import Array
 from rovval.core.errors import BadInput, Finding
 from rovval.ingest.table.text_table import first_few
@@ -47,7 +48,7 @@ def increasing_stamps(t: Array, lines: Index, where: str) -> tuple[Index, Array,
     findings = []
     if len(rows) < len(t):
         lost = lines[~np.isfinite(t)]
-        findings.append(Finding("bad_stamp", where, f"{len(lost)} rows have no readable stamp ({first_few(lost.tolist())}); dropped"))
+        findings.append(Finding("bad_stamp", where, f"{counted(len(lost), 'row')} without a readable stamp ({first_few(lost.tolist())}); dropped"))
     t = np.array(t[rows], dtype=float)
     if len(t) and (np.diff(t) < 0).any():
         t, kept, found = _backwards(t, lines[rows], where)
@@ -60,7 +61,7 @@ def increasing_stamps(t: Array, lines: Index, where: str) -> tuple[Index, Array,
         raise BadInput(f"{where}: {len(t)} rows share {first.sum()} stamps; they are too coarse", "export the stamps with milliseconds")
     if not first.all():
         same = lines[rows[~first]]
-        findings.append(Finding("duplicate_stamp", where, f"{len(same)} rows repeat a stamp ({first_few(same.tolist())}); the first is kept"))
+        findings.append(Finding("duplicate_stamp", where, f"{counted(len(same), 'repeated stamp')} ({first_few(same.tolist())}); the first row is kept"))
     if first.sum() < 2:
         raise BadInput(f"{where}: {first.sum()} rows with a readable stamp; a log needs at least 2", "is this the whole file?")
     return rows[first], t[first], tuple(findings)
@@ -72,7 +73,7 @@ def _backwards(t: Array, lines: Index, where: str) -> tuple[Array, NDArray[np.bo
     period = float(np.median(forward[forward > 0])) if (forward > 0).any() else 1.0
     if not _collides(t, period):
         late = lines[np.flatnonzero(t < np.maximum.accumulate(t))]
-        return t, np.ones(len(t), bool), [Finding("swapped_row", where, f"{len(late)} rows are late ({first_few(late.tolist())}); sorted")]
+        return t, np.ones(len(t), bool), [Finding("swapped_row", where, f"{counted(len(late), 'row')} late ({first_few(late.tolist())}); sorted")]
     if _seamless(t, period):
         begin = lines[np.flatnonzero(forward < 0) + 1]
         detail = f"blocks of rows stand in another order than their stamps ({first_few(begin.tolist())}), which follow one another to the sample; sorted"
@@ -103,9 +104,9 @@ def _backwards(t: Array, lines: Index, where: str) -> tuple[Array, NDArray[np.bo
             steps.append((int(lines[k + 1]), float(by)))
     findings += _stepped(steps, len(t), period, span, where)
     if bad:
-        findings.append(Finding("bad_stamp", where, f"{len(bad)} rows are stamped far from their neighbours ({first_few(bad)}); dropped"))
+        findings.append(Finding("bad_stamp", where, f"{counted(len(bad), 'row')} stamped far from the neighbours ({first_few(bad)}); dropped"))
     if late_rows:
-        findings.append(Finding("swapped_row", where, f"{len(late_rows)} rows are late ({first_few(late_rows)}); sorted"))
+        findings.append(Finding("swapped_row", where, f"{counted(len(late_rows), 'row')} late ({first_few(late_rows)}); sorted"))
     return t, keep, findings
 
 
@@ -114,7 +115,7 @@ def _stepped(steps: list[tuple[int, float]], rows: int, period: float, span: flo
     back = sum(by for _, by in steps)
     if len(steps) > max(STEPS, STEP_SHARE * rows) and back > span:
         raise BadInput(
-            f"{where}: the stamps go back {len(steps)} times in {rows} rows ({first_few([line for line, _ in steps])}), by {back:.0f} s in all "
+            f"{where}: the stamps go back {counted(len(steps), 'time')} in {rows} rows ({first_few([line for line, _ in steps])}), by {back:.0f} s in all "
             f"where they span {span:.0f} s: this is no clock that was set back, the rows are in no order of time",
             "sort the rows by time, split logs that were joined, or is time another column than the profile says?",
         )

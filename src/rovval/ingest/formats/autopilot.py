@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from rovval.core.counts import counted
 from rovval.core.data import Array, RawLog
 from rovval.core.errors import BadInput, Finding, RovvalError, UsageProblem, all_at_once
 from rovval.core.progress import Progress, silent
@@ -125,7 +126,7 @@ def contents(path: Path, progress: Progress = silent) -> Iterator[Block]:
 
 
 def _bad(path: Path, count: int) -> list[Finding]:
-    return [Finding("bad_packet", path.name, f"{count:,} packets do not fit their CRC, or are not what their type says; left out")] if count else []
+    return [Finding("bad_packet", path.name, f"{counted(count, 'packet')} with a wrong CRC, or not what the type says; left out")] if count else []
 
 
 @dataclass(slots=True)

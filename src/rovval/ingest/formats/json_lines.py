@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from rovval.core.counts import counted
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, Finding
 from rovval.core.progress import Progress, silent
@@ -71,9 +72,9 @@ def contents(path: Path, progress: Progress = silent) -> Iterator[Block]:
         raise BadInput(f"{path}: no line of it is a JSON object", "is the file whole, and one object a line?")
     yield from collector.rest()
     if bad:
-        findings.append(Finding("bad_line", path.name, f"{bad} lines are no whole JSON object; left out"))
+        findings.append(Finding("bad_line", path.name, f"{counted(bad, 'line')} without a whole JSON object; left out"))
     if unlocked:
-        findings.append(Finding("no_bottom_lock", "velocity", f"{unlocked} pings say velocity_valid = false; their velocity and altitude are missing"))
+        findings.append(Finding("no_bottom_lock", "velocity", f"{counted(unlocked, 'ping')} with velocity_valid = false; no velocity and altitude there"))
     yield Block("", findings=tuple(findings))
 
 

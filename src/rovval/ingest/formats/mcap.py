@@ -13,6 +13,7 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Any
 
+from rovval.core.counts import counted
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, Finding, UsageProblem
 from rovval.core.progress import Progress, silent
@@ -164,11 +165,11 @@ def _records(path: Path, findings: list[Finding], progress: Progress = silent) -
                 lost += 1
     if not count:
         raise BadInput(f"{path}: no message can be read: the file is damaged: {why}", "`mcap recover` may mend it")
-    told = f"{count:,} messages are read, to {datetime.fromtimestamp(last * 1e-9, UTC):%H:%M:%S} UTC; "
+    told = f"{counted(count, 'message is', 'messages are')} read, to {datetime.fromtimestamp(last * 1e-9, UTC):%H:%M:%S} UTC; "
     if why and summary is None:
         findings.append(Finding("cut_file", path.name, f"{told}the file is cut there, or damaged ({why})"))
     elif lost:
-        findings.append(Finding("damaged_file", path.name, f"{told}{lost:,} times something cannot be read and is left out ({why})"))
+        findings.append(Finding("damaged_file", path.name, f"{told}{counted(lost, 'time')} something cannot be read and is left out ({why})"))
 
 
 def _decoder(path: Path, channel: Any, schema: Any, undecoded: dict[str, str]) -> Decoder | None:

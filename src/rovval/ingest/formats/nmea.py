@@ -11,6 +11,7 @@ from datetime import UTC, date, datetime, time
 from pathlib import Path
 from typing import Any
 
+from rovval.core.counts import counted
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, Finding, UsageProblem
 from rovval.core.progress import Progress, silent
@@ -95,9 +96,9 @@ def _by_talker(path: Path, findings: list[Finding], progress: Progress) -> list[
         if block := collector.add(message.identity, message.msgID, clocks, values, left_out):
             blocks.append(block)
     if bad:
-        findings.append(Finding("bad_checksum", path.name, f"{bad} sentences fail their checksum or have none; left out"))
+        findings.append(Finding("bad_checksum", path.name, f"{counted(bad, 'sentence')} with a wrong checksum or none; left out"))
     if unread:
-        findings.append(Finding("bad_line", path.name, f"{unread} sentences are not as their kind is; left out"))
+        findings.append(Finding("bad_line", path.name, f"{counted(unread, 'sentence')} not as the kind has it; left out"))
     return [*blocks, *collector.rest()]
 
 

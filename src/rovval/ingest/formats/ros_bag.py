@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from rovval.core.counts import counted
 from rovval.core.data import Array, RawLog
 from rovval.core.errors import BadInput, Finding, RovvalError, all_at_once
 from rovval.core.progress import Progress, silent
@@ -187,7 +188,7 @@ def _collect(
     wrong: dict[str, None] = {}
     for c, columns in found.items():
         if columns.damaged:
-            findings.append(Finding("damaged_message", c.topic, f"{columns.damaged:,} messages have lengths that are not those of {c.kind}; left out"))
+            findings.append(Finding("damaged_message", c.topic, f"{counted(columns.damaged, 'message')} with lengths that are not those of {c.kind}; left out"))
         gone = [source.field for source, addresses in wanted[c].values() if columns.absent & set(addresses)] if columns.taken else []
         wrong |= dict.fromkeys(f"{c.topic} ({c.kind}) has no number {field!r}" for field in gone)
     if wrong:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from rovval.core.counts import counted
 from rovval.core.data import RawLog
 from rovval.core.errors import BadInput, Finding, UsageProblem
 from rovval.core.progress import Progress, silent
@@ -58,7 +59,7 @@ def _blocks(path: Path, names: Sequence[str] | None, progress: Progress) -> Iter
     findings = []
     if log.dropouts:
         lost = sum(d.duration for d in log.dropouts) * 1e-3  # ms
-        findings.append(Finding("dropout", path.name, f"the autopilot could not write for {lost:.2f} s in all, {len(log.dropouts)} times"))
+        findings.append(Finding("dropout", path.name, f"the autopilot could not write for {lost:.2f} s in all, {counted(len(log.dropouts), 'time')}"))
     if cut := _cut(path):
         to = f"to {log.last_timestamp * 1e-6:.1f} s of the autopilot's clock"
         findings.append(Finding("cut_file", path.name, f"{to}; the file ends in the middle of a message ({cut} bytes)"))

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import polars as pl
 
+from rovval.core.counts import counted
 from rovval.core.data import Array
 from rovval.core.errors import BadInput, Finding, all_at_once
 from rovval.core.long_columns import LongColumn, at_rest
@@ -119,7 +120,7 @@ class NumberColumns:
             return values, text, lines, ()
         once = np.ones(len(lines), dtype=bool)
         once[again] = False
-        detail = f"{len(again)} rows repeat an earlier one, stamp included; dropped"
+        detail = f"{counted(len(again), 'row')} repeated, stamp included; dropped"
         found = Finding("repeated_row", first_few(lines[again].tolist()), detail)
         return {n: at_rest(v[once]) for n, v in values.items()}, text.filter(pl.Series(once)) if text.width else text, lines[once], (found,)
 
@@ -131,10 +132,10 @@ class NumberColumns:
         for name in self.columns:
             blank, bad = self._blank[name], self._bad[name]
             if blank.count:
-                findings.append(Finding("blank_cell", name, f"{blank.count} cells are blank, from line {blank.first[0]}; taken as missing"))
+                findings.append(Finding("blank_cell", name, f"{counted(blank.count, 'blank cell')}, from line {blank.first[0]}; taken as missing"))
             if bad.count:
                 examples, where = ", ".join(self._examples[name]), first_few(bad.first, more=bad.count)
-                findings.append(Finding("not_a_number", name, f"{bad.count} cells are not numbers ({examples}; {where}); dropped"))
+                findings.append(Finding("not_a_number", name, f"{counted(bad.count, 'cell')} without a number ({examples}; {where}); dropped"))
                 if bad.count > 0.5 * (rows - blank.count):
                     hopeless.append(f"column {name!r}: {bad.count} of {rows - blank.count} cells are not numbers, such as {examples} ({where})")
         if hopeless:

@@ -14,6 +14,7 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
+from rovval.core.counts import counted
 from rovval.core.errors import BadInput, Finding
 from rovval.ingest.files.compression import lost_of, opened, share_read
 from rovval.ingest.table.header import Header
@@ -74,7 +75,7 @@ class TextRows:
         ragged = self._short.count - cut + self._long.count
         if ragged:
             where = first_few([*self._short.first[: self._short.count - cut], *self._long.first], more=ragged)
-            found.append(Finding("ragged_row", where, f"{ragged} rows have not the header's {self.width} cells; dropped"))
+            found.append(Finding("ragged_row", where, f"{counted(ragged, 'row')} without the header's {self.width} cells; dropped"))
         return tuple(found)
 
     def _rows(self, block: bytes, again: frozenset[bytes], number: int) -> Rows | None:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from rovval.core.counts import counted
 from rovval.core.errors import Unwritable, UsageProblem, all_at_once
 from rovval.core.file_names import printable, shortened
 from rovval.ingest.files import files_of
@@ -137,7 +138,7 @@ class _Sorting:
                 self.kept.append(brief(record, self.pipeline.tolerances))
         gone = discover.absent(source.logs, base)
         why = f"{gone[0]} does not exist" if gone else "no log is there"
-        had = f"; {len(self.kept)} logs were there before: is the volume mounted?" if self.kept else ""
+        had = f"; {counted(len(self.kept), 'log was', 'logs were')} there before: is the volume mounted?" if self.kept else ""
         self.missing.append((", ".join(source.logs), why + had))
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rovval.blind.scoring import tables
+from rovval.core.counts import counted
 from rovval.report.common.numbers import interval, number, per_cents
 
 Number = Mapping[str, Any]  # value, low, high and n of a mark, as the score has them
@@ -59,4 +60,4 @@ def long(name: str, number_: Number | None) -> str:
 
 def title(result: Mapping[str, Any]) -> str:
     """What was scored."""
-    return f"Blind check: {result['vehicle']}, seed {result['seed']}, {len(result['logs'])} logs, engine {result['engine']}"
+    return f"Blind check: {result['vehicle']}, seed {result['seed']}, {counted(len(result['logs']), 'log')}, engine {result['engine']}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from rovval.core.counts import counted
 from rovval.report.blind import honesty
 from rovval.report.blind.marks import COLUMNS, short, title
 
@@ -25,5 +26,5 @@ def text(result: Mapping[str, Any]) -> str:
     for name, row in result["strata"].items():
         cells = "".join(f"{short(mark, row.get(mark)):>11}" for mark in COLUMNS)
         lines.append(f"{name:<{width}}{row['n']:>5}{cells}")
-    end = f"{len(result['wrong'])} answers wrong; all marks with intervals: score.html"
+    end = f"{counted(len(result['wrong']), 'answer')} wrong; all marks with intervals: score.html"
     return "\n".join([title(result), "", *lines, "", *honesty.lines(result["summed"]), "", end])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rovval.core.counts import counted
 from rovval.core.data import Array
 from rovval.fly.dry_run import DryRun
 from rovval.fly.flight import Flight, Held
@@ -61,4 +62,4 @@ def dry_run_text(dry: DryRun) -> str:
     for e in dry.entries:
         lines.append(f"{e.start_s:8.1f} to {e.end_s:8.1f} s  {e.label:<16} {e.does}")
         lines += [f"{'':24}exceeds: {problem}" for problem in e.exceeds]
-    return fitted("\n".join([*lines, "", f"{len(dry.exceeds)} things would be exceeded" if dry.exceeds else "nothing would be exceeded"]))
+    return fitted("\n".join([*lines, "", f"{counted(len(dry.exceeds), 'thing')} would be exceeded" if dry.exceeds else "nothing would be exceeded"]))
