@@ -109,6 +109,11 @@ class Parameter:
             raise ValueError(f"parameter {self.name}: an anchor, and nothing else, names the channel of its coordinate")
 
     @property
+    def delays(self) -> bool:
+        """Whether it delays something by as much as it is large, or by ever more."""
+        return self.role == "size" and self.unit in ("s", "s/s")
+
+    @property
     def places(self) -> bool:
         """Whether it only places an effect in time or space: it has no null value of its own, and is no departure."""
         return self.role not in SIZES

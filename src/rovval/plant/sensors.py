@@ -66,6 +66,13 @@ def delays(index: Mapping[str, int], null: Array, beta: Array) -> tuple[Delay, .
     return tuple(found)
 
 
+def moves_the_vehicle(slot: slots.Slot) -> bool:
+    """Whether a parameter of an effect on the log changes the motion itself, not what sensors write of it: an offset of the thrusters' clock does."""
+    module = effects.module(slot.effect)
+    written = {_key(slot.effect, parameter) for parameters in getattr(module, "LATE", {}) for parameter in parameters}
+    return hasattr(module, "lower") and slot.key not in written
+
+
 def _key(name: str, parameter: str) -> str:
     """``time_offset[velocity].delay`` of ``delay[velocity]``."""
     plain, _, target = parameter.partition("[")

@@ -10,7 +10,7 @@ from diagnose_case import posed, slot
 
 from rovval.diagnose.criteria import FILE_WIDTH
 from rovval.diagnose.decision.miscalibration import departures
-from rovval.diagnose.inference.laplace import laplace_evidence
+from rovval.diagnose.inference.laplace import laplace_evidence, promised_evidence
 from rovval.diagnose.inference.map_fit import healthy_fit
 from rovval.diagnose.residuals.ridge import Prior
 
@@ -30,7 +30,7 @@ def test_the_numbers_that_are_off_are_found_and_their_evidence_is_that_of_a_wide
     for file in found[:3]:
         wide = problem.tolerance.off_by_more({s: FILE_WIDTH * problem.tolerance.sd[s] for s in file.slots})
         again = replace(point, precision=problem.tempering * wide.precision(point.columns))
-        assert file.evidence == pytest.approx(laplace_evidence(problem, again) - file.cost, abs=0.1)
+        assert file.evidence == pytest.approx(promised_evidence(problem, again) - file.cost, abs=0.1)
         assert file.cost == pytest.approx(2.0 * len(file.slots) * np.log(len(among)))
 
 

@@ -23,7 +23,7 @@ from rovval.diagnose.decision.verdict import decide
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis
-from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
+from rovval.diagnose.inference.laplace import Posterior, laplace_evidence, promised_evidence
 from rovval.diagnose.inference.map_fit import healthy_fit, posterior_at
 from rovval.diagnose.problem.problem import Problem, corrected_residuals, pose
 from rovval.diagnose.residuals.normal_equations import NormalEquations
@@ -165,12 +165,14 @@ def test_a_cause_from_some_moment_on_is_weighed_on_every_window(posed: tuple[Pro
     beside, healthy, own = always.posterior.beta, alone.beta.copy(), list(loss.slots)
     healthy[own] = beside[own]
     starts = [posterior_at(problem, beta, always.posterior.columns, always.posterior.effect_count) for beta in (beside, healthy)]  # all else of either fit
-    better = max(starts, key=lambda one: laplace_evidence(problem, one))
+    better = max(starts, key=lambda one: promised_evidence(problem, one))
     after = better.beta.copy()
-    after[list(better.columns)] += np.where(better.tangent_only, 0.0, better.solve(better.curvature, better.descent))
+    step = np.where(better.tangent_only, 0.0, better.solve(better.curvature, better.descent))
+    for column, moved in zip(better.columns, step, strict=True):  # as far as bounds allow
+        after[column] = problem.plant.slots[column].parameter.within(after[column] + moved)
     stepped = posterior_at(problem, after, better.columns, better.effect_count)  # a start gains nothing by its linearisation alone
     assert stepped.cost() < better.cost()
-    expected = min(laplace_evidence(problem, one) for one in (better, stepped))
+    expected = min(promised_evidence(problem, one) for one in (better, stepped))
     assert throughout.evidence + onset_cost(problem) == pytest.approx(expected, rel=1e-9)
     assert throughout.evidence + onset_cost(problem) == pytest.approx(always.evidence, abs=0.5)
     assert never.evidence + onset_cost(problem) == pytest.approx(laplace_evidence(problem, alone), abs=1.0)

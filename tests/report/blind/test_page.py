@@ -41,6 +41,6 @@ def test_shares_have_their_interval_in_the_first_sentences(result: dict[str, Any
 def test_wrong_answers_and_unsealings_have_a_row_each(result: dict[str, Any]) -> None:
     page = html.text(result)
     assert [w["kind"] for w in result["wrong"]] == ["false alarm"]
-    assert "false alarm" in page and "waves" in page and "1 answers wrong" in terminal.text(result)
+    assert "false alarm" in page and "waves" in page and "1 answer wrong" in terminal.text(result)
     assert "2026-01-02 10:11" in page and "minerva" in page
     assert "Unsealings" not in html.text(result | {"unsealings": []})

@@ -14,7 +14,7 @@ import numpy as np
 
 from rovval.diagnose.criteria import FILE_WIDTH, PRIOR_FILE, PRIOR_HEALTHY
 from rovval.diagnose.effort import MOST_CAUSES, NEGLIGIBLE, SCREENED_WITHIN, SETS_WEIGHED
-from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
+from rovval.diagnose.inference.laplace import Posterior, laplace_evidence, promised_evidence
 from rovval.diagnose.inference.map_fit import map_fit, map_refit
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.search.forward import Selection
@@ -74,7 +74,7 @@ def departures(problem: Problem, point: Posterior, among: Sequence[int]) -> list
     is larger changes the precision of the prior, and so the curvature, by a matrix of rank one (Sherman and Morrison 1950).
     """
     moves = (point.bound_side == 0) | (point.solve(point.curvature, point.descent) != 0.0)  # what stays on its bound at the best step is held there
-    precision, evidence, found = point.precision, laplace_evidence(problem, point), list[Departures]()
+    precision, evidence, found = point.precision, promised_evidence(problem, point), list[Departures]()
     more = (FILE_WIDTH**2 - 1.0) * np.diag(np.linalg.inv(precision))  # variance of a number that is off, beside its own
     each = 2.0 * float(np.log(max(len(among), 1)))
     columns = [i for s in among if moves[i := point.columns.index(s)]]

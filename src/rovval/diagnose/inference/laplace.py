@@ -151,7 +151,13 @@ def resampled_evidence(problem: Problem, point: Posterior, counts: Array) -> Arr
 
 
 def laplace_evidence(problem: Problem, point: Posterior) -> float:
-    """Twice the log Bayes factor of the model fitted at ``point`` over the vehicle as its file has it, on every window once."""
+    """Twice the log Bayes factor of the model fitted at ``point`` over the vehicle as its file has it, on every window once: of the point, where what a further
+    step promises by the linearisation is not there, since a fit that ended at it found none that keeps it."""
+    return promised_evidence(problem, point) - (point.cost() - point.predicted_cost()) / problem.tempering
+
+
+def promised_evidence(problem: Problem, point: Posterior) -> float:
+    """The same where a further step from ``point`` keeps what it promises: of a model that is only linearised there."""
     return float(resampled_evidence(problem, point, np.ones((1, problem.window_count)))[0]) + heavy_tails(problem, point)
 
 

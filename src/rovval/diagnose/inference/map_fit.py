@@ -1,7 +1,8 @@
 """MAP fit by re-simulation: the most probable values of effects and of coefficients within tolerance, by a damped Gauss-Newton iteration.
 
 Coefficients within tolerance move in the simulation itself, not only in its linearisation: the gain of a hypothesis is then one over a vehicle whose
-coefficients are as a careful calibration would have them. The sensors' tolerances, small and nearly linear, stay in the linearisation.
+coefficients are as a careful calibration would have them. The sensors' tolerances, small and nearly linear, stay in the linearisation; but for an
+offset of the thrusters' clock beside a delay, which does the same.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from rovval.diagnose.problem.problem import Problem, equations_of, equations_wit
 from rovval.diagnose.residuals.normal_equations import Whitened, with_frozen_columns
 from rovval.diagnose.residuals.sensitivities import linearise
 from rovval.plant import Plant
+from rovval.plant.sensors import moves_the_vehicle
 
 
 def map_fit(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[Whitened, ...] | None = None, rounds: int = MAP_STEPS) -> Posterior:
@@ -124,9 +126,12 @@ def moved_to(problem: Problem, point: Posterior, slot: int, value: float) -> Pos
     return posterior_at(problem, beta, point.columns, point.effect_count, point.whitened)
 
 
-def tangent_slots(plant: Plant) -> frozenset[int]:
-    """Slots whose departures within tolerance are moved in the linearisation only: those of the sensors."""
-    return frozenset(i for i, slot in enumerate(plant.slots) if effects.load(slot.effect).place == "sensor")
+def tangent_slots(plant: Plant, own: Sequence[int]) -> frozenset[int]:
+    """Slots whose departures within tolerance are moved in the linearisation only beside effects of the slots ``own``: those of sensors; beside a delay not
+    the clocks of the thrusters, which do what it does."""
+    delayed = any(plant.slots[s].parameter.delays for s in own)
+    sensors = (i for i, slot in enumerate(plant.slots) if effects.load(slot.effect).place == "sensor")
+    return frozenset(i for i in sensors if not (delayed and moves_the_vehicle(plant.slots[i])))
 
 
 def posterior_at(problem: Problem, beta: Array, columns: tuple[int, ...], own: int, near: tuple[Whitened, ...] | None = None) -> Posterior:
@@ -148,7 +153,7 @@ def _point(problem: Problem, beta: Array, own: int, there: tuple[Whitened, ...])
     prior = problem.tolerance.replaced({s: PRIOR_WIDTH * p.typical for s, p in zip(columns[:own], parameters[:own], strict=True)})
     at = beta[list(columns)]
     side = np.array([float(x >= p.high) - float(x <= p.low) for x, p in zip(at, parameters, strict=True)])
-    sensors = tangent_slots(problem.plant)
+    sensors = tangent_slots(problem.plant, columns[:own])
     still = np.array([i >= own and s in sensors for i, s in enumerate(columns)], dtype=bool)
     tempering, departure = problem.tempering, at - problem.prior_mean[list(columns)]
     return Posterior(beta, columns, own, there, dynamic, data, tempering * prior.precision(columns), tempering, departure, side, still)

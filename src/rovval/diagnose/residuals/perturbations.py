@@ -13,6 +13,7 @@ import numpy as np
 from rovval.core.data import Array
 from rovval.diagnose.residuals.nuisances import POSE_INDEX
 from rovval.diagnose.windows.windows import Windows
+from rovval.plant.sensors import moves_the_vehicle
 
 STEP = 0.25  # finite-difference step as a share of a parameter's typical size, of central differences, whose error goes with its square
 STEP_ONE_SIDED = 0.05  # the same of one-sided ones, whose error goes with the step itself
@@ -101,12 +102,19 @@ def _unchanged(windows: Windows, beta: Array, directions: Sequence[DisplacedColu
     return {at for at, own in sized.items() if all(s >= 0 and beta[s] == slots[s].parameter.null for s in own)}
 
 
-def forward_differences(windows: Windows, beta: Array, columns: tuple[int, ...]) -> list[Perturbation]:
-    """One-sided differences of the parameters of ``columns`` about ``beta`` (k,), away from a bound that ``beta`` lies on."""
-    still, lanes = np.zeros(6), []
+def coarse_differences(windows: Windows, beta: Array, columns: tuple[int, ...], first: int) -> list[Perturbation]:
+    """One-sided differences of the parameters of ``columns`` about ``beta`` (k,), away from a bound that ``beta`` lies on; central ones of an offset of the
+    thrusters' clock: their log is linear between samples, and where these are met, at no offset for one, its slope is another on either side. They stand from
+    the ``first`` simulation on."""
+    still, lanes = np.zeros(6), list[Perturbation]()
     for column in columns:
-        up, down = _steps(windows, beta, column, STEP_ONE_SIDED)
-        lanes.append(Perturbation(_moved(beta, [(column, beta[column] + (up or down))]), still, still, column=column, step=up or down))
+        clock = moves_the_vehicle(windows.plant.slots[column])
+        up, down = _steps(windows, beta, column, STEP if clock else STEP_ONE_SIDED)
+        central = clock and up and down
+        if central:
+            lanes.append(Perturbation(_moved(beta, [(column, beta[column] + down)]), still, still))
+        step, against = (up - down, first + len(lanes) - 1) if central else (up or down, 0)
+        lanes.append(Perturbation(_moved(beta, [(column, beta[column] + (up or down))]), still, still, column=column, step=step, against=against))
     return lanes
 
 

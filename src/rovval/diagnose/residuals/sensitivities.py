@@ -13,7 +13,7 @@ from rovval.core.data import Array
 from rovval.core.large_arrays import columns_first
 from rovval.diagnose.residuals.normal_equations import Linearisation
 from rovval.diagnose.residuals.nuisances import drifting_channels, initial_states
-from rovval.diagnose.residuals.perturbations import DisplacedColumn, Perturbation, forward_differences, perturbations
+from rovval.diagnose.residuals.perturbations import DisplacedColumn, Perturbation, coarse_differences, perturbations
 from rovval.diagnose.windows.attitude import tilted, tumbling
 from rovval.diagnose.windows.windows import Windows, channel_difference, predicted_channels
 
@@ -49,11 +49,12 @@ def linearise(
         beta: parameters of the plant.
         columns: slots, by central differences.
         directions: displaced columns, last.
-        coarse: slots, behind ``columns``, by one-sided differences.
+        coarse: slots, behind ``columns``, by one-sided differences (`coarse_differences`).
         starts: whether sensitivities to the windows' initial states are taken.
     """
     states, drifting, m = initial_states(windows) if starts else [], drifting_channels(windows), windows.count
-    lanes = perturbations(windows, beta, states, columns, directions) + forward_differences(windows, beta, coarse)
+    lanes = perturbations(windows, beta, states, columns, directions)
+    lanes += coarse_differences(windows, beta, coarse, len(lanes))
     ids = (*columns, *coarse, *(d.id for d in directions))
     shape = (m, windows.steps + 1, len(windows.channels))
     pushed = 0 if windows.disturbance_response is None else windows.disturbance_response.shape[-1]

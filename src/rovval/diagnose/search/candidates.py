@@ -202,7 +202,7 @@ def start_of(problem: Problem, data: NormalEquations, h: Hypothesis, steps: Arra
         free: slots that the fit moves; tolerances of sensors that are not among them stay in the tangent.
     """
     start = beta.copy()
-    still = {s for s in tangent_slots(problem.plant) if s not in free}
+    still = {s for s in tangent_slots(problem.plant, free) if s not in free}
     for slot, value in h.at:
         start[slot] = value
     moved, begins = {d.id: d.slot for d in h.displaced}, {d.slot for d in h.displaced} | {slot for slot, _ in h.at}

@@ -21,7 +21,7 @@ from rovval.diagnose.effort import NEGLIGIBLE, ONSETS_TRIED
 from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of
 from rovval.diagnose.inference.gap import parity_errors, weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, only_places
-from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
+from rovval.diagnose.inference.laplace import Posterior, promised_evidence
 from rovval.diagnose.inference.map_fit import moved_within_bounds, posterior_at
 from rovval.diagnose.problem.problem import Problem, corrected_of, corrected_residuals, equations_with_frozen, gap_equations_of
 from rovval.diagnose.residuals.normal_equations import NormalEquations, Whitened
@@ -109,7 +109,7 @@ def with_onset(
     switch, point, evidence = _best_switched(problem, part.fit, part.since, healthy)
     stepped = switch.stepped(problem, point).at(np.concatenate(_before(problem, part.since)))
     if stepped.cost() < point.cost():
-        point, evidence = stepped, min(evidence, laplace_evidence(problem, stepped))
+        point, evidence = stepped, min(evidence, promised_evidence(problem, stepped))
     evidence -= onset_cost(problem)
     if beside and beside.part:
         evidence = beside.evidence + part.fit.evidence - beside.part.fit.evidence
@@ -128,7 +128,7 @@ def moved_onset(problem: Problem, late: HypothesisFit, time: float, healthy: Pos
     windows = problem.runs[0]
     times = (windows.start * windows.run.dt)[LEAST_WINDOWS : problem.window_count - FEW_WINDOWS + 1]
     switches = _switches(problem, late, healthy, (None, healthy.whitened or None))  # good enough to tell one window from another
-    evidence = {float(t): max(laplace_evidence(problem, one.at(np.concatenate(_before(problem, t)))) for one in switches) for t in times}
+    evidence = {float(t): max(promised_evidence(problem, one.at(np.concatenate(_before(problem, t)))) for one in switches) for t in times}
     best = max(evidence, key=lambda t: evidence[t])
     return best if evidence[best] > evidence.get(time, -np.inf) - 2.0 * log(NEGLIGIBLE) else time
 
@@ -136,11 +136,11 @@ def moved_onset(problem: Problem, late: HypothesisFit, time: float, healthy: Pos
 def _best_switched(problem: Problem, late: HypothesisFit, time: float, healthy: Posterior, known: Known = ANEW) -> tuple[_Switch, Posterior, float]:
     """The linearisation in which the causes of ``late`` at work from ``time`` (s) on have the most evidence, their posterior, and that evidence, less what its
     start gains over the ``healthy`` fit without any cause: every fit is local, and a cause must not gain by another start alone."""
-    switches, nothing, never = _switches(problem, late, healthy, known), laplace_evidence(problem, healthy), np.ones(problem.window_count, dtype=bool)
+    switches, nothing, never = _switches(problem, late, healthy, known), promised_evidence(problem, healthy), np.ones(problem.window_count, dtype=bool)
     first = np.concatenate(_before(problem, time))
     points = [one.at(first) for one in switches]
-    started = [max(laplace_evidence(problem, one.at(never)) - nothing, 0.0) for one in switches]
-    evidence = [laplace_evidence(problem, point) - gained for point, gained in zip(points, started, strict=True)]
+    started = [max(promised_evidence(problem, one.at(never)) - nothing, 0.0) for one in switches]
+    evidence = [promised_evidence(problem, point) - gained for point, gained in zip(points, started, strict=True)]
     best = int(np.argmax(evidence))
     return switches[best], points[best], evidence[best]
 
