@@ -73,6 +73,10 @@ class Posterior:
         """Cost that the linearisation predicts after one more step in every column."""
         return self._below(np.ones(len(self.columns), dtype=bool))
 
+    def promised_gain(self) -> float:
+        """By how much one more step lowers the cost, as the linearisation has it."""
+        return self.cost() - self.predicted_cost()
+
     def step(self, which: np.ndarray) -> Array:
         """Gauss-Newton step (k,) of the windows ``which`` (m,)."""
         return self.solve(self.total.A[which].sum(axis=0) + self.precision, self.total.b[which].sum(axis=0) - self.pull)
@@ -153,7 +157,7 @@ def resampled_evidence(problem: Problem, point: Posterior, counts: Array) -> Arr
 def laplace_evidence(problem: Problem, point: Posterior) -> float:
     """Twice the log Bayes factor of the model fitted at ``point`` over the vehicle as its file has it, on every window once: of the point, where what a further
     step promises by the linearisation is not there, since a fit that ended at it found none that keeps it."""
-    return promised_evidence(problem, point) - (point.cost() - point.predicted_cost()) / problem.tempering
+    return promised_evidence(problem, point) - point.promised_gain() / problem.tempering
 
 
 def promised_evidence(problem: Problem, point: Posterior) -> float:

@@ -102,7 +102,7 @@ def _followed(problem: Problem, point: Posterior, rounds: int) -> Posterior:
             break
         point = posterior_at(problem, reached.beta, point.columns, point.effect_count)
         best = min(best, point, key=Posterior.cost)
-        if point.cost() - point.predicted_cost() < STEP_WORTH * problem.tempering:
+        if point.promised_gain() < STEP_WORTH * problem.tempering:
             break
     return best
 
