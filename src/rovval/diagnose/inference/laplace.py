@@ -81,9 +81,13 @@ class Posterior:
         """Gauss-Newton step (k,) of the windows ``which`` (m,)."""
         return self.solve(self.total.A[which].sum(axis=0) + self.precision, self.total.b[which].sum(axis=0) - self.pull)
 
-    def simulated_step(self) -> Array:
-        """Gauss-Newton step (k,) in the columns that are moved in the simulation; zero in the others."""
-        return np.where(self.tangent_only, 0.0, self.solve(self.curvature, self.descent))
+    def simulated_step(self, damping: float = 0.0) -> tuple[Array, float]:
+        """Gauss-Newton step (k,) in the columns that are moved in the simulation, zero in the others, and by how much it lowers the cost, as the linearisation
+        has it. With ``damping``, Levenberg's and Marquardt's step, by so many times the diagonal of the curvature (Marquardt 1963)."""
+        curvature, slope = self.curvature, self.descent
+        step = self.solve(curvature + np.diag(damping * np.where(self.tangent_only, 0.0, np.diag(curvature))), slope)
+        after = self._here() - float(step @ (2.0 * slope - curvature @ step))
+        return np.where(self.tangent_only, 0.0, step), self.cost() - after
 
     def solve(self, H: Array, slope: Array, among: np.ndarray | None = None) -> Array:
         """The step (k,) in the columns ``among`` (all by default) to the least of step H step - 2 slope step at which no column leaves the bound that it is on:
@@ -135,8 +139,11 @@ class Posterior:
     def _below(self, among: np.ndarray) -> float:
         """Cost after one linear step in the columns ``among`` (k,)."""
         slope = self.descent
-        whole = float(self.total.c.sum()) + float(self.departure @ self.pull)
-        return whole - float(slope @ self.solve(self.curvature, slope, among))
+        return self._here() - float(slope @ self.solve(self.curvature, slope, among))
+
+    def _here(self) -> float:
+        """Cost at the point as it is."""
+        return float(self.total.c.sum()) + float(self.departure @ self.pull)
 
 
 def resampled_evidence(problem: Problem, point: Posterior, counts: Array) -> Array:

@@ -1,4 +1,4 @@
-"""MAP fit by re-simulation: the most probable values of effects and of coefficients within tolerance, by a damped Gauss-Newton iteration.
+"""MAP fit by re-simulation: the most probable values of effects and of coefficients within tolerance, by Levenberg's and Marquardt's iteration.
 
 Coefficients within tolerance move in the simulation itself, not only in its linearisation: the gain of a hypothesis is then one over a vehicle whose
 coefficients are as a careful calibration would have them. The sensors' tolerances, small and nearly linear, stay in the linearisation; but for an
@@ -16,11 +16,12 @@ from rovval import effects
 from rovval.core.data import Array
 from rovval.diagnose.criteria import PRIOR_WIDTH
 from rovval.diagnose.effort import (
+    DAMPINGS,
     MAP_STEPS,
     PROGRESSIVE_S,
     QUICK_STEPS,
     RELINEARISED_TIMES,
-    STEP_SHARES,
+    STEP_KEPT,
     STEP_WORTH,
 )
 from rovval.diagnose.inference.laplace import Posterior
@@ -160,17 +161,21 @@ def _point(problem: Problem, beta: Array, own: int, there: tuple[Whitened, ...])
 
 
 def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...]) -> Posterior | None:
-    """The next point of the damped Gauss-Newton iteration; None where none of `STEP_SHARES` gains more than `STEP_WORTH`."""
-    step = point.simulated_step()
-    for share in STEP_SHARES:
-        beta = moved_within_bounds(problem, point.beta, point.columns, share * step)
+    """The next point of Levenberg's and Marquardt's iteration, by the first of `DAMPINGS` that keeps what its step promises (`STEP_KEPT`) or by the best of
+    them; None where none gains more than `STEP_WORTH`."""
+    best, before, gained = None, point.cost(), STEP_WORTH * problem.tempering
+    for damping in DAMPINGS:
+        step, promised = point.simulated_step(damping)
+        beta = moved_within_bounds(problem, point.beta, point.columns, step)
         data = equations_with_frozen(problem, beta, point.whitened)
         if data is None:
             continue
         trial = replace(point, beta=beta, total=data, departure=point.departure + (beta - point.beta)[list(point.columns)])
-        if trial.cost() < point.cost() - STEP_WORTH * problem.tempering:
-            return posterior_at(problem, beta, point.columns, point.effect_count, near)
-    return None
+        if (gain := before - trial.cost()) > gained:
+            best, gained = beta, gain
+            if gain > STEP_KEPT * promised:
+                break
+    return None if best is None else posterior_at(problem, best, point.columns, point.effect_count, near)
 
 
 def moved_within_bounds(problem: Problem, beta: Array, columns: Sequence[int], step: Array) -> Array:

@@ -197,7 +197,7 @@ class _Switch:
 
     def stepped(self, problem: Problem, point: Posterior) -> _Switch:
         """Linearised anew where one more step leads to from ``point``, a posterior of this linearisation; the same where a simulation stops there."""
-        step, columns, own = point.simulated_step(), self.begun.columns, self.begun.effect_count
+        (step, _), columns, own = point.simulated_step(), self.begun.columns, self.begun.effect_count
         without = [*columns[own:], *(columns[i] for i in self.taken)]  # what moves before the causes are at work
         points = [
             (self.begun, moved_within_bounds(problem, self.begun.beta, columns, step[: len(columns)])),

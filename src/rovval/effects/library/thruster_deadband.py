@@ -38,7 +38,7 @@ EFFECT = Effect(
         ),
         Parameter(
             "catch", "1", -4.0, 30.0, 0.0, 1.0, "0: a dead band of the drive, all along; above: of low flow, soon caught up with; -1: of thrust (Bessa 2006)",
-            starts=(-1.0, 0.0), tolerance=CURVED,
+            starts=(-1.0, 0.0),
         ),
     ),
     signature="small commands do nothing: hunting about a hover, weak answers to small steps",
