@@ -46,15 +46,15 @@ def test_the_evidence_of_a_fit_is_that_of_where_it_ends(tmp_path: Path):
 
 
 def test_a_fit_ends_where_nothing_more_is_promised(tmp_path: Path):
-    """A healthy vehicle beside a change of density that it cannot follow. A tolerance of how a dead band is made up for, of which the slope is another to either
-    side of none, kept the fit 79 in evidence above what it promised."""
+    """A healthy vehicle beside a change of density that it cannot follow. A tolerance of how a dead band is made up for, of which the slope is another to
+    either side of none, had kept the fit 79 in evidence above what it promised."""
     parts, _ = cut([foreign(tmp_path, (("density_gradient", "", -1.428),), 144490247, 200.0, 0.03, mission="survey", onset=107.1)], merlin(), "fossen", 10.0)
     p = pose(parts, columns_of(hypotheses(parts)[0]), 0.05)
     assert healthy_fit(p).promised_gain() < p.tempering
 
 
 def test_a_fit_follows_a_curved_valley(tmp_path: Path):
-    """A pull, and where it acts, from far away: by shorter steps in the same direction the fit ended 79 in evidence higher, and promised 58."""
+    """A pull, and where it acts, from far away: by shorter steps in the same direction the fit had ended 79 in evidence higher, and promised 58 more."""
     parts, _ = cut([foreign(tmp_path, (("tether_tension", "", 1.5),), 8, 120.0, 0.03)], merlin(), "fossen", 10.0)
     library = hypotheses(parts)[0]
     p = pose(parts, columns_of(library), 0.05)
