@@ -82,12 +82,11 @@ class Posterior:
         return self.solve(self.total.A[which].sum(axis=0) + self.precision, self.total.b[which].sum(axis=0) - self.pull)
 
     def simulated_step(self, damping: float = 0.0) -> tuple[Array, float]:
-        """Gauss-Newton step (k,) in the columns that are moved in the simulation, zero in the others, and by how much it lowers the cost, as the linearisation
-        has it. With ``damping``, Levenberg's and Marquardt's step, by so many times the diagonal of the curvature (Marquardt 1963)."""
+        """Gauss-Newton step (k,) in the columns that are moved in the simulation, zero in the others, and the cost that the linearisation predicts after it.
+        With ``damping``, Levenberg's and Marquardt's step, by so many times the diagonal of the curvature (Marquardt 1963)."""
         curvature, slope = self.curvature, self.descent
         step = self.solve(curvature + np.diag(damping * np.where(self.tangent_only, 0.0, np.diag(curvature))), slope)
-        after = self._here() - float(step @ (2.0 * slope - curvature @ step))
-        return np.where(self.tangent_only, 0.0, step), self.cost() - after
+        return np.where(self.tangent_only, 0.0, step), self._here() - float(step @ (2.0 * slope - curvature @ step))
 
     def solve(self, H: Array, slope: Array, among: np.ndarray | None = None) -> Array:
         """The step (k,) in the columns ``among`` (all by default) to the least of step H step - 2 slope step at which no column leaves the bound that it is on:

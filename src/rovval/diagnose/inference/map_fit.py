@@ -165,7 +165,7 @@ def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...]) -> P
     them; None where none gains more than `STEP_WORTH`."""
     best, before, gained = None, point.cost(), STEP_WORTH * problem.tempering
     for damping in DAMPINGS:
-        step, promised = point.simulated_step(damping)
+        step, predicted = point.simulated_step(damping)
         beta = moved_within_bounds(problem, point.beta, point.columns, step)
         data = equations_with_frozen(problem, beta, point.whitened)
         if data is None:
@@ -173,7 +173,7 @@ def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...]) -> P
         trial = replace(point, beta=beta, total=data, departure=point.departure + (beta - point.beta)[list(point.columns)])
         if (gain := before - trial.cost()) > gained:
             best, gained = beta, gain
-            if gain > STEP_KEPT * promised:
+            if gain > STEP_KEPT * (before - predicted):
                 break
     return None if best is None else posterior_at(problem, best, point.columns, point.effect_count, near)
 
