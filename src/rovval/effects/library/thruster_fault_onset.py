@@ -21,7 +21,7 @@ EFFECT = Effect(
         "t, onset": "time and time of the fault since the run's start; s",
     },
     parameters=(
-        Parameter("loss", "1", -0.5, 1.0, 0.0, 0.3, "0: sound, 1: dead", vanishes_at="high"),
+        Parameter("loss", "1", 0.0, 1.0, 0.0, 0.3, "0: sound, 1: dead", vanishes_at="high"),
         Parameter("onset", "s", 0.0, 1e6, 0.0, 60.0, "any time of the log", role="onset"),
     ),
     per="thruster",
