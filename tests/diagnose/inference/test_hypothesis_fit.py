@@ -11,7 +11,11 @@ from diagnose_case import merlin, own, posed, slot
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.inference.hypothesis_fit import fit_hypothesis, standard_errors
+from rovval.diagnose.inference.laplace import laplace_evidence
+from rovval.diagnose.inference.map_fit import healthy_fit
 from rovval.diagnose.problem.problem import pose
+from rovval.diagnose.residuals.ridge import Prior
+from rovval.diagnose.search.screening import linearised, screened
 from rovval.diagnose.windows.multiple_shooting import cut_run
 
 
@@ -72,3 +76,20 @@ def test_one_axis_and_several_that_are_off_alike_are_told_apart(planted, other):
     problem = pose(parts, columns_of(library), 0.05)
     evidence = {h.name: fit_hypothesis(problem, problem.origin, h.slots).evidence for h in library}
     assert evidence[planted] > evidence[other] + 20.0
+
+
+def test_a_number_that_a_calibration_knows_beside_others_only_is_found_and_told_as_if_these_were_right():
+    """It knows thrust over drag: both may be off by a half, together, and are off by 0.4 here. What is weaker in this log besides is thrust, by a quarter."""
+    drags = [f"{kind}_drag[{axis}]" for kind in ("linear", "quadratic") for axis in ("surge", "sway", "heave", "yaw")]
+    p, library = posed(("rpm_scale:scale=0.066", *(f"{drag}:scale=0.4" for drag in drags)), seconds=100.0)
+    scale, scaled = slot(p, "rpm_scale.scale"), [slot(p, f"{drag}.scale") for drag in drags]
+    alike = np.full((len(scaled) + 1, len(scaled) + 1), 0.999)
+    np.fill_diagonal(alike, 1.0)
+    calibrated = replace(p, tolerance=Prior(dict(p.tolerance.sd) | {scale: 0.3} | dict.fromkeys(scaled, 0.6), (scale, *scaled), alike))
+    healthy = healthy_fit(calibrated)
+    found = fit_hypothesis(calibrated, healthy.beta, (scale,))
+    assert found.posterior.beta[scale] == pytest.approx(0.066, abs=0.02)
+    assert found.beta[scale] == pytest.approx(-0.134, abs=0.03)
+    assert found.evidence > laplace_evidence(calibrated, healthy) + 6.0
+    weaker = [h for h in library if h.name == "rpm_scale"]
+    assert screened(calibrated, linearised(calibrated, weaker, healthy), weaker, ())["rpm_scale"] > 6.0

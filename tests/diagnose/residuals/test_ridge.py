@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 from rovval.core.data import Array
 from rovval.diagnose.residuals.ridge import Prior
@@ -26,17 +25,11 @@ def test_of_some_columns_it_says_what_it_does_whatever_the_others_are():
     np.testing.assert_allclose(inverse(KNOWN, (7, 5)), KNOWN.covariance((7, 3, 5))[np.ix_([0, 2], [0, 2])])
 
 
-def test_a_column_that_is_replaced_is_independent_of_all_and_the_others_are_as_they_were():
-    found = KNOWN.replaced({7: 30.0, 9: 1.0})
-    np.testing.assert_allclose(found.covariance((7, 9)), np.diag([900.0, 1.0]))
-    np.testing.assert_allclose(found.covariance((7, 3, 5))[1:, 1:], KNOWN.covariance((3, 5)))
-    assert not found.covariance((7, 3, 5))[0, 1:].any()
-
-
-def test_it_is_widened_where_the_other_is_wider():
-    found = KNOWN.widened(Prior({5: 1.0, 3: 1.0}))
-    assert found.sd == {7: 2.0, 3: 1.0, 5: 4.0, 8: 1.0}
-    assert found.covariance((5, 7))[0, 1] == pytest.approx(4.8) and found.covariance((5, 3))[0, 1] == 0.0
+def test_what_departs_by_itself_besides_adds_its_variance():
+    """The same covariance, and more variance of that column alone; a column that was fixed departs by that only."""
+    found = KNOWN.plus({7: 30.0, 9: 1.0})
+    np.testing.assert_allclose(found.covariance((5, 7, 3, 8)), KNOWN.covariance((5, 7, 3, 8)) + np.diag([0.0, 900.0, 0.0, 0.0]))
+    np.testing.assert_allclose(found.covariance((7, 9)), np.diag([904.0, 1.0]))
 
 
 def test_what_is_off_by_more_is_so_by_itself():

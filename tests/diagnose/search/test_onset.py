@@ -30,7 +30,7 @@ from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.residuals.ridge import Prior
 from rovval.diagnose.search.forward import Selection
 from rovval.diagnose.search.model import Model, ModelPrior, Part
-from rovval.diagnose.search.onset import Stretch, moved_onset, onset_cost, windows_from, with_onset
+from rovval.diagnose.search.onset import Stretch, evidence_with_onset, moved_onset, onset_cost, windows_from, with_onset
 from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.diagnose.windows.windows import Windows
 from rovval.report.diagnosis.json import document as written
@@ -154,6 +154,17 @@ def test_a_cause_that_never_begins_is_a_healthy_vehicle_with_its_own_tolerance(p
     never, throughout = (with_onset(problem, [drag], -1.0, Part(t, problem, always), alone) for t in (1e6, 0.0))
     assert never.evidence + onset_cost(problem) == pytest.approx(laplace_evidence(problem, alone), abs=1.0)
     assert throughout.evidence + onset_cost(problem) == pytest.approx(always.evidence, abs=1.0)
+
+
+def test_before_its_causes_a_vehicle_is_as_its_calibration_knows_it(posed: tuple[Problem, Windows, list[Hypothesis], Posterior]) -> None:
+    """Numbers that a calibration knows only together are known so before one of them is a cause: where all windows are before it, nothing is gained or lost."""
+    problem = posed[0]
+    thrust, drag = (next(i for i, s in enumerate(problem.plant.slots) if s.key == key) for key in ("rpm_scale.scale", "quadratic_drag[surge].scale"))
+    together = Prior(dict(problem.tolerance.sd) | {thrust: 0.3, drag: 0.6}, (thrust, drag), np.array([[1.0, 0.95], [0.95, 1.0]]))
+    calibrated = replace(problem, tolerance=together)
+    healthy = healthy_fit(calibrated)
+    weaker = fit_hypothesis(calibrated, healthy.beta, (thrust,))
+    assert evidence_with_onset(calibrated, weaker, 1e6, healthy) == pytest.approx(promised_evidence(calibrated, healthy), abs=0.01)
 
 
 def test_a_cause_from_some_moment_on_is_weighed_on_every_window(posed: tuple[Problem, Windows, list[Hypothesis], Posterior]) -> None:

@@ -46,18 +46,20 @@ def by_run(problem: Problem, fitted: HypothesisFit) -> dict[int, ByRun]:
     pull = (point.precision @ (point.departure + step))[own]
     pull[:count] = 0.0  # towards the joint value, not towards no cause
     score = (point.total.b - point.total.A @ step)[:, own]
+    given = point.effects_given_others()
+    mine = given[:, own]
     values, variances = np.empty((2, len(problem.runs), count))
     for run in range(len(problem.runs)):
         these = problem.run_of_window == run
         A = point.total.A[these][:, own][..., own]
         inverse = np.linalg.inv(A.sum(axis=0) + point.precision[shared])
         moved = inverse @ (score[these].sum(axis=0) - pull)
-        values[run] = fitted.beta[list(fitted.slots)] + step[:count] + moved[:count]
-        variances[run] = problem.design_effect * np.diag(inverse)[:count]
+        values[run] = fitted.beta[list(fitted.slots)] + given @ step + mine @ moved
+        variances[run] = problem.design_effect * np.diag(mine @ inverse @ mine.T)
         score[these] -= A @ moved
         score[these] -= score[these].mean(axis=0)
-    bread = np.asarray(np.linalg.inv(point.curvature[shared])[:count], dtype=np.float64)
-    louder = np.maximum(sandwich_variance(bread, score) / (problem.design_effect * np.diag(bread)), 1.0)
+    bread = mine @ np.asarray(np.linalg.inv(point.curvature[shared]), dtype=np.float64)
+    louder = np.maximum(sandwich_variance(bread, score) / (problem.design_effect * np.diag(bread @ mine.T)), 1.0)
     errors = np.sqrt(louder * variances)
     return {s: _of_slot(problem, s, values[:, i], errors[:, i]) for i, s in enumerate(fitted.slots) if problem.plant.slots[s].parameter.role != "onset"}
 

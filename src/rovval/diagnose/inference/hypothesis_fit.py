@@ -17,7 +17,7 @@ from rovval.diagnose.criteria import INTERVAL_PROBABILITY
 from rovval.diagnose.effort import ONSET_SHIFTS_S, QUICK_STEPS
 from rovval.diagnose.inference.gap import errors_by_part
 from rovval.diagnose.inference.laplace import Posterior, laplace_evidence
-from rovval.diagnose.inference.map_fit import map_fit, moved_to
+from rovval.diagnose.inference.map_fit import effects_alone, map_fit, moved_to
 from rovval.diagnose.problem.cross_validation import Fold
 from rovval.diagnose.problem.problem import Problem, corrected_of, gap_equations_of
 from rovval.diagnose.residuals.normal_equations import Linearisation, Whitened
@@ -79,12 +79,10 @@ def _with_onset_searched(problem: Problem, point: Posterior, slots: tuple[int, .
 
 def _scored(problem: Problem, point: Posterior, slots: tuple[int, ...]) -> HypothesisFit:
     """The fit of which ``point`` is the posterior, with its evidence and held-out losses."""
-    beta = problem.origin.copy()
-    beta[list(slots)] = point.beta[list(slots)]
     bounds = [(problem.plant.slots[s].parameter.low, problem.plant.slots[s].parameter.high) for s in slots]
-    at_bound = tuple(s for s, (low, high) in zip(slots, bounds, strict=True) if not low < beta[s] < high and (low, high) != (0.0, 1.0))
+    at_bound = tuple(s for s, (low, high) in zip(slots, bounds, strict=True) if not low < point.beta[s] < high and (low, high) != (0.0, 1.0))
     found = laplace_evidence(problem, point)
-    return _held_out(problem, HypothesisFit(slots, beta, point, found, problem.gap.total.c, problem.gap.dynamics.c, {}, at_bound))
+    return _held_out(problem, HypothesisFit(slots, effects_alone(problem, point), point, found, problem.gap.total.c, problem.gap.dynamics.c, {}, at_bound))
 
 
 def _held_out(problem: Problem, fitted: HypothesisFit) -> HypothesisFit:
@@ -115,7 +113,8 @@ def held_out_steps(problem: Problem, fitted: HypothesisFit) -> list[tuple[Fold, 
     """Each fold with the step (k,) of the fitted slots that its training windows ask for; its held-out windows are scored with that."""
     slots = [problem.plant.slots[s].parameter.role for s in fitted.slots]
     moves = np.array([role != "onset" for role in slots], dtype=bool)  # no fold extrapolates an onset
-    return [(fold, np.where(moves, fitted.posterior.step(fold.train)[: len(slots)], 0.0)) for fold in problem.folds]
+    given = fitted.posterior.effects_given_others()
+    return [(fold, np.where(moves, given @ fitted.posterior.step(fold.train), 0.0)) for fold in problem.folds]
 
 
 def standard_errors(problem: Problem, fitted: HypothesisFit, fixed: Sequence[int] = ()) -> Array:
@@ -128,11 +127,12 @@ def standard_errors(problem: Problem, fitted: HypothesisFit, fixed: Sequence[int
     point, k = fitted.posterior, len(fitted.slots)
     free, bread = np.array([c not in fixed for c in point.columns]), np.zeros_like(point.curvature)
     bread[np.ix_(free, free)] = np.linalg.inv(point.curvature[np.ix_(free, free)])
-    score = point.total.b - np.einsum("wij,j->wi", point.total.A, point.solve(point.curvature, point.descent))
-    sandwich = sandwich_variance(bread[:k], score - score.mean(axis=0))  # the mean is not zero on a bound, which takes up the rest
-    by_tolerance = problem.tempering * np.einsum("ij,jl,il->i", bread[:k, k:], point.precision[k:, k:], bread[:k, k:])
+    given = point.effects_given_others()
+    own, score = given @ bread, point.total.b - np.einsum("wij,j->wi", point.total.A, point.solve(point.curvature, point.descent))
+    sandwich = sandwich_variance(own, score - score.mean(axis=0))  # the mean is not zero on a bound, which takes up the rest
+    by_tolerance = problem.tempering * np.einsum("ij,jl,il->i", own[:, k:], point.precision[k:, k:], own[:, k:])
     normal = float(stats.norm.ppf(0.5 + INTERVAL_PROBABILITY / 2)) / _quantile(problem.window_count)
-    known = problem.design_effect * np.diag(bread)[:k] * normal**2
+    known = problem.design_effect * np.diag(own @ given.T) * normal**2
     return np.asarray(np.sqrt(np.maximum(sandwich + by_tolerance, known)))
 
 

@@ -83,9 +83,11 @@ class Posterior:
 
     def simulated_step(self, damping: float = 0.0) -> tuple[Array, float]:
         """Gauss-Newton step (k,) in the columns that are moved in the simulation, zero in the others, and the cost that the linearisation predicts after it.
-        With ``damping``, Levenberg's and Marquardt's step, by so many times the diagonal of the curvature (Marquardt 1963)."""
-        curvature, slope = self.curvature, self.descent
-        step = self.solve(curvature + np.diag(damping * np.where(self.tangent_only, 0.0, np.diag(curvature))), slope)
+        With ``damping``, Levenberg's and Marquardt's step: by so many times the diagonal of the data's curvature (Marquardt 1963) and the whole of the prior's,
+        so that numbers which the prior knows only together move together."""
+        data, slope, moves = self.total.A.sum(axis=0), self.descent, ~self.tangent_only
+        curvature = data + self.precision
+        step = self.solve(curvature + damping * np.outer(moves, moves) * (np.diag(np.diag(data)) + self.precision), slope)
         return np.where(self.tangent_only, 0.0, step), self._here() - float(step @ (2.0 * slope - curvature @ step))
 
     def solve(self, H: Array, slope: Array, among: np.ndarray | None = None) -> Array:
@@ -109,8 +111,8 @@ class Posterior:
     def standardised_departures(self) -> Array:
         """Standardised departure of each coefficient within tolerance, in standard deviations of its prior, one linear step ahead."""
         own = slice(self.effect_count, None)
-        variance = self.tempering * np.diag(np.linalg.inv(self.precision[own, own]))
-        return np.asarray(self.predicted_departure()[own] / np.sqrt(variance))
+        variance = self.tempering * np.diag(np.linalg.inv(self.precision))
+        return np.asarray(self.predicted_departure()[own] / np.sqrt(variance[own]))
 
     def largest_departure(self) -> float:
         """Largest absolute standardised departure; 0 without tolerances."""
@@ -121,19 +123,33 @@ class Posterior:
         step = self.solve(self.curvature, self.descent, self.tangent_only)
         return losses(self.dynamics, np.arange(len(step)), step, np.ones(len(self.dynamics.c), dtype=bool))
 
+    def effects_given_others(self) -> Array:
+        """What turns departures (k,) into those of the effects' parameters where all else is as the vehicle's file has it (effect_count, k): without what goes
+        with the others' departures by the correlations of the prior; their own departures where it has none."""
+        own = self.precision[: self.effect_count]
+        return np.asarray(np.linalg.solve(own[:, : self.effect_count], own))
+
     def effect_sd(self) -> Array:
-        """Standard deviation (effect_count,) of each of the effects' parameters, all others beside it."""
+        """Standard deviation (effect_count,) of each of the effects' parameters, where all else is as the vehicle's file has it."""
         return np.asarray(np.sqrt(self.tempering * np.diag(self._effect_inverse())))
 
+    def effect_beyond_tolerance(self, wide: Array) -> tuple[Array, Array]:
+        """Mean and standard deviation (effect_count,) of what each of the effects' parameters is off by beyond its tolerance, the prior of which is normal with
+        standard deviation ``wide`` (effect_count,)."""
+        own, gain = self.precision[:, : self.effect_count], wide**2 / self.tempering
+        known = np.diag(own) - np.einsum("ij,ij->j", own, np.linalg.solve(self.curvature, own))
+        return np.asarray(gain * (own.T @ self.predicted_departure())), wide * np.sqrt(np.maximum(1.0 - gain * known, 0.0))
+
     def effect_correlation(self) -> Array:
-        """Correlations (effect_count, effect_count) of the effects' parameters, all others beside them."""
+        """Correlations (effect_count, effect_count) of the effects' parameters, where all else is as the vehicle's file has it."""
         inverse = self._effect_inverse()
         sd = np.sqrt(np.diag(inverse))
         return np.asarray(inverse / np.outer(sd, sd))
 
     def _effect_inverse(self) -> Array:
-        """The part of the inverse curvature that is of the effects' parameters (effect_count, effect_count)."""
-        return np.asarray(np.linalg.solve(self.curvature, np.eye(len(self.columns), self.effect_count))[: self.effect_count])
+        """The inverse curvature of the effects' parameters (effect_count, effect_count), where all else is as the vehicle's file has it."""
+        given = self.effects_given_others()
+        return np.asarray(given @ np.linalg.solve(self.curvature, given.T))
 
     def _below(self, among: np.ndarray) -> float:
         """Cost after one linear step in the columns ``among`` (k,)."""
@@ -172,10 +188,11 @@ def promised_evidence(problem: Problem, point: Posterior) -> float:
 
 
 def heavy_tails(problem: Problem, point: Posterior) -> float:
-    """Twice the log of the mean ratio, over the posterior of each of the effects' sized parameters, of the prior in which effects are compared (Student's t,
-    `PRIOR_FREEDOM`) to the wide normal one in which they are fitted (`PRIOR_WIDTH`): what the evidence gains by the other prior."""
+    """Twice the log of the mean ratio, over the posterior of what each of the effects' sized parameters is off by beyond its tolerance, of the prior in which
+    effects are compared (Student's t, `PRIOR_FREEDOM`) to the wide normal one in which they are fitted (`PRIOR_WIDTH`): what the evidence gains by the other
+    prior."""
     parameters = [problem.plant.slots[s].parameter for s in point.columns[: point.effect_count]]
-    size, sd = point.predicted_departure(), point.effect_sd()
+    size, sd = point.effect_beyond_tolerance(PRIOR_WIDTH * np.array([p.typical for p in parameters]))
     total, z = 0.0, np.linspace(-6.0, 6.0, 241)  # standard deviations of the posterior: finer than any feature of the ratio
     for i, p in ((i, p) for i, p in enumerate(parameters) if not p.places):
         at = (size[i] + sd[i] * z) / p.typical

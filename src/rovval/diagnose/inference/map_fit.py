@@ -127,6 +127,15 @@ def moved_to(problem: Problem, point: Posterior, slot: int, value: float) -> Pos
     return posterior_at(problem, beta, point.columns, point.effect_count, point.whitened)
 
 
+def effects_alone(problem: Problem, point: Posterior) -> Array:
+    """Parameters (p,) of the plant with the effects of a fit, held within their bounds, and all else as the vehicle's file has it (`effects_given_others`)."""
+    beta, slots = problem.origin.copy(), list(point.columns[: point.effect_count])
+    departure = point.effects_given_others() @ (point.departure + point.solve(point.curvature, point.descent, point.tangent_only))
+    for slot, value in zip(slots, problem.prior_mean[slots] + departure, strict=True):
+        beta[slot] = problem.plant.slots[slot].parameter.within(float(value))
+    return beta
+
+
 def tangent_slots(plant: Plant, own: Sequence[int]) -> frozenset[int]:
     """Slots whose departures within tolerance are moved in the linearisation only beside effects of the slots ``own``: those of sensors; beside a delay not
     the clocks of the thrusters, which do what it does."""
@@ -151,7 +160,7 @@ def _point(problem: Problem, beta: Array, own: int, there: tuple[Whitened, ...])
     dynamic, data = equations_of(problem, beta, there)
     columns = data.columns
     parameters = [problem.plant.slots[s].parameter for s in columns]
-    prior = problem.tolerance.replaced({s: PRIOR_WIDTH * p.typical for s, p in zip(columns[:own], parameters[:own], strict=True)})
+    prior = problem.tolerance.plus({s: PRIOR_WIDTH * p.typical for s, p in zip(columns[:own], parameters[:own], strict=True)})
     at = beta[list(columns)]
     side = np.array([float(x >= p.high) - float(x <= p.low) for x, p in zip(at, parameters, strict=True)])
     sensors = tangent_slots(problem.plant, columns[:own])

@@ -22,7 +22,7 @@ from rovval.diagnose.effort import MOST_REFITS
 from rovval.diagnose.inference.bootstrap import shrinkage_interval
 from rovval.diagnose.inference.gap import explainable_gap, floor_losses, squared_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, held_out_linearisations
-from rovval.diagnose.inference.map_fit import map_fit
+from rovval.diagnose.inference.map_fit import effects_alone, map_fit
 from rovval.diagnose.problem.cross_validation import Fold, make_folds
 from rovval.diagnose.problem.problem import Problem, corrected_of, corrected_residuals, gap_equations_at, pose, whitened
 from rovval.diagnose.residuals.perturbations import Columns
@@ -173,10 +173,7 @@ def _without(problem: Problem, fitted: HypothesisFit, fold: Fold, tolerance: flo
     slopes = [(taken(one.S, which), one.columns) for one, which in _by_run(problem, fitted.posterior.linear, fold.train) if which.any()]
     less = pose(tuple(runs), Columns(), tolerance)
     near = [replace(one, S=S, columns=columns) for one, (S, columns) in zip(less.nominal, slopes, strict=True)]
-    point = map_fit(less, fitted.posterior.beta, fitted.slots, whitened(less, near))
-    beta = problem.origin.copy()
-    beta[list(fitted.slots)] = point.beta[list(fitted.slots)]
-    return beta
+    return effects_alone(less, map_fit(less, fitted.posterior.beta, fitted.slots, whitened(less, near)))
 
 
 def _by_run(problem: Problem, items: Sequence[T], which: np.ndarray) -> Iterator[tuple[T, np.ndarray]]:

@@ -78,5 +78,5 @@ def compare_held_out(
     held: NormalEquations, base: Prior, hypotheses: Mapping[str, Prior], design_effect: float
 ) -> tuple[CrossValidatedFit, dict[str, CrossValidatedFit]]:
     """Cross-validated fits of the ``base``, and of the base with each hypothesis's columns free as well."""
-    fits = {name: cross_validate(held, base.widened(prior), design_effect) for name, prior in hypotheses.items()}
+    fits = {name: cross_validate(held, base.plus(prior.sd), design_effect) for name, prior in hypotheses.items()}
     return cross_validate(held, base, design_effect), fits

@@ -55,25 +55,20 @@ class Prior:
         sd = {c: sd for c, sd in self.sd.items() if c not in columns}
         return Prior(sd, tuple(self.correlated[i] for i in kept), self.correlation[np.ix_(kept, kept)])
 
-    def widened(self, other: Prior) -> Prior:
-        """The columns of both priors, those in both with the larger standard deviation."""
-        return self.replaced({c: sd for c, sd in other.sd.items() if sd > self.sd.get(c, 0.0)})
-
-    def replaced(self, sd: Mapping[int, float]) -> Prior:
-        """The prior with the columns of ``sd`` independent of all others and of these standard deviations."""
-        others = self.without(sd)
-        return Prior({**self.sd, **sd}, others.correlated, others.correlation)
+    def plus(self, sd: Mapping[int, float]) -> Prior:
+        """The prior of the sum of what this is of and of independent departures of standard deviations ``sd``, by column."""
+        total = {**self.sd, **{c: float(np.hypot(self.sd.get(c, 0.0), more)) for c, more in sd.items()}}
+        share = np.array([self.sd[c] / total[c] for c in self.correlated])
+        correlation = self.correlation * np.outer(share, share)
+        np.fill_diagonal(correlation, 1.0)
+        return Prior(total, self.correlated, correlation)
 
     def off_by_more(self, sd: Mapping[int, float]) -> Prior:
         """The prior of columns that may be off by as much as they are, and besides, each by itself, by so much that ``sd`` is what they are off by in all.
 
         Those for which it is less stay as they are.
         """
-        total = {c: max(own, sd.get(c, 0.0)) for c, own in self.sd.items()}
-        share = np.array([self.sd[c] / total[c] for c in self.correlated])
-        correlation = self.correlation * np.outer(share, share)
-        np.fill_diagonal(correlation, 1.0)
-        return Prior(total, self.correlated, correlation)
+        return self.plus({c: float(np.sqrt(sd[c] ** 2 - own**2)) for c, own in self.sd.items() if sd.get(c, 0.0) > own})
 
 
 def ridge_step(data: NormalEquations, prior: Prior, design_effect: float) -> Array:

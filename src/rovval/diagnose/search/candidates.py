@@ -56,11 +56,11 @@ def candidates(
     base = baseline.posterior
     ordered = sorted(library, key=lambda h: (not h.evident, -promised[h.label]))
     share = SCREENED_EVIDENCE * max(0.0, *(promised[h.label] for h in library))
-    prior = problem.tolerance.widened(wide_prior(problem, chosen))
+    prior = problem.tolerance.plus(wide_prior(problem, chosen).sd)
     fits: Fits = {}
 
     def steps(h: Hypothesis) -> Array:
-        return ridge_step(data, prior.widened(prior_of(problem, h)), problem.tempering)
+        return ridge_step(data, prior.plus(prior_of(problem, h).sd), problem.tempering)
 
     def alone(h: Hypothesis, slots: tuple[int, ...]) -> Array:
         """The start where all else stays as in the baseline: a step of everything may lead away what was found before."""

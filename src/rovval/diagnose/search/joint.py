@@ -61,14 +61,14 @@ def with_relatives(
         gone = [s for s in cause.slots if s not in kept]
         start, without = fit.posterior.beta.copy(), _taken_out(problem, data, fit.posterior.beta, gone)
         start[gone] = problem.origin[gone]
-        promised, beside = screened(problem, without, others, kept), problem.tolerance.widened(wide_prior(problem, kept))
+        promised, beside = screened(problem, without, others, kept), problem.tolerance.plus(wide_prior(problem, kept).sd)
         nearest = dict[str, Hypothesis]()
         for h in sorted(others, key=lambda h: -promised[h.label]):
             nearest.setdefault(h.name, h)
         for h in list(nearest.values())[:MOST_RELATIVES]:
             if (names := frozenset({h.name, *(one.name for one in rest)})) not in known:
                 slots = tuple(dict.fromkeys((*kept, *h.slots)))
-                steps = ridge_step(without, beside.widened(prior_of(problem, h)), problem.tempering)
+                steps = ridge_step(without, beside.plus(prior_of(problem, h).sd), problem.tempering)
                 own = fit_quickly(problem, start_of(problem, without, h, steps, start, slots), slots, fit.posterior.whitened).without_sensitivities()
                 found.append(Model((*rest, h), own, own.evidence, prior.log_mass((*rest, h))))
                 known.add(names)

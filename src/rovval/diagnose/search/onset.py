@@ -18,7 +18,7 @@ from rovval.core.data import Array, Flags
 from rovval.core.large_arrays import zeros
 from rovval.diagnose.criteria import FEW_WINDOWS, LEAST_WINDOWS
 from rovval.diagnose.effort import NEGLIGIBLE, ONSETS_TRIED
-from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of, wide_prior
 from rovval.diagnose.inference.gap import parity_errors, weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, only_places
 from rovval.diagnose.inference.laplace import Posterior, promised_evidence
@@ -180,20 +180,21 @@ def _on_every_window(problem: Problem, late: HypothesisFit, time: float) -> Hypo
 @dataclass(frozen=True, slots=True)
 class _Switch:
     """All windows linearised about causes at work (``begun``) and about a vehicle without them (``before``). A coefficient that the causes take is one of the
-    vehicle's own, with its tolerance, before they do (``taken``, positions of columns)."""
+    vehicle's own, with its tolerance, before they do (``taken``, positions of columns). ``precision`` is that of the prior of all columns and these, times
+    the tempering."""
 
     begun: Posterior
     before: Posterior
     taken: tuple[int, ...]
-    tolerance: Array
+    precision: Array
 
     @classmethod
     def of(cls, problem: Problem, own: tuple[int, ...], points: tuple[Array, Array], known: Known) -> _Switch:
         """About two ``points`` (p,): with the causes, of slots ``own``, at work, and without; sensitivities to all else are those ``known`` of each."""
-        columns = (*own, *(c for c in problem.tolerance.sd if c not in own))
-        begun, before = (posterior_at(problem, at, columns, len(own), near) for at, near in zip(points, known, strict=True))
+        others = tuple(c for c in problem.tolerance.sd if c not in own)
+        begun, before = (posterior_at(problem, at, (*own, *others), len(own), near) for at, near in zip(points, known, strict=True))
         taken = tuple(i for i, slot in enumerate(own) if slot in problem.tolerance.sd)
-        return cls(begun, before, taken, np.array([problem.tolerance.sd[own[i]] for i in taken]))
+        return cls(begun, before, taken, _precision(problem, own, others, taken))
 
     def stepped(self, problem: Problem, point: Posterior) -> _Switch:
         """Linearised anew where one more step leads to from ``point``, a posterior of this linearisation; the same where a simulation stops there."""
@@ -228,7 +229,19 @@ class _Switch:
             begun,
             columns=columns, whitened=(),
             dynamics=switched(self.before.dynamics, begun.dynamics), total=switched(self.before.total, begun.total),
-            precision=block_diag(begun.precision, np.diag(begun.tempering / self.tolerance**2)),
+            precision=self.precision,
             departure=np.concatenate([begun.departure, self.before.departure[taken]]),
             bound_side=np.concatenate([begun.bound_side, none]), tangent_only=np.concatenate([begun.tangent_only, none > 0]),
         )  # fmt: skip
+
+
+def _precision(problem: Problem, own: tuple[int, ...], others: tuple[int, ...], taken: tuple[int, ...]) -> Array:
+    """Precision, times the tempering, of the prior of the causes' parameters (slots ``own``), of ``others``, and of those of the former that have a tolerance
+    (``taken``, positions) before the causes are at work: in each of these a cause adds to what tolerance has it off by all through the log."""
+    k, wide = len(own), np.array([wide_prior(problem, own).sd[slot] for slot in own])
+    within = [*(own[i] for i in taken), *others]
+    sums = block_diag(np.eye(k), np.roll(np.eye(len(within)), -len(taken), axis=0))
+    sums[list(taken), k + np.arange(len(taken))] = 1.0
+    covariance = sums @ block_diag(np.diag(wide**2), problem.tolerance.covariance(within)) @ sums.T
+    sd = np.sqrt(np.diag(covariance))
+    return np.asarray(problem.tempering * np.linalg.inv(covariance / np.outer(sd, sd)) / np.outer(sd, sd))

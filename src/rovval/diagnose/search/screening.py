@@ -48,12 +48,12 @@ def screened(problem: Problem, data: NormalEquations, library: Iterable[Hypothes
 
     A column that no window shows anything of adds nothing, to the last bit: its rounding must not decide.
     """
-    base = problem.tolerance.widened(wide_prior(problem, chosen))
+    base = problem.tolerance.plus(wide_prior(problem, chosen).sd)
     A, b = data.A.sum(axis=0), data.b.sum(axis=0)
     shown = {column for column, information in zip(data.columns, np.diag(A), strict=True) if information > 0.0}
     ground = _evidence(data, A, b, base, problem.tempering)
     own = {h.label: Prior({c: sd for c, sd in prior_of(problem, h).sd.items() if c in shown}) for h in library}
-    return {label: _evidence(data, A, b, base.widened(prior), problem.tempering) - ground for label, prior in own.items()}
+    return {label: _evidence(data, A, b, base.plus(prior.sd), problem.tempering) - ground for label, prior in own.items()}
 
 
 def _evidence(data: NormalEquations, A: Array, b: Array, prior: Prior, tempering: float) -> float:
