@@ -93,12 +93,12 @@ def at_full_size(plant: Plant, label: str, slots: tuple[int, ...], values: Mappi
     return displaced(plant, label, slots, (START_SCALE,), at, next_id)
 
 
-def wide_prior(problem: Problem, slots: Sequence[int]) -> Prior:
-    """The wide prior of parameters that a hypothesis sets free."""
-    return Prior({s: PRIOR_WIDTH * problem.plant.slots[s].parameter.typical for s in slots})
+def wide_sd(problem: Problem, slots: Sequence[int]) -> dict[int, float]:
+    """Standard deviations of the wide prior of parameters that a hypothesis sets free, by slot."""
+    return {s: PRIOR_WIDTH * problem.plant.slots[s].parameter.typical for s in slots}
 
 
 def prior_of(problem: Problem, h: Hypothesis) -> Prior:
     """The wide prior of a hypothesis: of its columns, and of those of its parameters that have a tolerance, wherever it begins."""
-    within = wide_prior(problem, [s for s in h.slots if s in problem.tolerance.sd])
-    return Prior(dict(within.sd) | dict(zip(h.columns, h.sd, strict=True)))
+    within = wide_sd(problem, [s for s in h.slots if s in problem.tolerance.sd])
+    return Prior(within | dict(zip(h.columns, h.sd, strict=True)))

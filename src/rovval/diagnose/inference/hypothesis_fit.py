@@ -31,7 +31,7 @@ class HypothesisFit:
 
     Attributes:
         slots: its parameters.
-        beta: parameters (p,) of the plant with the fitted slots, all others as the vehicle's file has them.
+        beta: parameters (p,) of the plant with the fitted slots as they are where all others are as the vehicle's file has them (`effects_alone`).
         posterior: the joint fit of the slots and of coefficients within tolerance.
         evidence: twice the log Bayes factor over the vehicle as its file has it.
         loss: weighted squared residuals (m,) of each window about ``beta``, held out, in the metric of the gap: dynamics and parity.

@@ -23,7 +23,7 @@ from rovval.diagnose.effort import (
     STARTS_TRIED,
     TANGENT_KEPT,
 )
-from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of, wide_prior
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of, wide_sd
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, fit_hypothesis, fit_quickly
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.inference.map_fit import progressive_start, tangent_slots
@@ -56,7 +56,7 @@ def candidates(
     base = baseline.posterior
     ordered = sorted(library, key=lambda h: (not h.evident, -promised[h.label]))
     share = SCREENED_EVIDENCE * max(0.0, *(promised[h.label] for h in library))
-    prior = problem.tolerance.plus(wide_prior(problem, chosen).sd)
+    prior = problem.tolerance.plus(wide_sd(problem, chosen))
     fits: Fits = {}
 
     def steps(h: Hypothesis) -> Array:

@@ -18,7 +18,7 @@ from rovval.core.data import Array, Flags
 from rovval.core.large_arrays import zeros
 from rovval.diagnose.criteria import FEW_WINDOWS, LEAST_WINDOWS
 from rovval.diagnose.effort import NEGLIGIBLE, ONSETS_TRIED
-from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of, wide_prior
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of, wide_sd
 from rovval.diagnose.inference.gap import parity_errors, weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, only_places
 from rovval.diagnose.inference.laplace import Posterior, promised_evidence
@@ -238,7 +238,7 @@ class _Switch:
 def _precision(problem: Problem, own: tuple[int, ...], others: tuple[int, ...], taken: tuple[int, ...]) -> Array:
     """Precision, times the tempering, of the prior of the causes' parameters (slots ``own``), of ``others``, and of those of the former that have a tolerance
     (``taken``, positions) before the causes are at work: in each of these a cause adds to what tolerance has it off by all through the log."""
-    k, wide = len(own), np.array([wide_prior(problem, own).sd[slot] for slot in own])
+    k, wide = len(own), np.array(list(wide_sd(problem, own).values()))
     within = [*(own[i] for i in taken), *others]
     sums = block_diag(np.eye(k), np.roll(np.eye(len(within)), -len(taken), axis=0))
     sums[list(taken), k + np.arange(len(taken))] = 1.0
