@@ -66,11 +66,18 @@ def test_a_long_lag_is_found_though_it_is_no_multiple_of_a_short_one():
     assert document["causes"][0]["effect"] == "velocity_filter_lag", document["sentence"]
 
 
-def test_a_change_with_depth_begins_at_depths_of_the_log():
+def test_a_change_with_depth_begins_at_depths_of_the_log_and_beyond_them():
     p, library = posed()
     z = np.concatenate([part.eta0[:, 2] for part in p.runs])
-    data = [dict(h.at)[slot(p, "density_gradient.depth")] for h in library if h.name == "density_gradient"]
-    assert len(data) == 3 and z.min() < min(data) < max(data) < z.max()
+    data = sorted(dict(h.at)[slot(p, "density_gradient.depth")] for h in library if h.name == "density_gradient")
+    assert len(data) == 5 and data[0] < z.min() < data[1] < data[3] < z.max() < data[4]
+
+
+@pytest.mark.slow
+def test_a_vehicle_that_keeps_its_depth_does_not_tell_a_weight_from_a_change_of_density(tmp_path: Path):
+    """By another plant: trimmed above the depth at which it works, in water that gets lighter; either may be so."""
+    document = diagnose([foreign(tmp_path, (("density_gradient", "", -1.126),), 31, 300.0, 0.03, mission="steps")], merlin()).document()
+    assert {"density_gradient", "buoyancy_error"} <= {name for cause in document["causes"] for name in cause["group"]}, document["sentence"]
 
 
 def test_a_current_with_shear_begins_with_and_without_a_velocity_in_the_middle_of_the_depths():

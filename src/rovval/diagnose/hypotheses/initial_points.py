@@ -153,10 +153,12 @@ def _with_levers(target: Target, placed: Mapping[int, float], next_id: int) -> l
     return [displaced(target.plant, f"{target.name}@lever{i}", target.slots, free, at, next_id + i * len(free)) for i, at in enumerate(ends)]
 
 
-def _depths(windows: Sequence[Windows]) -> tuple[float, ...]:
-    """Depths (m, down) high, in the middle and low in what the logs went through: a datum far outside makes a change with depth look like a constant."""
+def _depths(datum: effects.Parameter, windows: Sequence[Windows]) -> tuple[float, ...]:
+    """Depths (m, down) high, in the middle and low in what the logs went through, and its typical size above and below all of that: a datum outside makes a
+    change with depth look like a constant, which is all that a vehicle shows which keeps its depth."""
     z = np.concatenate([part.eta0[:, 2] for part in windows])
-    return tuple(dict.fromkeys(float(d) for d in np.quantile(z, DATUM_QUANTILES)))
+    depths = (*np.quantile(z, DATUM_QUANTILES), z.min() - datum.typical, z.max() + datum.typical)
+    return tuple(dict.fromkeys(datum.within(float(d)) for d in depths))
 
 
 def _speeds(target: Target, windows: Sequence[Windows]) -> tuple[float, ...]:
@@ -178,15 +180,15 @@ def _onsets(windows: Sequence[Windows], changes_s: Sequence[float]) -> tuple[flo
 
 
 def _grids(target: Target, windows: Sequence[Windows], hints: Hints) -> dict[int, tuple[float, ...]]:
-    """Initial values by slot: onsets over the log and at its changes, depths and shaft speeds within those of the log, the best periods as far as
-    `MOST_STARTS` lets them, and other grids as the effect states them, held within the bounds."""
+    """Initial values by slot: onsets over the log and at its changes, depths within and about those of the log, shaft speeds within its own, the best periods
+    as far as `MOST_STARTS` lets them, and other grids as the effect states them, held within the bounds."""
     found, periods = {}, hints.periods.get(None, ())
     for slot in target.slots:
         parameter = target.parameter(slot)
         if parameter.role == "onset":
             found[slot] = _onsets(windows, hints.changes_s)
         elif parameter.role == "datum":
-            found[slot] = _depths(windows)
+            found[slot] = _depths(parameter, windows)
         elif parameter.role == "threshold":
             found[slot] = tuple(parameter.within(speed) for speed in _speeds(target, windows))
         elif parameter.starts:
