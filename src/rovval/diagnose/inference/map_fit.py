@@ -22,6 +22,7 @@ from rovval.diagnose.effort import (
     QUICK_STEPS,
     RELINEARISED_TIMES,
     STEP_KEPT,
+    STEP_SHARES,
     STEP_WORTH,
 )
 from rovval.diagnose.inference.laplace import Posterior
@@ -170,19 +171,20 @@ def _point(problem: Problem, beta: Array, own: int, there: tuple[Whitened, ...])
 
 
 def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...]) -> Posterior | None:
-    """The next point of Levenberg's and Marquardt's iteration, by the first of `DAMPINGS` that keeps what its step promises (`STEP_KEPT`) or by the best of
-    them; None where none gains more than `STEP_WORTH`."""
+    """The next point of Levenberg's and Marquardt's iteration, by the first of `DAMPINGS`, and then of `STEP_SHARES` of the undamped step, that keeps what it
+    promises (`STEP_KEPT`) or by the best of them; None where none gains more than `STEP_WORTH`."""
     best, before, gained = None, point.cost(), STEP_WORTH * problem.tempering
-    for damping in DAMPINGS:
+    for damping, share in (*((damping, 1.0) for damping in DAMPINGS), *((0.0, share) for share in STEP_SHARES)):
         step, predicted = point.simulated_step(damping)
-        beta = moved_within_bounds(problem, point.beta, point.columns, step)
+        promised = share * (2.0 - share) * (before - predicted)
+        beta = moved_within_bounds(problem, point.beta, point.columns, share * step)
         data = equations_with_frozen(problem, beta, point.whitened)
         if data is None:
             continue
         trial = replace(point, beta=beta, total=data, departure=point.departure + (beta - point.beta)[list(point.columns)])
         if (gain := before - trial.cost()) > gained:
             best, gained = beta, gain
-            if gain > STEP_KEPT * (before - predicted):
+            if gain > STEP_KEPT * promised:
                 break
     return None if best is None else posterior_at(problem, best, point.columns, point.effect_count, near)
 
