@@ -64,6 +64,16 @@ def test_a_fit_follows_a_curved_valley(tmp_path: Path):
     assert found.cost() < map_fit(p, found.beta, slots).cost() + 20.0 * p.tempering
 
 
+def test_a_pull_towards_a_point_nearby_is_fitted_by_its_own_slope(tmp_path: Path):
+    """The point is some metres from where the vehicle passes: by differences of a quarter of what is typical, which move it by metres, the slope had the wrong
+    sign where the fit ended, 245 in evidence higher, and promised 67 more."""
+    parts, _ = cut([foreign(tmp_path, (("tether_tension", "", 1.75),), 2, 120.0, 0.03)], merlin(), "fossen", 10.0)
+    p = pose(parts, columns_of(hypotheses(parts)[0]), 0.05)
+    point = map_fit(p, p.origin, tuple(slot(p, f"tether_tension.{name}") for name in ("north", "east", "down", "nearness", "depth", "x", "z")))
+    assert point.promised_gain() < 5.0 * p.tempering
+    assert point.cost() < 1500.0 * p.tempering
+
+
 def test_a_dead_time_is_fitted_beside_clocks_that_may_be_apart(tmp_path: Path):
     """An offset of the thrusters' clock within its tolerance does what a dead time does, and beside one is moved in the simulation as that is: in the
     linearisation alone it made the fit end at a dead time with which it is worse by 19 in evidence than with a little less."""

@@ -21,6 +21,7 @@ from rovval.diagnose.inference.map_fit import effects_alone, map_fit, moved_to
 from rovval.diagnose.problem.cross_validation import Fold
 from rovval.diagnose.problem.problem import Problem, corrected_of, gap_equations_of
 from rovval.diagnose.residuals.normal_equations import Linearisation, Whitened
+from rovval.diagnose.residuals.perturbations import STEP_NEAR
 from rovval.diagnose.residuals.ridge import losses
 from rovval.diagnose.residuals.sensitivities import linearise
 
@@ -87,7 +88,7 @@ def _scored(problem: Problem, point: Posterior, slots: tuple[int, ...]) -> Hypot
 
 def _held_out(problem: Problem, fitted: HypothesisFit) -> HypothesisFit:
     """The fit with its held-out losses."""
-    linear = [linearise(windows, fitted.beta, fitted.slots) for windows in problem.runs]
+    linear = [linearise(windows, fitted.beta, fitted.slots, share=STEP_NEAR) for windows in problem.runs]
     dynamic, data = gap_equations_of(problem, fitted.beta, linear)
     own, loss, dynamic_loss = np.arange(len(fitted.slots)), data.c.copy(), dynamic.c.copy()
     for fold, step in held_out_steps(problem, fitted):

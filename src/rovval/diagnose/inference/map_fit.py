@@ -28,6 +28,7 @@ from rovval.diagnose.effort import (
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.problem.problem import Problem, equations_of, equations_with_frozen, whitened
 from rovval.diagnose.residuals.normal_equations import Whitened, with_frozen_columns
+from rovval.diagnose.residuals.perturbations import STEP, STEP_NEAR
 from rovval.diagnose.residuals.sensitivities import linearise
 from rovval.plant import Plant
 from rovval.plant.sensors import moves_the_vehicle
@@ -37,16 +38,17 @@ def map_fit(problem: Problem, start: Array, slots: tuple[int, ...], near: tuple[
     """Fit ``slots`` and coefficients within tolerance jointly from ``start`` (p,), in ``rounds`` steps at most; the posterior at the optimum.
 
     Sensitivities to the slots are taken anew at every step. Those to coefficients within tolerance and to initial states are frozen: those of ``near``, or
-    of ``start``, and then of where each descent ends (`_followed`).
+    of ``start``, and then of where each descent ends (`_followed`). The first descent takes sensitivities to the slots by wide differences (`STEP`), which see
+    beyond a small valley.
     """
-    if near is not None:
-        return _descended(problem, posterior_at(problem, start, _columns(problem, slots), len(slots), near), near, rounds)
-    return _followed(problem, posterior_at(problem, start, _columns(problem, slots), len(slots)), rounds)
+    share = STEP if slots else STEP_NEAR
+    point = posterior_at(problem, start, _columns(problem, slots), len(slots), near, share)
+    return _followed(problem, point, rounds, share) if near is None else _descended(problem, point, near, rounds, share)
 
 
 def map_refit(problem: Problem, point: Posterior) -> Posterior:
     """The MAP fit under the priors of ``problem`` from where one under others ended, at first with the sensitivities that it has there."""
-    return _followed(problem, _point(problem, point.beta, point.effect_count, point.whitened), MAP_STEPS)
+    return _followed(problem, _point(problem, point.beta, point.effect_count, point.whitened), MAP_STEPS, STEP_NEAR)
 
 
 def healthy_fit(problem: Problem) -> Posterior:
@@ -94,25 +96,28 @@ def _columns(problem: Problem, slots: tuple[int, ...]) -> tuple[int, ...]:
     return (*slots, *(c for c in problem.tolerance.sd if c not in slots))
 
 
-def _followed(problem: Problem, point: Posterior, rounds: int) -> Posterior:
-    """The optimum from ``point``, with the sensitivities that it has there: where a descent ends they are made anew, and another follows where one more step
-    gains by them, `RELINEARISED_TIMES` times at most. Of the points so reached it is the best, each by its own sensitivities."""
+def _followed(problem: Problem, point: Posterior, rounds: int, share: float) -> Posterior:
+    """The optimum from ``point``, with the sensitivities that it has there, by differences of a ``share`` of the typical sizes: where a descent ends they are
+    made anew by small ones (`STEP_NEAR`), and another follows where one more step gains by them, `RELINEARISED_TIMES` times at most. Of the points so
+    reached it is the best, each by its own sensitivities."""
     best = point
     for _ in range(RELINEARISED_TIMES):
-        reached = _descended(problem, point, point.whitened, rounds)
-        if reached is point:
+        reached = _descended(problem, point, point.whitened, rounds, share)
+        if reached is point and share == STEP_NEAR:
             break
+        share = STEP_NEAR
         point = posterior_at(problem, reached.beta, point.columns, point.effect_count)
-        best = min(best, point, key=Posterior.cost)
+        best = min(point, best, key=Posterior.cost)
         if point.promised_gain() < STEP_WORTH * problem.tempering:
             break
     return best
 
 
-def _descended(problem: Problem, point: Posterior, slopes: tuple[Whitened, ...], rounds: int) -> Posterior:
-    """The point that ``rounds`` damped steps reach at most, with frozen sensitivities ``slopes`` to coefficients within tolerance."""
+def _descended(problem: Problem, point: Posterior, slopes: tuple[Whitened, ...], rounds: int, share: float) -> Posterior:
+    """The point that ``rounds`` damped steps reach at most, with frozen sensitivities ``slopes`` to coefficients within tolerance, those to the effects by
+    differences of a ``share`` of their typical sizes."""
     for _ in range(rounds):
-        better = _better(problem, point, slopes)
+        better = _better(problem, point, slopes, share)
         if better is None:
             break
         gain, point = point.cost() - better.cost(), better
@@ -145,13 +150,15 @@ def tangent_slots(plant: Plant, own: Sequence[int]) -> frozenset[int]:
     return frozenset(i for i in sensors if not (delayed and moves_the_vehicle(plant.slots[i])))
 
 
-def posterior_at(problem: Problem, beta: Array, columns: tuple[int, ...], own: int, near: tuple[Whitened, ...] | None = None) -> Posterior:
-    """The posterior about ``beta`` (p,) in ``columns``, of which the first ``own`` are effects'; with ``near``, sensitivities to the others and to initial
-    states are taken from there."""
+def posterior_at(
+    problem: Problem, beta: Array, columns: tuple[int, ...], own: int, near: tuple[Whitened, ...] | None = None, share: float = STEP_NEAR
+) -> Posterior:
+    """The posterior about ``beta`` (p,) in ``columns``, of which the first ``own`` are effects', by differences of a ``share`` of their typical sizes; with
+    ``near``, sensitivities to the others and to initial states are taken from there."""
     if near is None:
-        there = whitened(problem, [linearise(windows, beta, columns[:own], coarse=columns[own:]) for windows in problem.runs])
+        there = whitened(problem, [linearise(windows, beta, columns[:own], coarse=columns[own:], share=share) for windows in problem.runs])
     else:
-        mine = [linearise(windows, beta, columns[:own], starts=False) for windows in problem.runs]
+        mine = [linearise(windows, beta, columns[:own], starts=False, share=share) for windows in problem.runs]
         there = tuple(with_frozen_columns(one, other, columns[own:]) for one, other in zip(mine, near, strict=True))
     return _point(problem, beta, own, there)
 
@@ -170,7 +177,7 @@ def _point(problem: Problem, beta: Array, own: int, there: tuple[Whitened, ...])
     return Posterior(beta, columns, own, there, dynamic, data, tempering * prior.precision(columns), tempering, departure, side, still)
 
 
-def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...]) -> Posterior | None:
+def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...], differences: float) -> Posterior | None:
     """The next point of Levenberg's and Marquardt's iteration, by the first of `DAMPINGS`, and then of `STEP_SHARES` of the undamped step, that keeps what it
     promises (`STEP_KEPT`) or by the best of them; None where none gains more than `STEP_WORTH`."""
     best, before, gained = None, point.cost(), STEP_WORTH * problem.tempering
@@ -186,7 +193,7 @@ def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...]) -> P
             best, gained = beta, gain
             if gain > STEP_KEPT * promised:
                 break
-    return None if best is None else posterior_at(problem, best, point.columns, point.effect_count, near)
+    return None if best is None else posterior_at(problem, best, point.columns, point.effect_count, near, differences)
 
 
 def moved_within_bounds(problem: Problem, beta: Array, columns: Sequence[int], step: Array) -> Array:

@@ -25,7 +25,7 @@ from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, held_out_lin
 from rovval.diagnose.inference.map_fit import effects_alone, map_fit
 from rovval.diagnose.problem.cross_validation import Fold, make_folds
 from rovval.diagnose.problem.problem import Problem, corrected_of, corrected_residuals, gap_equations_at, pose, whitened
-from rovval.diagnose.residuals.perturbations import Columns
+from rovval.diagnose.residuals.perturbations import STEP_NEAR, Columns
 from rovval.diagnose.residuals.sensitivities import linearise
 
 T = TypeVar("T")
@@ -137,7 +137,7 @@ def worsened_axes(reduction: GapReduction) -> dict[str, float]:
 
 def held_out_residuals(problem: Problem, fitted: HypothesisFit) -> list[Array]:
     """Residual (m, n, c) of each run's windows with the parameters that the other folds give, best initial states taken out."""
-    about = [linearise(windows, fitted.beta, fitted.slots) for windows in problem.runs]
+    about = [linearise(windows, fitted.beta, fitted.slots, share=STEP_NEAR) for windows in problem.runs]
     return corrected_of(problem, held_out_linearisations(problem, fitted, about))
 
 

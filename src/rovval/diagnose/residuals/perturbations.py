@@ -15,7 +15,8 @@ from rovval.diagnose.residuals.nuisances import POSE_INDEX
 from rovval.diagnose.windows.windows import Windows
 from rovval.plant.sensors import moves_the_vehicle
 
-STEP = 0.25  # finite-difference step as a share of a parameter's typical size, of central differences, whose error goes with its square
+STEP = 0.25  # finite-difference step as a share of a parameter's typical size, of central differences, whose error goes with its square,
+STEP_NEAR = 0.02  # and where a fit has come near its optimum: towards a point nearby a pull turns within a tenth of its typical size
 STEP_ONE_SIDED = 0.05  # the same of one-sided ones, whose error goes with the step itself
 
 
@@ -65,10 +66,10 @@ class Perturbation:
 
 
 def perturbations(
-    windows: Windows, beta: Array, states: list[tuple[int, float]], columns: tuple[int, ...], directions: Sequence[DisplacedColumn]
+    windows: Windows, beta: Array, states: list[tuple[int, float]], columns: tuple[int, ...], directions: Sequence[DisplacedColumn], share: float = STEP
 ) -> list[Perturbation]:
     """The simulations of a linearisation about ``beta`` (k,): the point itself, the initial ``states`` (index, step), the parameters of ``columns`` (central
-    differences where bounds allow), the displaced columns ``directions``."""
+    differences where bounds allow, by a ``share`` of their typical size, of onsets by `STEP`), the displaced columns ``directions``."""
     still = np.zeros(6)
     lanes = [Perturbation(beta, still, still)]
     for i, (index, step) in enumerate(states):
@@ -76,7 +77,7 @@ def perturbations(
         unit[index if index < 6 else POSE_INDEX[index]] = step
         lanes.append(Perturbation(beta, unit if index < 6 else still, still if index < 6 else unit, state=i, step=step))
     for column in columns:
-        up, down = _steps(windows, beta, column, STEP)
+        up, down = _steps(windows, beta, column, STEP if windows.plant.slots[column].parameter.role == "onset" else share)
         lanes.append(Perturbation(_moved(beta, [(column, beta[column] + down)]), still, still) if down else lanes[0])
         lanes.append(Perturbation(_moved(beta, [(column, beta[column] + up)]), still, still, column=column, step=up - down, against=len(lanes) - 1))
     bases = dict.fromkeys(_unchanged(windows, beta, directions), 0)

@@ -13,7 +13,7 @@ from rovval.core.data import Array
 from rovval.core.large_arrays import columns_first
 from rovval.diagnose.residuals.normal_equations import Linearisation
 from rovval.diagnose.residuals.nuisances import drifting_channels, initial_states
-from rovval.diagnose.residuals.perturbations import DisplacedColumn, Perturbation, coarse_differences, perturbations
+from rovval.diagnose.residuals.perturbations import STEP, DisplacedColumn, Perturbation, coarse_differences, perturbations
 from rovval.diagnose.windows.attitude import tilted, tumbling
 from rovval.diagnose.windows.windows import Windows, channel_difference, predicted_channels
 
@@ -40,7 +40,7 @@ def simulate_windows(windows: Windows, beta: Array, nu0: Array, eta0: Array, whi
 
 def linearise(
     windows: Windows, beta: Array, columns: tuple[int, ...], directions: Sequence[DisplacedColumn] = (), coarse: tuple[int, ...] = (),
-    starts: bool = True,
+    starts: bool = True, share: float = STEP,
 ) -> Linearisation:  # fmt: skip
     """Residuals of every window and their sensitivities about ``beta`` (k,).
 
@@ -51,9 +51,10 @@ def linearise(
         directions: displaced columns, last.
         coarse: slots, behind ``columns``, by one-sided differences (`coarse_differences`).
         starts: whether sensitivities to the windows' initial states are taken.
+        share: of their typical size, by which ``columns`` are moved.
     """
     states, drifting, m = initial_states(windows) if starts else [], drifting_channels(windows), windows.count
-    lanes = perturbations(windows, beta, states, columns, directions)
+    lanes = perturbations(windows, beta, states, columns, directions, share)
     lanes += coarse_differences(windows, beta, coarse, len(lanes))
     ids = (*columns, *coarse, *(d.id for d in directions))
     shape = (m, windows.steps + 1, len(windows.channels))
