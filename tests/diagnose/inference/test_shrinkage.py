@@ -12,12 +12,16 @@ from rovval.diagnose.criteria import FORM_ALIKE, FURTHER_CAUSE
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.inference.gap import squared_errors
-from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, fit_hypothesis, held_out_linearisations
+from rovval.diagnose.inference.hypothesis_fit import (
+    HypothesisFit,
+    fit_hypothesis,
+    held_out_linearisations,
+    linearised_in_effects,
+)
 from rovval.diagnose.inference.shrinkage import GapReduction, form_error, shrinkage, worsened_axes
 from rovval.diagnose.problem.problem import Problem, corrected_residuals, pose
 from rovval.diagnose.residuals.normal_equations import normal_equations
 from rovval.diagnose.residuals.nuisances import initial_state_sd
-from rovval.diagnose.residuals.sensitivities import linearise
 from rovval.diagnose.windows.multiple_shooting import cut_run
 
 
@@ -32,8 +36,7 @@ def fitted(name: str, planted: str = "", *seeds: int) -> tuple[Problem, Hypothes
 @pytest.mark.parametrize("seeds", [(4,), (4, 5, 6)], ids=["fifths of one log", "one of three logs"])
 def test_windows_are_scored_as_the_total_scores_them(seeds):
     problem, found = fitted("inflow_loss", "inflow_loss:loss=0.25", *seeds)
-    about = [linearise(windows, found.beta, found.slots) for windows in problem.runs]
-    moved = held_out_linearisations(problem, found, about)
+    moved = held_out_linearisations(problem, found, linearised_in_effects(problem, found))
     loss = [normal_equations(one, p.ok, problem.gap.variance, initial_state_sd(p)).c for one, p in zip(moved, problem.runs, strict=True)]
     np.testing.assert_allclose(np.concatenate(loss), found.dynamics_loss, rtol=1e-9)
 

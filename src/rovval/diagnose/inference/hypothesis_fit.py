@@ -88,7 +88,7 @@ def _scored(problem: Problem, point: Posterior, slots: tuple[int, ...]) -> Hypot
 
 def _held_out(problem: Problem, fitted: HypothesisFit) -> HypothesisFit:
     """The fit with its held-out losses."""
-    linear = [linearise(windows, fitted.beta, fitted.slots, share=STEP_NEAR) for windows in problem.runs]
+    linear = linearised_in_effects(problem, fitted)
     dynamic, data = gap_equations_of(problem, fitted.beta, linear)
     own, loss, dynamic_loss = np.arange(len(fitted.slots)), data.c.copy(), dynamic.c.copy()
     for fold, step in held_out_steps(problem, fitted):
@@ -96,6 +96,11 @@ def _held_out(problem: Problem, fitted: HypothesisFit) -> HypothesisFit:
         dynamic_loss[fold.test] = losses(dynamic, own, step, fold.test)
     moved = held_out_linearisations(problem, fitted, linear)
     return replace(fitted, loss=loss, dynamics_loss=dynamic_loss, parts=errors_by_part(problem, corrected_of(problem, moved), fitted.beta))
+
+
+def linearised_in_effects(problem: Problem, fitted: HypothesisFit) -> list[Linearisation]:
+    """The linearisation of each run in the fitted slots about the fitted point, by small differences (`STEP_NEAR`)."""
+    return [linearise(windows, fitted.beta, fitted.slots, share=STEP_NEAR) for windows in problem.runs]
 
 
 def held_out_linearisations(problem: Problem, fitted: HypothesisFit, linear: Sequence[Linearisation]) -> list[Linearisation]:

@@ -21,12 +21,11 @@ from rovval.diagnose.criteria import FORM_ALIKE, FORM_LEAVES, FURTHER_CAUSE, MAT
 from rovval.diagnose.effort import MOST_REFITS
 from rovval.diagnose.inference.bootstrap import shrinkage_interval
 from rovval.diagnose.inference.gap import explainable_gap, floor_losses, squared_errors
-from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, held_out_linearisations
+from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, held_out_linearisations, linearised_in_effects
 from rovval.diagnose.inference.map_fit import effects_alone, map_fit
 from rovval.diagnose.problem.cross_validation import Fold, make_folds
 from rovval.diagnose.problem.problem import Problem, corrected_of, corrected_residuals, gap_equations_at, pose, whitened
-from rovval.diagnose.residuals.perturbations import STEP_NEAR, Columns
-from rovval.diagnose.residuals.sensitivities import linearise
+from rovval.diagnose.residuals.perturbations import Columns
 
 T = TypeVar("T")
 NOTHING_LEFT = 1e-3  # share of the gap: rounding of a ratio to what is left
@@ -137,8 +136,7 @@ def worsened_axes(reduction: GapReduction) -> dict[str, float]:
 
 def held_out_residuals(problem: Problem, fitted: HypothesisFit) -> list[Array]:
     """Residual (m, n, c) of each run's windows with the parameters that the other folds give, best initial states taken out."""
-    about = [linearise(windows, fitted.beta, fitted.slots, share=STEP_NEAR) for windows in problem.runs]
-    return corrected_of(problem, held_out_linearisations(problem, fitted, about))
+    return corrected_of(problem, held_out_linearisations(problem, fitted, linearised_in_effects(problem, fitted)))
 
 
 def _explainable(problem: Problem, loss: Array) -> float:
