@@ -49,7 +49,6 @@ def test_a_sea_of_many_waves_from_all_over_a_sector_is_found(tmp_path: Path):
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(strict=True, reason="its moment is right, with 356 N at 0.96 m for 250 N at 1.4 m: its downward part and the weight of the line cancel")
 def test_a_pull_may_begin_ahead_or_astern():
     p, library = posed()
     x, reach = slot(p, "tether_tension.x"), LEVER_SHARE * max(float(np.linalg.norm(t.position)) for t in merlin().thruster)
