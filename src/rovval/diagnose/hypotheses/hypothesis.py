@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rovval.diagnose.criteria import PRIOR_WIDTH
+from rovval.diagnose.problem.prior import wide_sd
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.perturbations import Columns, DisplacedColumn
 from rovval.diagnose.residuals.ridge import Prior
@@ -75,7 +76,7 @@ def columns_of(library: Sequence[Hypothesis]) -> Columns:
 
 def from_nothing(plant: Plant, name: str, label: str, slots: tuple[int, ...]) -> Hypothesis:
     """A hypothesis that begins at no effect, with all of its ``slots`` free."""
-    return Hypothesis(name, label, slots, slots, tuple(PRIOR_WIDTH * plant.slots[s].parameter.typical for s in slots))
+    return Hypothesis(name, label, slots, slots, tuple(wide_sd(plant, slots).values()))
 
 
 def displaced(plant: Plant, label: str, slots: tuple[int, ...], free: tuple[int, ...], at: tuple[tuple[int, float], ...], next_id: int) -> Hypothesis:
@@ -93,12 +94,7 @@ def at_full_size(plant: Plant, label: str, slots: tuple[int, ...], values: Mappi
     return displaced(plant, label, slots, (START_SCALE,), at, next_id)
 
 
-def wide_sd(problem: Problem, slots: Sequence[int]) -> dict[int, float]:
-    """Standard deviations of the wide prior of parameters that a hypothesis sets free, by slot."""
-    return {s: PRIOR_WIDTH * problem.plant.slots[s].parameter.typical for s in slots}
-
-
 def prior_of(problem: Problem, h: Hypothesis) -> Prior:
     """The wide prior of a hypothesis: of its columns, and of those of its parameters that have a tolerance, wherever it begins."""
-    within = wide_sd(problem, [s for s in h.slots if s in problem.tolerance.sd])
+    within = wide_sd(problem.plant, [s for s in h.slots if s in problem.tolerance.sd])
     return Prior(within | dict(zip(h.columns, h.sd, strict=True)))

@@ -7,14 +7,13 @@ offset of the thrusters' clock beside a delay, which does the same.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from rovval import effects
 from rovval.core.data import Array
-from rovval.diagnose.criteria import PRIOR_WIDTH
 from rovval.diagnose.effort import (
     DAMPINGS,
     MAP_STEPS,
@@ -26,6 +25,7 @@ from rovval.diagnose.effort import (
     STEP_WORTH,
 )
 from rovval.diagnose.inference.laplace import Posterior
+from rovval.diagnose.problem.prior import wide_sd
 from rovval.diagnose.problem.problem import Problem, equations_of, equations_with_frozen, whitened
 from rovval.diagnose.residuals.normal_equations import Whitened, with_frozen_columns
 from rovval.diagnose.residuals.perturbations import STEP, STEP_NEAR
@@ -168,7 +168,7 @@ def _point(problem: Problem, beta: Array, own: int, there: tuple[Whitened, ...])
     dynamic, data = equations_of(problem, beta, there)
     columns = data.columns
     parameters = [problem.plant.slots[s].parameter for s in columns]
-    prior = problem.tolerance.plus({s: PRIOR_WIDTH * p.typical for s, p in zip(columns[:own], parameters[:own], strict=True)})
+    prior = problem.tolerance.plus(wide_sd(problem.plant, columns[:own]))
     at = beta[list(columns)]
     side = np.array([float(x >= p.high) - float(x <= p.low) for x, p in zip(at, parameters, strict=True)])
     sensors = tangent_slots(problem.plant, columns[:own])
@@ -178,13 +178,11 @@ def _point(problem: Problem, beta: Array, own: int, there: tuple[Whitened, ...])
 
 
 def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...], differences: float) -> Posterior | None:
-    """The next point of Levenberg's and Marquardt's iteration, by the first of `DAMPINGS`, and then of `STEP_SHARES` of the undamped step, that keeps what it
-    promises (`STEP_KEPT`) or by the best of them; None where none gains more than `STEP_WORTH`."""
+    """The next point of Levenberg's and Marquardt's iteration, by the first of the trial steps that keeps what it promises (`STEP_KEPT`) or by the best of
+    them; None where none gains more than `STEP_WORTH`."""
     best, before, gained = None, point.cost(), STEP_WORTH * problem.tempering
-    for damping, share in (*((damping, 1.0) for damping in DAMPINGS), *((0.0, share) for share in STEP_SHARES)):
-        step, predicted = point.simulated_step(damping)
-        promised = share * (2.0 - share) * (before - predicted)
-        beta = moved_within_bounds(problem, point.beta, point.columns, share * step)
+    for step, promised in _trial_steps(point):
+        beta = moved_within_bounds(problem, point.beta, point.columns, step)
         data = equations_with_frozen(problem, beta, point.whitened)
         if data is None:
             continue
@@ -194,6 +192,17 @@ def _better(problem: Problem, point: Posterior, near: tuple[Whitened, ...], diff
             if gain > STEP_KEPT * promised:
                 break
     return None if best is None else posterior_at(problem, best, point.columns, point.effect_count, near, differences)
+
+
+def _trial_steps(point: Posterior) -> Iterator[tuple[Array, float]]:
+    """Steps (k,) that are tried in turn, by `DAMPINGS` and then by `STEP_SHARES` of the undamped one, each with the gain that the linearisation promises."""
+    before = point.cost()
+    for damping in DAMPINGS:
+        step, predicted = point.simulated_step(damping)
+        yield step, before - predicted
+    step, predicted = point.simulated_step()
+    for share in STEP_SHARES:
+        yield share * step, share * (2.0 - share) * (before - predicted)
 
 
 def moved_within_bounds(problem: Problem, beta: Array, columns: Sequence[int], step: Array) -> Array:

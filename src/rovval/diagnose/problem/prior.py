@@ -34,6 +34,11 @@ def tolerance_prior(plant: Plant, relative: float) -> Prior:
     return Prior(found | {slots[key]: sd for key, sd in known.items() if key in slots}, own, correlation[np.ix_(at, at)])
 
 
+def wide_sd(plant: Plant, slots: Sequence[int]) -> dict[int, float]:
+    """Standard deviations, by slot, of the wide prior (`PRIOR_WIDTH`) of parameters that an effect sets free."""
+    return {s: PRIOR_WIDTH * plant.slots[s].parameter.typical for s in slots}
+
+
 def prior_mean(parameter: Parameter, runs: Sequence[Windows], otherwise: float) -> float:
     """Mean of the prior of a parameter: of a depth what the logs say of it, the middle of where the vehicle was, or a bottom that lies as far below the
     deepest of it as the prior is wide (`PRIOR_WIDTH`); of all others what is there ``otherwise``."""

@@ -13,9 +13,10 @@ import numpy as np
 
 from rovval.core.channels import VELOCITIES
 from rovval.core.data import Array, ClockReport, Reason, Run
-from rovval.diagnose.criteria import BUSY_LEAST, BUSY_QUANTILE, PRIOR_WIDTH
+from rovval.diagnose.criteria import BUSY_LEAST, BUSY_QUANTILE
 from rovval.diagnose.decision.verdict import Decision
 from rovval.diagnose.problem.cross_validation import by_fold, cross_validate, make_folds
+from rovval.diagnose.problem.prior import wide_sd
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.normal_equations import normal_equations
 from rovval.diagnose.residuals.nuisances import initial_state_sd
@@ -103,7 +104,7 @@ def _misfit(problem: Problem, beta: Array, members: tuple[str, ...], manoeuvre: 
     data = normal_equations(linearise(stretches, base, columns), stretches.ok, variance, initial_state_sd(stretches))
     ring = by_fold(data, make_folds(np.zeros(len(data.c), dtype=int)))
     left = [
-        cross_validate(ring, Prior({s: PRIOR_WIDTH * plant.slots[s].parameter.typical for s in slots}), problem.design_effect).loss
+        cross_validate(ring, Prior(wide_sd(plant, slots)), problem.design_effect).loss
         for name, slots in free.items()
     ]
     return (min(left[1:]) - left[0]) / (problem.design_effect * len(data.c))

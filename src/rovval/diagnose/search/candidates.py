@@ -23,10 +23,11 @@ from rovval.diagnose.effort import (
     STARTS_TRIED,
     TANGENT_KEPT,
 )
-from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of, wide_sd
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, fit_hypothesis, fit_quickly
 from rovval.diagnose.inference.laplace import Posterior
 from rovval.diagnose.inference.map_fit import progressive_start, tangent_slots
+from rovval.diagnose.problem.prior import wide_sd
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.coherence import coherence
 from rovval.diagnose.residuals.normal_equations import NormalEquations
@@ -56,7 +57,7 @@ def candidates(
     base = baseline.posterior
     ordered = sorted(library, key=lambda h: (not h.evident, -promised[h.label]))
     share = SCREENED_EVIDENCE * max(0.0, *(promised[h.label] for h in library))
-    prior = problem.tolerance.plus(wide_sd(problem, chosen))
+    prior = problem.tolerance.plus(wide_sd(problem.plant, chosen))
     fits: Fits = {}
 
     def steps(h: Hypothesis) -> Array:

@@ -16,8 +16,9 @@ import numpy as np
 
 from rovval.core.data import Array
 from rovval.diagnose.effort import MOST_RELATIVES, NEGLIGIBLE
-from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of, wide_sd
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, fit_hypothesis, fit_quickly
+from rovval.diagnose.problem.prior import wide_sd
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.residuals.ridge import ridge_step
@@ -61,7 +62,7 @@ def with_relatives(
         gone = [s for s in cause.slots if s not in kept]
         start, without = fit.posterior.beta.copy(), _taken_out(problem, data, fit.posterior.beta, gone)
         start[gone] = problem.origin[gone]
-        promised, beside = screened(problem, without, others, kept), problem.tolerance.plus(wide_sd(problem, kept))
+        promised, beside = screened(problem, without, others, kept), problem.tolerance.plus(wide_sd(problem.plant, kept))
         nearest = dict[str, Hypothesis]()
         for h in sorted(others, key=lambda h: -promised[h.label]):
             nearest.setdefault(h.name, h)

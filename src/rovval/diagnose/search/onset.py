@@ -18,11 +18,12 @@ from rovval.core.data import Array, Flags
 from rovval.core.large_arrays import zeros
 from rovval.diagnose.criteria import FEW_WINDOWS, LEAST_WINDOWS
 from rovval.diagnose.effort import NEGLIGIBLE, ONSETS_TRIED
-from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of, wide_sd
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis, prior_of
 from rovval.diagnose.inference.gap import parity_errors, weighted_errors
 from rovval.diagnose.inference.hypothesis_fit import HypothesisFit, only_places
 from rovval.diagnose.inference.laplace import Posterior, promised_evidence
 from rovval.diagnose.inference.map_fit import moved_within_bounds, posterior_at
+from rovval.diagnose.problem.prior import wide_sd
 from rovval.diagnose.problem.problem import Problem, corrected_of, corrected_residuals, equations_with_frozen, gap_equations_of
 from rovval.diagnose.residuals.normal_equations import NormalEquations, Whitened
 from rovval.diagnose.residuals.ridge import Prior, eliminated, free_columns
@@ -238,7 +239,7 @@ class _Switch:
 def _precision(problem: Problem, own: tuple[int, ...], others: tuple[int, ...], taken: tuple[int, ...]) -> Array:
     """Precision, times the tempering, of the prior of the causes' parameters (slots ``own``), of ``others``, and of those of the former that have a tolerance
     (``taken``, positions) before the causes are at work: in each of these a cause adds to what tolerance has it off by all through the log."""
-    k, wide = len(own), np.array(list(wide_sd(problem, own).values()))
+    k, wide = len(own), np.array(list(wide_sd(problem.plant, own).values()))
     within = [*(own[i] for i in taken), *others]
     sums = block_diag(np.eye(k), np.roll(np.eye(len(within)), -len(taken), axis=0))
     sums[list(taken), k + np.arange(len(taken))] = 1.0

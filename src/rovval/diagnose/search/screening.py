@@ -9,8 +9,9 @@ import numpy as np
 
 from rovval.core.data import Array
 from rovval.diagnose.effort import SCREENED_WITHIN
-from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of, prior_of, wide_sd
+from rovval.diagnose.hypotheses.hypothesis import Hypothesis, columns_of, prior_of
 from rovval.diagnose.inference.laplace import Posterior
+from rovval.diagnose.problem.prior import wide_sd
 from rovval.diagnose.problem.problem import Problem, equations_at
 from rovval.diagnose.residuals.normal_equations import NormalEquations
 from rovval.diagnose.residuals.ridge import Prior, free_columns
@@ -48,7 +49,7 @@ def screened(problem: Problem, data: NormalEquations, library: Iterable[Hypothes
 
     A column that no window shows anything of adds nothing, to the last bit: its rounding must not decide.
     """
-    base = problem.tolerance.plus(wide_sd(problem, chosen))
+    base = problem.tolerance.plus(wide_sd(problem.plant, chosen))
     A, b = data.A.sum(axis=0), data.b.sum(axis=0)
     shown = {column for column, information in zip(data.columns, np.diag(A), strict=True) if information > 0.0}
     ground = _evidence(data, A, b, base, problem.tempering)
