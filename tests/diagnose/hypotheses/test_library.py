@@ -100,3 +100,12 @@ def test_a_sea_begins_at_as_many_trains_as_the_log_shows():
         assert dict(sea.at).items() >= dict(single.at).items()
         assert [dict(sea.at)[index[f"waves.{p}"]] for p in ("period", "period_2", "period_3")] == [9.0, 10.0, 8.0]
     assert {len(h.slots) for h in hypotheses(parts, hints=Hints({None: (9.0,)}))[0] if h.name == "waves"} == {4}
+
+
+def test_a_tether_s_drag_and_its_pull_are_one_cause():
+    """And nothing else of the library is one with another."""
+    parts, _ = cut([own((), 5, 120.0)], merlin(), "fossen", 10.0)
+    library, _ = hypotheses(parts)
+    one = {(a.name, b.name) for a in library for b in library if a.is_one_with(b) and a.name != b.name}
+    assert one == {("tether_drag", "tether_tension"), ("tether_tension", "tether_drag")}
+    assert all(h.is_one_with(h) for h in library)

@@ -34,6 +34,7 @@ def test_what_an_effect_includes_is_searched_for_from_its_fit():
     healthy, tether = healthy_fit(problem), [h for h in library if h.name in ("tether_drag", "tether_tension")]
     begun = [h for h in initialised(problem, tether, healthy) if h.name == "tether_drag" or h.label == "tether_tension@lever0"]
     worth = {m.names: m.log_posterior for m in search(problem, tether, begun, healthy, lambda text, share: None).models}
+    assert not any(len(names) > 1 for names in worth)  # both at once would be one tether twice
     assert worth[frozenset({"tether_tension"})] > worth[frozenset({"tether_drag"})] - 5.0
 
 

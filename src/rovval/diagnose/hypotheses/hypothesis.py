@@ -56,6 +56,10 @@ class Hypothesis:
         """The same without brackets: ``HFP``."""
         return self.of.strip("[]")
 
+    def is_one_with(self, other: Hypothesis) -> bool:
+        """Whether both are one cause: the same one, or one is what the other is where its own size is nothing (`Effect.includes`)."""
+        return self.of == other.of and (self.name == other.name or other.effect.name == self.effect.includes or self.effect.name == other.effect.includes)
+
     @property
     def axes(self) -> tuple[str, ...]:
         """The axes that it belongs to: one, or those of a group; none for what is of no axis."""

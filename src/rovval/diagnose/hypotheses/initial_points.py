@@ -116,10 +116,10 @@ def _placed(target: Target, windows: Sequence[Windows]) -> dict[int, float]:
 def _from_no_effect(target: Target, placed: Mapping[int, float]) -> list[Hypothesis]:
     """All parameters from no effect; where some only refine the others, these without them first, and not with them where each of them is tried
     alone: an axis on which nothing moves would fit whatever is left."""
-    plain = tuple(s for s in target.slots if target.parameter(s).name not in target.effect.refines)
-    sets = {target.name: plain} | ({f"{target.name}@fine": target.slots} if len(plain) < len(target.slots) and not target.effect.separable else {})
-    free = {label: tuple(s for s in slots if s not in placed) for label, slots in sets.items()}
-    return [replace(from_nothing(target.plant, target.name, label, free[label]), slots=slots) for label, slots in sets.items()]
+    sets = {kind: slots for kind, slots in _plain_and_fine(target).items() if not (kind and target.effect.separable)}
+    free = {kind: tuple(s for s in slots if s not in placed) for kind, slots in sets.items()}
+    labels = {kind: f"{target.name}@{kind}" if kind else target.name for kind in sets}
+    return [replace(from_nothing(target.plant, target.name, labels[kind], free[kind]), slots=slots) for kind, slots in sets.items()]
 
 
 def _one_at_a_time(target: Target) -> list[Hypothesis]:
@@ -143,14 +143,24 @@ def _away_from_no_effect(target: Target, next_id: int) -> list[Hypothesis]:
 
 def _with_levers(target: Target, placed: Mapping[int, float], next_id: int) -> list[Hypothesis]:
     """Initial points with the force well away from the origin, ahead and astern by `LEVER_SHARE` of the thrusters' reach: a force that is not there
-    yet has no moment, wherever it would act; once it is there its other levers have a slope."""
-    levers = [s for s in target.slots if target.parameter(s).role == "lever"]
-    if not levers:
+    yet has no moment, wherever it would act; once it is there its other levers have a slope. Without the parameters that only refine the others, and with
+    them: what a log shows of where a force acts it may show of nothing else."""
+    lever = next((s for s in target.slots if target.parameter(s).role == "lever"), None)
+    if lever is None:
         return []
-    free, p = tuple(s for s in target.slots if s not in levers and s not in placed), target.parameter(levers[0])
-    reach = LEVER_SHARE * target.plant.vehicle.longest_arm
-    ends = [((levers[0], float(np.clip(x, p.low, p.high))), *placed.items()) for x in (-reach, reach)]
-    return [displaced(target.plant, f"{target.name}@lever{i}", target.slots, free, at, next_id + i * len(free)) for i, at in enumerate(ends)]
+    p, reach, found = target.parameter(lever), LEVER_SHARE * target.plant.vehicle.longest_arm, list[Hypothesis]()
+    for kind, slots in _plain_and_fine(target).items():
+        free = tuple(s for s in slots if target.parameter(s).role != "lever" and s not in placed)
+        for i, x in enumerate((-reach, reach)):
+            at = ((lever, float(np.clip(x, p.low, p.high))), *((s, value) for s, value in placed.items() if s in slots))
+            found.append(displaced(target.plant, f"{target.name}@{kind}lever{i}", slots, free, at, next_id + len(columns_of(found).displaced)))
+    return found
+
+
+def _plain_and_fine(target: Target) -> dict[str, tuple[int, ...]]:
+    """The slots without the parameters that only refine the others, and all of them, by the label of each; all of them, where none only refines."""
+    plain = tuple(s for s in target.slots if target.parameter(s).name not in target.effect.refines)
+    return {"": plain} | ({"fine": target.slots} if len(plain) < len(target.slots) else {})
 
 
 def _depths(datum: effects.Parameter, windows: Sequence[Windows]) -> tuple[float, ...]:

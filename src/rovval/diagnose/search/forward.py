@@ -162,7 +162,7 @@ def _extended(over: _Space, front: Model, least: float, near: NormalEquations | 
     problem, chosen = over.problem, front.fit.slots if front.fit else ()
     baseline = baseline_of(front.fit) if front.fit else healthy_baseline(problem, over.healthy)
     data = linearised(problem, over.library, baseline.posterior, near)
-    open_now = [h for h in over.library if h.name not in front.names]
+    open_now = [h for h in over.library if not any(h.is_one_with(cause) for cause in front.causes)]
     promised = screened(problem, data, open_now, chosen)
     onset = None if front.fit else suspected_onset(problem, data, open_now)
     needed = {h.label: 2.0 * (least - over.prior.log_mass((*front.causes, h))) - baseline.evidence for h in open_now}

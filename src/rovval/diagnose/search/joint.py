@@ -65,7 +65,8 @@ def with_relatives(
         promised, beside = screened(problem, without, others, kept), problem.tolerance.plus(wide_sd(problem.plant, kept))
         nearest = dict[str, Hypothesis]()
         for h in sorted(others, key=lambda h: -promised[h.label]):
-            nearest.setdefault(h.name, h)
+            if not any(h.is_one_with(one) for one in rest):
+                nearest.setdefault(h.name, h)
         for h in list(nearest.values())[:MOST_RELATIVES]:
             if (names := frozenset({h.name, *(one.name for one in rest)})) not in known:
                 slots = tuple(dict.fromkeys((*kept, *h.slots)))
