@@ -48,7 +48,8 @@ EFFECT = Effect(
             role="bottom", needs="z", instead_of="altitude",
         ),
     ),
-    signature="a vertical force that is there below a metre or two of altitude only, be it at rest or with the speed over the bottom",
+    signature="a vertical force that is there below a metre or two of altitude only, be it at rest or with the speed over the bottom; as large as "
+    "what the thrusters push with, within a decimetre or two, it is the bottom itself, which the vehicle touches",
     confused_with=("buoyancy_error", "current_shear", "density_gradient"),
     separates="steps of altitude over the same spot",
     literature=(
