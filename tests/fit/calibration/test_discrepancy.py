@@ -36,7 +36,7 @@ def test_sizes_of_each_group_are_found_with_the_scatter_of_a_sample():
     for _ in range(3):
         seen = true[group] * rng.normal(size=80) + 0.3 * rng.normal(size=80)
         runs.append((np.eye(80) / 0.3**2, seen / 0.3**2, group))
-    assert np.sqrt(variances(runs, np.ones(2), 0.0)) == pytest.approx(true, rel=3.0 / np.sqrt(2 * 120))
+    assert np.sqrt(variances(runs, np.ones(2))) == pytest.approx(true, rel=3.0 / np.sqrt(2 * 120))
 
 
 @pytest.mark.slow

@@ -80,7 +80,7 @@ def initial_points(target: Target, windows: Sequence[Windows], hints: Hints, nex
         pulls = from_pulls(plant, name, slots, hints.springs, depth, after) if effect.held and depth is not None else []
         towed = [from_line(plant, name, slots, hints.line, depth, after)] if effect.towed and hints.line and depth is not None else []
         return [*plain, *far, *levers, *pulls, *towed]
-    free = tuple(s for s in slots if s not in grids and s not in placed and target.parameter(s).name not in effect.refines) or (START_SCALE,)
+    free = tuple(s for s in _plain_and_fine(target)[""] if s not in grids and s not in placed) or (START_SCALE,)
     points = [dict(zip(grids, point, strict=True)) for point in product(*grids.values())]
     most = WHOLE_STARTS if free == (START_SCALE,) else MOST_STARTS
     chosen = points if len(points) <= most else [points[i] for i in np.linspace(0, len(points) - 1, most).astype(int)]
@@ -97,7 +97,7 @@ def _begun(target: Target, label: str, free: tuple[int, ...], at: Mapping[int, f
     trains = [s for s in target.slots if target.parameter(s).role == "further period"]
     lines = hints.periods.get(at.get(by_role.get("direction", -1)), ()) if {"period", "direction"} <= set(by_role) else ()
     first = {**at, **({by_role["period"]: lines[0]} if lines else {})}
-    alone = tuple(s for s in target.slots if not trains or target.parameter(s).name not in target.effect.refines)
+    alone = _plain_and_fine(target)[""] if trains else target.slots
     found = [displaced(target.plant, label, alone, free, tuple(first.items()), next_id)]
     if further := dict(zip(trains, lines[1:], strict=False)):
         refined = [s for s in target.slots if s not in alone]  # train by train
@@ -116,10 +116,12 @@ def _placed(target: Target, windows: Sequence[Windows]) -> dict[int, float]:
 def _from_no_effect(target: Target, placed: Mapping[int, float]) -> list[Hypothesis]:
     """All parameters from no effect; where some only refine the others, these without them first, and not with them where each of them is tried
     alone: an axis on which nothing moves would fit whatever is left."""
-    sets = {kind: slots for kind, slots in _plain_and_fine(target).items() if not (kind and target.effect.separable)}
-    free = {kind: tuple(s for s in slots if s not in placed) for kind, slots in sets.items()}
-    labels = {kind: f"{target.name}@{kind}" if kind else target.name for kind in sets}
-    return [replace(from_nothing(target.plant, target.name, labels[kind], free[kind]), slots=slots) for kind, slots in sets.items()]
+    found = list[Hypothesis]()
+    for kind, slots in _plain_and_fine(target).items():
+        if not (kind and target.effect.separable):
+            label, free = f"{target.name}@{kind}" if kind else target.name, tuple(s for s in slots if s not in placed)
+            found.append(replace(from_nothing(target.plant, target.name, label, free), slots=slots))
+    return found
 
 
 def _one_at_a_time(target: Target) -> list[Hypothesis]:

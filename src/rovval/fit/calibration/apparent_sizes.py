@@ -2,8 +2,9 @@
 
 What the equations of a vehicle are off by resembles effects of the library, more or less of each, on every log of the vehicle: a thruster seems to be a little
 weak, a drag a little larger. Each run, predicted by the calibration of the others, asks for a size of every parameter, beside numbers within their tolerances.
-The sizes that a parameter seems to have are normal about none, of greatest likelihood (linear mixed model; Laird and Ware 1982); one degree of freedom of
-their variance is that of other vehicles, on which it is as large as is typical of the effect.
+The sizes that a parameter seems to have are normal about none. Few runs say little of their variance, but all parameters together say how large such variances
+are on this vehicle, in squares of what is typical of each effect: one degree of freedom of every variance is theirs (empirical Bayes: Smyth 2004). So a
+steady force that none of the runs showed is new from a small size on, where runs of the same vehicle leave little of anything.
 """
 
 from __future__ import annotations
@@ -12,14 +13,18 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy import special, stats
 
 from rovval.core.data import Array, Run
 from rovval.diagnose.hypotheses.hypothesis import columns_of
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.ridge import eliminated
-from rovval.fit.calibration.random_effects import posed, variances
+from rovval.fit.calibration.random_effects import posed
 from rovval.vehicle.model import Vehicle
+
+VARIANCES = np.geomspace(1e-8, 1e8, 801)  # squares of typical sizes, over which is integrated: from what no log shows to what no vehicle has
+LEAST = 1e-4  # of a typical size squared: a hundredth of it is as good as none
 
 
 class _Asked(NamedTuple):
@@ -38,9 +43,34 @@ def apparent_sizes(runs: Sequence[Run], vehicles: Sequence[Vehicle], model: str,
     if not first:
         return {}
     none, typical = _Asked(0.0, 0.0, 0.0), np.array([one.typical for one in first.values()])
-    rows = [[asked.get(key, none) for key in first] for asked in each]
-    data = [(np.diag([one.curvature for one in row]), np.array([one.slope for one in row]), np.arange(len(row))) for row in rows]
-    return dict(zip(first, np.sqrt(variances(data, typical**2, 1.0)).tolist(), strict=True))
+    rows = np.array([[asked.get(key, none)[:2] for key in first] for asked in each])
+    variance = variances(rows[..., 0] * typical**2, rows[..., 1] * typical)
+    return dict(zip(first, (typical * np.sqrt(variance)).tolist(), strict=True))
+
+
+def variances(curvature: Array, slope: Array) -> Array:
+    """Variances (k,) of the sizes of k parameters, about which that of a vehicle is scaled inverse chi-squared, with a degree of freedom for each run and one
+    more: of the same median as the posterior. A new size is Student's t.
+
+    Their prior is scaled inverse chi-squared of one degree of freedom, about the variance of greatest marginal likelihood for all of them (Smyth 2004,
+    section 6), one by numerical integration as sizes are known with an error each. A single run, which is predicted by a calibration on itself, says nothing of
+    the next: about one.
+
+    Args:
+        curvature, slope: of the log likelihood of the size of each parameter in each run (n, k), in typical sizes; 0 where the run does not show it.
+    """
+    total = curvature[..., None] * VARIANCES + 1.0
+    likelihood = 0.5 * (slope[..., None] ** 2 * VARIANCES / total - np.log(total)).sum(axis=0)  # of a variance; sizes integrated out
+    scales = VARIANCES[(VARIANCES > LEAST) & (VARIANCES <= 1.0)] if len(slope) > 1 else np.ones(1)
+    best = max(scales, key=lambda scale: float(special.logsumexp(likelihood + _log_prior(scale), axis=1).sum()))
+    posterior = special.softmax(likelihood + _log_prior(best), axis=1)
+    median = np.array([np.exp(np.interp(0.5, np.cumsum(one) - 0.5 * one, np.log(VARIANCES))) for one in posterior])
+    return np.asarray(median * stats.chi2.median(1 + len(slope)) / (1 + len(slope)))
+
+
+def _log_prior(scale: float) -> Array:
+    """Log density of the logarithm of `VARIANCES`, but for a constant: scaled inverse chi-squared of one degree of freedom."""
+    return np.asarray(0.5 * (np.log(scale / VARIANCES) - scale / VARIANCES))
 
 
 def _asked(run: Run, vehicle: Vehicle, model: str, window_s: float) -> dict[str, _Asked]:

@@ -36,7 +36,7 @@ def discrepancy(runs: Sequence[Run], vehicles: Sequence[Vehicle], model: str, wi
     start = np.tile(np.mean([FIRST * wrench for *_, wrench in asked], axis=0) ** 2, 2)
     known = np.unique(np.concatenate([kind for *_, kind, _ in asked]))
     each = [(curvature, slope, np.searchsorted(known, kind)) for curvature, slope, kind, _ in asked]
-    sd = np.sqrt(variances(each, start[known], 0.0))
+    sd = np.sqrt(variances(each, start[known]))
     kinds = [kind_of_force(axis, damping) for damping in (False, True) for axis in AXES]
     return {kinds[i]: float(x) for i, x in zip(known, sd, strict=True)}
 

@@ -116,12 +116,12 @@ def covariance(runs: Sequence[tuple[Array, Array]]) -> Array:
     return np.asarray(0.5 * (found + found.T))
 
 
-def variances(runs: Sequence[tuple[Array, Array, NDArray[np.int64]]], start: Array, freedom: float) -> Array:
-    """Variances (g,) of groups of random effects, by expectation and maximisation (Laird and Ware 1982, 3.2) from ``start`` (g,), which has ``freedom`` degrees
-    of freedom. Each run has the curvature (k, k) and the slope (k,) of its log likelihood in its effects, and the group of each of these (k,)."""
-    variance, count = start, freedom + sum(np.bincount(group, minlength=len(start)) for *_, group in runs)
+def variances(runs: Sequence[tuple[Array, Array, NDArray[np.int64]]], start: Array) -> Array:
+    """Variances (g,) of groups of random effects, by expectation and maximisation (Laird and Ware 1982, 3.2) from ``start`` (g,). Each run has the curvature
+    (k, k) and the slope (k,) of its log likelihood in its effects, and the group of each of these (k,)."""
+    variance, count = start, sum(np.bincount(group, minlength=len(start)) for *_, group in runs)
     for _ in range(ROUNDS):
-        squares = freedom * start
+        squares = np.zeros(len(start))
         for curvature, slope, group in runs:
             covariance = np.linalg.inv(curvature + np.diag(1.0 / variance[group]))
             squares = squares + np.bincount(group, (covariance @ slope) ** 2 + np.diag(covariance), minlength=len(start))
