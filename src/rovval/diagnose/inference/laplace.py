@@ -10,6 +10,7 @@ from scipy.optimize import nnls
 
 from rovval.core.data import Array
 from rovval.diagnose.criteria import PRIOR_FREEDOM, PRIOR_WIDTH
+from rovval.diagnose.problem.prior import wide_sd
 from rovval.diagnose.problem.problem import Problem
 from rovval.diagnose.residuals.normal_equations import Linearisation, NormalEquations, Whitened
 from rovval.diagnose.residuals.ridge import losses
@@ -191,8 +192,9 @@ def heavy_tails(problem: Problem, point: Posterior) -> float:
     """Twice the log of the mean ratio, over the posterior of what each of the effects' sized parameters is off by beyond its tolerance, of the prior in which
     effects are compared (Student's t, `PRIOR_FREEDOM`) to the wide normal one in which they are fitted (`PRIOR_WIDTH`): what the evidence gains by the other
     prior."""
-    parameters = [problem.plant.slots[s].parameter for s in point.columns[: point.effect_count]]
-    size, sd = point.effect_beyond_tolerance(PRIOR_WIDTH * np.array([p.typical for p in parameters]))
+    own = point.columns[: point.effect_count]
+    parameters, wide = [problem.plant.slots[s].parameter for s in own], wide_sd(problem.plant, own)
+    size, sd = point.effect_beyond_tolerance(np.array([wide[s] for s in own]))
     total, z = 0.0, np.linspace(-6.0, 6.0, 241)  # standard deviations of the posterior: finer than any feature of the ratio
     for i, p in ((i, p) for i, p in enumerate(parameters) if not p.places):
         at = (size[i] + sd[i] * z) / p.typical

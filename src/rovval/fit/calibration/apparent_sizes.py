@@ -53,8 +53,8 @@ def variances(curvature: Array, slope: Array) -> Array:
     more: of the same median as the posterior. A new size is Student's t.
 
     Their prior is scaled inverse chi-squared of one degree of freedom, about the variance of greatest marginal likelihood for all of them (Smyth 2004,
-    section 6), one by numerical integration as sizes are known with an error each. A single run, which is predicted by a calibration on itself, says nothing of
-    the next: about one.
+    section 6), which is integrated numerically, since sizes are known with an error each. A single run, which is predicted by a calibration on itself, says
+    nothing of the next: there the prior is about one.
 
     Args:
         curvature, slope: of the log likelihood of the size of each parameter in each run (n, k), in typical sizes; 0 where the run does not show it.
