@@ -1,6 +1,7 @@
 """Vehicles in another simulator, calibrated on three of its logs: what is then wrong with them is named, and nobody is blamed where nothing is.
 
-Vehicles of an earlier form of this plant, with other thrust, were looked at while the engine was made, and so were seeds 2 to 6 of this one; these were not.
+Vehicles of an earlier form of this plant, with other thrust, were looked at while the engine was made, and so were seeds 2 to 6 of this one. These
+were not at first; since then they have been asked again after changes, and are development.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ from diagnose_case import merlin, own
 from scipy import stats
 
 from rovval import effects
-from rovval.fit.calibration.apparent_sizes import apparent_sizes, variances
+from rovval.fit.calibration.apparent_sizes import apparent_sizes, pooled_variances
 from rovval.simulation.fitted_tolerances import fitted_sizes, with_sizes
 from rovval.vehicle import parse
 from rovval.vehicle.write import to_toml
@@ -39,7 +39,7 @@ def test_what_a_new_run_has_is_as_far_out_as_is_said():
     rng, k, error = np.random.default_rng(2), 4000, 0.02
     true = 0.1 / np.sqrt(rng.chisquare(1.0, k))
     seen = rng.normal(size=(3, k)) * true + rng.normal(size=(3, k)) * error
-    sd = np.sqrt(variances(np.full((3, k), error**-2), seen / error**2))
+    sd = np.sqrt(pooled_variances(np.full((3, k), error**-2), seen / error**2))
     new = np.abs(rng.normal(size=k) * true / sd)
     for beyond in (0.5, 0.2, 0.1, 0.05):
         assert np.mean(new > stats.t.isf(beyond / 2.0, 4.0)) == pytest.approx(beyond, rel=0.15)
@@ -51,14 +51,15 @@ def test_a_parameter_that_no_run_shows_is_as_large_as_the_others_are(scale: floa
     seen = rng.normal(size=(2, 200)) * scale / np.sqrt(rng.chisquare(1.0, 200)) + rng.normal(size=(2, 200)) * error
     curvature = np.full((2, 200), error**-2)
     curvature[:, 0] = 0.0
-    assert np.sqrt(variances(curvature, seen * curvature)[0]) == pytest.approx(scale * np.sqrt(stats.chi2.median(3) / 3 / stats.chi2.median(1)), rel=0.25)
+    sd = np.sqrt(pooled_variances(curvature, seen * curvature))
+    assert sd[0] == pytest.approx(scale * np.sqrt(stats.chi2.median(3) / 3 / stats.chi2.median(1)), rel=0.25)
 
 
 def test_one_run_says_nothing_of_the_next():
     """However little it shows: a parameter that it does not show is as large as is typical, but for the prior's form."""
     curvature = np.full((1, 50), 1e4)
     curvature[0, 0] = 0.0
-    assert np.sqrt(variances(curvature, np.zeros((1, 50)))[0]) == pytest.approx(np.sqrt(stats.chi2.median(2) / 2 / stats.chi2.median(1)), rel=0.01)
+    assert np.sqrt(pooled_variances(curvature, np.zeros((1, 50)))[0]) == pytest.approx(np.sqrt(stats.chi2.median(2) / 2 / stats.chi2.median(1)), rel=0.01)
 
 
 def test_a_number_that_has_a_tolerance_is_asked_beside_the_others_and_not_beside_itself():

@@ -6,7 +6,7 @@ runs of the calibration differ among themselves; where something came it is 1 + 
 
 A cause that came since then is larger, too, than it seemed to be in the runs of the calibration (`fit.calibration.apparent_sizes`): what a vehicle is off by
 resembles one thruster that is a little weak on every log, and not one that is dead. Where nothing came the size is Student's t about none, with a degree of
-freedom for each run and one for other vehicles; where something came it is larger than that, and its square as many times as the gap.
+freedom for each run and one for all parameters together; where something came it is larger than that, and its square as many times as the gap.
 """
 
 from __future__ import annotations

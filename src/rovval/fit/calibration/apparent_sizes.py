@@ -24,7 +24,7 @@ from rovval.fit.calibration.random_effects import posed
 from rovval.vehicle.model import Vehicle
 
 VARIANCES = np.geomspace(1e-8, 1e8, 801)  # squares of typical sizes, over which is integrated: from what no log shows to what no vehicle has
-LEAST = 1e-4  # of a typical size squared: a hundredth of it is as good as none
+MOSTLY = 0.01, 1.0  # typical sizes between which those of a vehicle mostly are (chosen): less is as good as none, and more no error of form
 
 
 class _Asked(NamedTuple):
@@ -44,24 +44,24 @@ def apparent_sizes(runs: Sequence[Run], vehicles: Sequence[Vehicle], model: str,
         return {}
     none, typical = _Asked(0.0, 0.0, 0.0), np.array([one.typical for one in first.values()])
     rows = np.array([[asked.get(key, none)[:2] for key in first] for asked in each])
-    variance = variances(rows[..., 0] * typical**2, rows[..., 1] * typical)
+    variance = pooled_variances(rows[..., 0] * typical**2, rows[..., 1] * typical)
     return dict(zip(first, (typical * np.sqrt(variance)).tolist(), strict=True))
 
 
-def variances(curvature: Array, slope: Array) -> Array:
-    """Variances (k,) of the sizes of k parameters, about which that of a vehicle is scaled inverse chi-squared, with a degree of freedom for each run and one
-    more: of the same median as the posterior. A new size is Student's t.
+def pooled_variances(curvature: Array, slope: Array) -> Array:
+    """Variances (k,) of the sizes of k parameters: scales of inverse chi-squared distributions that have the median of the posterior of each, with a degree of
+    freedom for each run and one more. The size in a new run, over its standard deviation, is Student's t.
 
-    Their prior is scaled inverse chi-squared of one degree of freedom, about the variance of greatest marginal likelihood for all of them (Smyth 2004,
-    section 6), which is integrated numerically, since sizes are known with an error each. A single run, which is predicted by a calibration on itself, says
-    nothing of the next: there the prior is about one.
+    Their prior is scaled inverse chi-squared of one degree of freedom, about the variance (`MOSTLY`) of greatest marginal likelihood for all of them (Smyth
+    2004, section 6), which is integrated numerically, since sizes are known with an error each. A single run, which is predicted by a calibration on itself,
+    says nothing of the next: there the prior is about what is typical.
 
     Args:
         curvature, slope: of the log likelihood of the size of each parameter in each run (n, k), in typical sizes; 0 where the run does not show it.
     """
     total = curvature[..., None] * VARIANCES + 1.0
     likelihood = 0.5 * (slope[..., None] ** 2 * VARIANCES / total - np.log(total)).sum(axis=0)  # of a variance; sizes integrated out
-    scales = VARIANCES[(VARIANCES > LEAST) & (VARIANCES <= 1.0)] if len(slope) > 1 else np.ones(1)
+    scales = VARIANCES[slice(*np.searchsorted(VARIANCES, np.square(MOSTLY), side="right"))] if len(slope) > 1 else np.ones(1)
     best = max(scales, key=lambda scale: float(special.logsumexp(likelihood + _log_prior(scale), axis=1).sum()))
     posterior = special.softmax(likelihood + _log_prior(best), axis=1)
     median = np.array([np.exp(np.interp(0.5, np.cumsum(one) - 0.5 * one, np.log(VARIANCES))) for one in posterior])
