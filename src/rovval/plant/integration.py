@@ -14,7 +14,7 @@ from rovval.plant import geometry
 from rovval.plant.codegen import cache
 from rovval.plant.codegen.spec import Spec, W
 from rovval.plant.inputs import Inputs, Prepared
-from rovval.plant.lowering import Lowered, mass_numbers, pack, steps_before_nothing, with_payload
+from rovval.plant.lowering import Lowered, mass_numbers, nothing_left, pack, steps_before_nothing, with_payload
 from rovval.plant.platforms import Engine
 from rovval.vehicle.model import Vehicle, as_matrix
 
@@ -40,6 +40,25 @@ class Starts:
         return Starts(self.sample[part], self.nu[part], self.eta[part], self.which[part], self.gain[part], self.numbers[part])
 
 
+@dataclass(frozen=True, slots=True)
+class Payload:
+    """What a change of payload makes of each parameter vector (P): its mass numbers from the ``onset`` (P,) s on, ``late`` (P, 31), infinite where there is
+    none, and when nothing is left to move, ``gone`` (P,) s (`nothing_left`)."""
+
+    late: Array
+    onset: Array
+    gone: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Packed:
+    """What one kernel reads of the parameter vectors that were lowered: ``numbers`` (P, rows), which effect ``acts`` (P, E), and a ``payload`` that changes."""
+
+    numbers: Array
+    acts: NDArray[np.bool_]
+    payload: Payload | None
+
+
 class Integrator:
     """The kernels of one vehicle: a nominal one, and one with every effect for the lanes that need it."""
 
@@ -56,7 +75,7 @@ class Integrator:
         return self.substeps if self.engine is None else max(1, round(dt / self.engine.step))
 
     def motion(
-        self, inputs: Inputs, prepared: Prepared, lowered: Lowered, packed: Mapping[bool, Array], starts: Starts, steps: int
+        self, inputs: Inputs, prepared: Prepared, lowered: Lowered, packed: Mapping[bool, Packed], starts: Starts, steps: int
     ) -> tuple[Array, Indices, Indices]:
         """True motion (B, steps + 1, 12): u v w p q r, x y z phi theta psi; first invalid sample (B,) (-1: none) and its reason (B,).
 
@@ -64,19 +83,16 @@ class Integrator:
         """
         full = self._full(lowered, starts)
         if full.all() or not full.any():
-            return self._some_lanes(inputs, prepared, lowered, packed, starts, steps, bool(full.any()))
+            kind = bool(full.any())
+            return self.one_kernel(packed[kind], prepared, starts, inputs.dt, inputs.hold, steps, kind)
         out = np.empty((len(full), steps + 1, 12))
         stopped, codes = np.empty(len(full), dtype=np.int64), np.empty(len(full), dtype=np.int64)
         for kind in (False, True):
             part = np.flatnonzero(full == kind)
-            out[part], stopped[part], codes[part] = self._some_lanes(inputs, prepared, lowered, packed, starts.take(part), steps, kind)
+            out[part], stopped[part], codes[part] = self.one_kernel(
+                packed[kind], prepared, starts.take(part), inputs.dt, inputs.hold, steps, kind
+            )
         return out, stopped, codes
-
-    def _some_lanes(
-        self, inputs: Inputs, prepared: Prepared, lowered: Lowered, packed: Mapping[bool, Array], starts: Starts, steps: int, full: bool
-    ) -> tuple[Array, Indices, Indices]:
-        numbers = blocked(packed[full][starts.numbers])
-        return self.one_kernel(numbers, lowered, prepared, starts, inputs.dt, inputs.hold, steps, full)
 
     def _full(self, lowered: Lowered, starts: Starts) -> NDArray[np.bool_]:
         """Lanes (B,) that need the kernel with every effect in it."""
@@ -85,30 +101,32 @@ class Integrator:
     def _spec(self, full: bool) -> Spec:
         return Spec(self.thrusters, self._dense, self._advance, full, self.engine.share if self.engine else 0.0)
 
-    def packed(self, lowered: Lowered, dt: float, starts: Starts) -> dict[bool, Array]:
-        """Numbers (P, rows) of every parameter vector that was lowered, for the kernels with every effect (True) and with none, as far as lanes need them."""
-        return {full: pack(lowered, self._spec(full), dt, self.steps(dt)) for full in np.unique(self._full(lowered, starts)).tolist()}
+    def packed(self, lowered: Lowered, dt: float, starts: Starts) -> dict[bool, Packed]:
+        """Every parameter vector that was lowered, for the kernels with every effect (True) and with none, as far as lanes need them."""
+        return {full: self._packed(lowered, dt, full) for full in np.unique(self._full(lowered, starts)).tolist()}
+
+    def _packed(self, lowered: Lowered, dt: float, full: bool) -> Packed:
+        spec = self._spec(full)
+        return Packed(pack(lowered, spec, dt, self.steps(dt)), lowered.acts, _payload(lowered.lanes, spec) if full else None)
 
     def one_kernel(
-        self, numbers: Array, lowered: Lowered, prepared: Prepared, starts: Starts, dt: float, hold: bool, steps: int, full: bool
+        self, packed: Packed, prepared: Prepared, starts: Starts, dt: float, hold: bool, steps: int, full: bool
     ) -> tuple[Array, Indices, Indices]:
-        """As `motion`, all lanes by one kernel, from the numbers of each, `packed` and `blocked`."""
-        spec = self._spec(full)
+        """As `motion`, all lanes by one kernel."""
+        spec, which, payload = self._spec(full), starts.numbers, packed.payload
         size, blocks = len(starts.sample), -(-len(starts.sample) // W)
-        lanes = lowered.lanes.take(starts.numbers) if lowered.lanes.payload_mass.any() else None
-        late, onset = _payload(lanes, spec, blocks)
         states = blocked(np.concatenate([starts.eta[:, :3], quaternion_from_euler(starts.eta[:, 3:]), starts.nu], axis=1))
         out = np.empty((blocks * W, steps + 1, 12))
         stopped, reason = np.full((blocks, W), -1), np.zeros((blocks, W), dtype=np.int64)
         gap = prepared.steps_before_gap(starts.sample, hold)
-        nothing = gap if lanes is None else steps_before_nothing(lanes, prepared.t[starts.sample], dt)
-        limit = np.minimum(gap, nothing)
+        late, onset = (np.zeros((blocks, 1)), np.empty(0)) if payload is None else (blocked(payload.late[which]), payload.onset[which])
+        nothing = gap if payload is None else steps_before_nothing(payload.gone[which], prepared.t[starts.sample], dt)
         cache.run(
             spec, blocks, steps * self.steps(dt),
             (
-                numbers, _some(lowered.acts[starts.numbers]), late, onset, states, _flat(starts.sample), _flat(limit), _flat(starts.which, -1),
-                _flat(starts.gain), prepared.speed, prepared.log, prepared.t, prepared.extra, *self._geometry, dt, hold, steps, self.steps(dt),
-                out, stopped, reason,
+                blocked(packed.numbers[which]), _some(packed.acts[which]), late, _padded(onset, blocks), states, _flat(starts.sample),
+                _flat(np.minimum(gap, nothing)), _flat(starts.which, -1), _flat(starts.gain), prepared.speed, prepared.log, prepared.t, prepared.extra,
+                *self._geometry, dt, hold, steps, self.steps(dt), out, stopped, reason,
             ),
         )  # fmt: skip
         codes = np.where((reason.reshape(-1)[:size] == GAP) & (nothing < gap), NOTHING, reason.reshape(-1)[:size])
@@ -137,13 +155,19 @@ def _some(acts: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return np.asarray(padded.reshape(-1, W, count).any(axis=1))
 
 
-def _payload(lanes: Lanes | None, spec: Spec, blocks: int) -> tuple[Array, Array]:
-    """Mass numbers after a payload's onset, and the onsets (s; infinite where there is none); None where no lane has one."""
-    onset = np.full(blocks * W, np.inf)
-    if lanes is None:
-        return np.zeros((blocks, 1)), onset.reshape(blocks, W)
-    onset[: len(lanes)] = np.where(lanes.payload_mass != 0, lanes.payload_onset, np.inf)
-    return blocked(mass_numbers(with_payload(lanes), spec)), onset.reshape(blocks, W)
+def _padded(onset: Array, blocks: int) -> Array:
+    """Onsets of a payload (B,) -> (blocks, W), infinite where there is no lane or none has one."""
+    out = np.full(blocks * W, np.inf)
+    out[: len(onset)] = onset
+    return out.reshape(blocks, W)
+
+
+def _payload(lanes: Lanes, spec: Spec) -> Payload | None:
+    """What a change of payload makes of parameter vectors; None where none has one."""
+    if not lanes.payload_mass.any():
+        return None
+    onset = np.where(lanes.payload_mass != 0, lanes.payload_onset, np.inf)
+    return Payload(mass_numbers(with_payload(lanes), spec), onset, nothing_left(lanes))
 
 
 def _coupled(values: tuple[float, ...] | tuple[tuple[float, ...], ...]) -> bool:

@@ -121,17 +121,25 @@ def with_payload(lanes: Lanes) -> Lanes:
     return replace(lanes, mass=total, centre_of_gravity=centre, inertia=lanes.inertia - m[:, None, None] * square)
 
 
-def steps_before_nothing(lanes: Lanes, first: Array, dt: float) -> NDArray[np.int64]:
-    """Steps (B,) of a lane that begins at ``first`` (B,) s before its payload leaves the vehicle no inertia of some motion: what is set down must
-    have been part of it. As many as there can be where it does."""
-    steps = np.full(len(lanes), np.iinfo(np.int64).max // 2)
+def steps_before_nothing(onset: Array, first: Array, dt: float) -> NDArray[np.int64]:
+    """Steps (B,) of a lane that begins at ``first`` (B,) s before what `nothing_left` has gone, at its ``onset`` (B,) s (infinite where something stays: as
+    many as there can be)."""
+    steps = np.full(len(onset), np.iinfo(np.int64).max // 2)
+    gone = np.isfinite(onset)
+    steps[gone] = np.maximum(np.ceil((onset[gone] - first[gone]) / dt - ROUNDING), 0.0)
+    return steps
+
+
+def nothing_left(lanes: Lanes) -> Array:
+    """When (B,) s a payload leaves the vehicle no inertia of some motion, infinite where it does not: what is set down must have been part of it."""
+    onset = np.full(len(lanes), np.inf)
     lighter = np.flatnonzero(lanes.payload_mass < 0.0)
     if len(lighter):
         left = with_payload(lanes.take(lighter))
         whole = rigid_body(left.mass, left.mass[:, None] * left.centre_of_gravity, left.inertia) + left.added_mass
         gone = lighter[np.linalg.eigvalsh(0.5 * (whole + whole.transpose(0, 2, 1)))[:, 0] <= 0.0]
-        steps[gone] = np.maximum(np.ceil((lanes.payload_onset[gone] - first[gone]) / dt - ROUNDING), 0.0)
-    return steps
+        onset[gone] = lanes.payload_onset[gone]
+    return onset
 
 
 def mass_numbers(lanes: Lanes, spec: Spec) -> Array:

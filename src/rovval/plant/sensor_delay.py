@@ -47,9 +47,14 @@ class Clock:
         return added, stopped < 0
 
 
+def _samples(late: Array, dt: float) -> Indices:
+    """How many whole samples (B,) hold each delay ``late`` (B,) s, as far as it is above zero."""
+    return np.ceil(np.maximum(late, 0.0) / dt - ROUNDING).astype(np.int64)
+
+
 def _alike(late: Array, dt: float) -> Iterator[tuple[int, Indices]]:
     """How many whole samples hold a delay ``late`` (B,) s above zero, and the lanes with as many."""
-    whole = np.ceil(np.maximum(late, 0.0) / dt - ROUNDING).astype(np.int64)
+    whole = _samples(late, dt)
     for samples in np.unique(whole[whole > 0]):
         yield int(samples), np.flatnonzero(whole == samples)
 
@@ -105,18 +110,16 @@ def _forward(clock: Clock, start: Indices, state: Array, rate: Array, one: Delay
 
 def _back(clock: Clock, start: Indices, state: Array, one: Delay) -> Iterator[Path]:
     """Lanes with an early sensor, stepped back from where it showed the motion that it wrote at the start; of the last sample as much as the delay has."""
-    columns = np.array(one.columns)
-    for steps, alike in _alike(-one.seconds, clock.dt):
-        lanes = alike[start[alike] + steps + 1 < clock.samples]
-        if len(lanes):
-            there, ran = state[lanes], np.ones(len(lanes), dtype=bool)
-            part = (-one.seconds[lanes] / clock.dt - (steps - 1))[:, None]
-            for j in range(steps - 1, -1, -1):
-                goal = there.copy()
-                for _ in range(2):  # what leads to the goal in a step: by the step that begins in the goal, then by that of the first answer
-                    added, still = clock.step(lanes, start[lanes] + j, there)
-                    there[:, columns] = (goal - added)[:, columns]
-                    ran = ran & still
-                if j == steps - 1:
-                    there = goal + part * (there - goal)
-            yield lanes[ran], there[ran, None]
+    columns, whole = np.array(one.columns), _samples(-one.seconds, clock.dt)
+    lanes = np.flatnonzero((whole > 0) & (start + whole + 1 < clock.samples))
+    steps, there, ran = whole[lanes], state[lanes], np.ones(len(lanes), dtype=bool)
+    part = (-one.seconds[lanes] / clock.dt - (steps - 1))[:, None]
+    for j in range(int(steps.max(initial=0)) - 1, -1, -1):
+        here = np.flatnonzero(steps > j)
+        some, goal, before = lanes[here], there[here], there[here]
+        for _ in range(2):  # what leads to the goal in a step: by the step that begins in the goal, then by that of the first answer
+            added, still = clock.step(some, start[some] + j, before)
+            before[:, columns] = (goal - added)[:, columns]
+            ran[here] &= still
+        there[here] = np.where((steps[here] == j + 1)[:, None], goal + part[here] * (before - goal), before)
+    yield lanes[ran], there[ran, None]

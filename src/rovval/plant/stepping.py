@@ -10,7 +10,7 @@ from rovval.effects.lanes import reference_speed
 from rovval.plant import slots
 from rovval.plant.codegen.spec import LOGGED
 from rovval.plant.inputs import UNSEEN, Prepared, load
-from rovval.plant.integration import Starts, blocked
+from rovval.plant.integration import Starts
 from rovval.plant.lowering import lower
 from rovval.plant.model import REASONS, Plant
 
@@ -34,16 +34,15 @@ class Stepper:
         size, k = len(beta), len(plant.vehicle.thruster)
         self.nu, self.eta, self.stopped = nu.copy(), eta.copy(), np.full(size, -1)
         self.why = [""] * size
-        self._lowered = lower(plant.nominal, plant.slots, plant.index, plant.null, beta)
+        lowered = lower(plant.nominal, plant.slots, plant.index, plant.null, beta)
         self._integrator, self._reference = plant.integrator, reference_speed(plant.vehicle)
         self._dt, self._step = dt, 0
         self._turned = np.zeros(size)
-        lanes = self._lowered.lanes
+        lanes = lowered.lanes
         back = int(LAG_MEMORY * lanes.lag.max() / dt) + 1 + int(np.ceil(np.abs(lanes.shift).max() / dt)) if lanes.lag.any() or lanes.shift.any() else 0
         self._speed = np.zeros((size, back + 2, k))
-        self._full = bool(self._lowered.full.any())
-        packed = self._integrator.packed(self._lowered, dt, self._starts(np.zeros(size, dtype=np.int64)))
-        self._numbers = blocked(packed[self._full])
+        self._full = bool(lowered.full.any())
+        self._packed = self._integrator.packed(lowered, dt, self._starts(np.zeros(size, dtype=np.int64)))[self._full]
 
     def step(self, speed: Array, altitude: Array | None = None) -> None:
         """One sample on, the thrusters turning linearly from their last speed to ``speed`` (B, k) rev/s; ``altitude`` (B,) m, where effects ask for it."""
@@ -60,7 +59,7 @@ class Stepper:
         t = np.tile((self._step - (rows - 2) + np.arange(rows)) * self._dt, size)
         prepared = Prepared(self._speed.reshape(size * rows, k), log, t, np.zeros((1, 1, 6)), np.full(size * rows, size * rows))
         starts = self._starts(first)
-        out, stopped, codes = self._integrator.one_kernel(self._numbers, self._lowered, prepared, starts, self._dt, False, 1, self._full)
+        out, stopped, codes = self._integrator.one_kernel(self._packed, prepared, starts, self._dt, False, 1, self._full)
         self._step += 1
         here = (self.stopped < 0) & (stopped >= 0)
         for b in np.flatnonzero(here):

@@ -94,6 +94,7 @@ def test_no_cause_gains_by_another_start():
     again = refit_healthy(p, healthy, cause.posterior, slots)
     assert again.predicted_cost() <= healthy.predicted_cost()
     assert all(again.beta[s] == p.origin[s] for s in slots)
+    assert refit_healthy(p, again, cause.posterior, slots) is again, "from there no start is worth a fit"
 
 
 def test_a_coefficient_within_tolerance_is_fitted_where_it_is():

@@ -10,6 +10,7 @@ import pytest
 from diagnose_case import bluerov2, foreign, merlin, own
 
 from rovval.diagnose import diagnose
+from rovval.diagnose.pipeline import searched
 from rovval.diagnose.problem.prior import tolerance_prior
 from rovval.diagnose.windows.multiple_shooting import cut
 from rovval.vehicle import load
@@ -103,3 +104,11 @@ def test_velocities_in_knots_are_a_scale():
     knots = replace(run, values={**run.values, **{c: 1.944 * run.get(c) for c in "uvw"}})
     (cause,) = diagnose([knots], merlin()).document()["causes"]
     assert cause["effect"] == "dvl_scale" and cause["parameters"]["scale"]["value"] == pytest.approx(0.944, abs=0.06)
+
+
+def test_a_search_whose_causes_leave_held_out_windows_as_they_were_ends(tmp_path: Path):
+    """A line that snags, while the library has no line: the first cause leaves all of held-out windows, the second one more than the first."""
+    parts, _ = cut([foreign(tmp_path, (("tether_snag", "", 1.5),), 5, 160.0, 0.03)], merlin(), "fossen", 10.0)
+    found = searched(parts, ("tether_snag", "tether_tension", "tether_drag"), 0.05, lambda _text, _share: None).selection
+    assert len(found.steps) == 2
+    assert found.models[0].causes == () and max(len(m.causes) for m in found.models) == 2

@@ -75,9 +75,10 @@ def refit_healthy(problem: Problem, before: Posterior, point: Posterior, slots: 
     """
     start = point.beta.copy()
     start[list(slots)] = problem.origin[list(slots)]
-    if map_fit(problem, start, (), before.whitened, QUICK_STEPS).predicted_cost() >= before.predicted_cost():
+    quick = map_fit(problem, start, (), before.whitened, QUICK_STEPS)
+    if before.predicted_cost() - quick.predicted_cost() < STEP_WORTH * problem.tempering:
         return before
-    again = map_fit(problem, start, ())
+    again = map_fit(problem, quick.beta, ())
     return again if again.predicted_cost() < before.predicted_cost() else before
 
 

@@ -174,11 +174,12 @@ def _extended(over: _Space, front: Model, least: float, near: NormalEquations | 
 
 def _looks_like_form_error(problem: Problem, before: Model, after: Model) -> bool:
     """Whether the last cause of a model leaves so much of what the model ``before`` it leaves of held-out windows that it would not be named: it may well be
-    the form error of that."""
+    the form error of that. A first one may be that of what is missing in the library, and is doubted where it leaves all of them as they were, or worse."""
     left = [np.array([fit.dynamics_loss.sum(), fit.loss.sum()]) for fit in (before.fit, after.fit) if fit]
-    if len(left) < 2:
-        return False
-    without, beside = explainable_left(problem, left)
+    shares = explainable_left(problem, left)
+    if len(shares) < 2:
+        return bool(shares[-1].min() >= 1.0)
+    without, beside = shares
     return form_error(beside / without, tolerated_share(problem) / without) > 1.0 - NAMED_FROM
 
 

@@ -15,7 +15,7 @@ from rovval.plant import sensor_delay as late
 from rovval.plant import sensors
 from rovval.plant.codegen.layout import RATE_LIMIT, SPEED_LIMIT
 from rovval.plant.inputs import Inputs, Prepared, prepare
-from rovval.plant.lowering import Lowered, lower, rigid_body, steps_before_nothing, with_payload
+from rovval.plant.lowering import Lowered, lower, nothing_left, rigid_body, steps_before_nothing, with_payload
 from rovval.plant.model import Motion, Plant
 from rovval.plant.platforms import load
 from rovval.plant.reference.inputs import at_stages, warm
@@ -66,7 +66,7 @@ def _integrate(
     run.memory = warm(run)
     state = np.concatenate([eta0[:, :3], quaternion_from_euler(eta0[:, 3:]), nu0], axis=1)
     states, stopped = [state], np.full(len(start), -1)
-    limit = np.minimum(prepared.steps_before_gap(start, inputs.hold), steps_before_nothing(lowered.lanes, prepared.t[start], inputs.dt))
+    limit = np.minimum(prepared.steps_before_gap(start, inputs.hold), steps_before_nothing(nothing_left(lowered.lanes), prepared.t[start], inputs.dt))
     substeps, engine = plant.steps(inputs.dt), load(plant.model).engine
     h = inputs.dt / substeps
     for step in range(steps):
