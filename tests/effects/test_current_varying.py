@@ -25,8 +25,14 @@ def test_a_round_ellipse_keeps_its_speed_and_turns_once_a_period():
 
 
 def test_the_acceleration_of_the_water_is_the_slope_of_its_velocity():
-    own = {"north": 0.1, "east": 0.2, "north_cosine": -0.15, "east_cosine": 0.05, "omega": 0.04}
+    own = {"north": 0.1, "east": 0.2, "north_cosine": -0.15, "east_cosine": 0.05, "north_mean": 0.3, "omega": 0.04}
     for t in (0.0, 13.0, 170.0):
         slope = (flow(t + 0.01, **own)[:3] - flow(t - 0.01, **own)[:3]) / 0.02
         np.testing.assert_allclose(flow(t, **own)[3:6], slope, atol=1e-8)
         np.testing.assert_array_equal(flow(t, **own)[3:6], flow(t, **own)[6:])
+
+
+def test_its_mean_is_what_it_is_over_whole_periods():
+    own = {"north": 0.1, "east_cosine": 0.2, "north_mean": 0.3, "east_mean": -0.1, "omega": math.tau / 50.0}
+    mean = np.mean([flow(t, **own) for t in np.arange(0.0, 100.0, 0.5)], axis=0)
+    assert mean == pytest.approx([0.3, -0.1, *[0.0] * 7], abs=1e-12)

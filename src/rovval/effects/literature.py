@@ -12,6 +12,8 @@ REFERENCES = MappingProxyType(
         "Control Engineering Practice 7(3).",
         "Armstrong-Helouvry 1994": "Armstrong-Helouvry, B., Dupont, P. and Canudas de Wit, C. (1994). A survey of models, analysis tools and compensation "
         "methods for the control of machines with friction. Automatica 30(7).",
+        "Auton 1988": "Auton, T. R., Hunt, J. C. R. and Prud'homme, M. (1988). The force exerted on a body in inviscid unsteady non-uniform rotational flow. "
+        "Journal of Fluid Mechanics 197.",
         "Bachmayer 2000": "Bachmayer, R., Whitcomb, L. L. and Grosenbaugh, M. A. (2000). An accurate four-quadrant nonlinear dynamical model for marine "
         "thrusters: theory and experimental validation. IEEE Journal of Oceanic Engineering 25(1).",
         "Bessa 2006": "Bessa, W. M., Dutra, M. S. and Kreuzer, E. (2006). Thruster dynamics compensation for the positioning of underwater robotic vehicles "

@@ -100,6 +100,22 @@ def test_a_current_with_shear_begins_with_and_without_a_velocity_in_the_middle_o
     assert all(dict(h.at)[slot(p, "current_shear.depth")] == pytest.approx(float(np.median(z))) for h in begun)
 
 
+def test_a_current_that_changes_begins_with_and_without_a_mean_at_every_period():
+    p, library = posed()
+    begun = [h for h in library if h.name == "current_varying"]
+    mean, period = slot(p, "current_varying.north_mean"), slot(p, "current_varying.period")
+    with_it, without = ({dict(h.at)[period] for h in begun if (mean in h.slots) is some} for some in (True, False))
+    assert with_it == without and len(begun) == 2 * len(without)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("planted", "severity", "mission", "seed"), [("current_shear", 1.37, "yoyo", 404052221), ("current_varying", 1.9, "station", 31)])
+def test_a_current_that_changes_with_depth_and_one_that_changes_in_time_are_told_apart(tmp_path: Path, planted, severity, mission, seed):
+    """By another plant: a dive up and down again and again makes the one as periodic as the other."""
+    document = diagnose([foreign(tmp_path, ((planted, "", severity),), seed, 300.0, 0.03, mission=mission)], merlin()).document()
+    assert [c["effect"] for c in document["causes"]] == [planted], document["sentence"]
+
+
 def test_a_threshold_begins_at_speeds_at_which_the_thruster_turns_in_the_log():
     p, library = posed()
     data = p.runs[0].actuation

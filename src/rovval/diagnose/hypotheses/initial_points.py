@@ -92,18 +92,21 @@ def initial_points(target: Target, windows: Sequence[Windows], hints: Hints, nex
 
 def _begun(target: Target, label: str, free: tuple[int, ...], at: Mapping[int, float], hints: Hints, next_id: int) -> list[Hypothesis]:
     """The hypothesis that begins ``at`` some point. Waves begin at the period of those that run in its direction, since a vehicle under way sees them at
-    their period of encounter, which is another; and a second time with as many further trains as there are further periods, their sizes free as well."""
+    their period of encounter, which is another. A second time with the parameters that only refine the others, their sizes free as well: of waves those of
+    as many further trains as there are further periods."""
     by_role = {target.parameter(s).role: s for s in target.slots}
     trains = [s for s in target.slots if target.parameter(s).role == "further period"]
     lines = hints.periods.get(at.get(by_role.get("direction", -1)), ()) if {"period", "direction"} <= set(by_role) else ()
     first = {**at, **({by_role["period"]: lines[0]} if lines else {})}
-    alone = _plain_and_fine(target)[""] if trains else target.slots
+    plain = _plain_and_fine(target)[""]
+    alone = tuple(s for s in target.slots if s in plain or s in at)
     found = [displaced(target.plant, label, alone, free, tuple(first.items()), next_id)]
-    if further := dict(zip(trains, lines[1:], strict=False)):
-        refined = [s for s in target.slots if s not in alone]  # train by train
-        used = refined[: len(refined) // len(trains) * len(further)]
-        sizes = (*free, *(s for s in used if s not in trains))
-        found.append(displaced(target.plant, f"{label} further", (*alone, *used), sizes, (*first.items(), *further.items()), next_id + len(free)))
+    refined, used = [s for s in target.slots if s not in alone], dict(zip(trains, lines[1:], strict=False))
+    if trains:
+        refined = refined[: len(refined) // len(trains) * len(used)]  # train by train
+    if refined:
+        sizes = (*free, *(s for s in refined if s not in trains))
+        found.append(displaced(target.plant, f"{label} fine", (*alone, *refined), sizes, (*first.items(), *used.items()), next_id + len(free)))
     return found
 
 
