@@ -12,7 +12,7 @@ from rovval.blind.plant.spec import Planted
 from rovval.blind.second import flight as second
 from rovval.diagnose import diagnose
 from rovval.diagnose.effort import LEVER_SHARE
-from rovval.diagnose.hypotheses.hypothesis import prior_of
+from rovval.diagnose.hypotheses.hypothesis import columns_of, prior_of
 from rovval.diagnose.hypotheses.initial_points import Hints
 from rovval.diagnose.hypotheses.library import hypotheses
 from rovval.diagnose.windows.multiple_shooting import cut
@@ -106,6 +106,9 @@ def test_a_current_that_changes_begins_with_and_without_a_mean_at_every_period()
     mean, period = slot(p, "current_varying.north_mean"), slot(p, "current_varying.period")
     with_it, without = ({dict(h.at)[period] for h in begun if (mean in h.slots) is some} for some in (True, False))
     assert with_it == without and len(begun) == 2 * len(without)
+    moved = {d.id for h in begun for d in h.displaced}
+    assert len(moved) == 4 * len(without), "with a mean it begins by the columns that it has without one"
+    assert mean in columns_of(begun).slots
 
 
 @pytest.mark.slow

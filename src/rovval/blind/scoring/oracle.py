@@ -94,8 +94,8 @@ def _fit(
 def _fitted(problem: Problem, healthy: Posterior, wanted: Wanted, onsets: Mapping[str, float]) -> Array:
     """The best of the fits from several starting points, kinematic checks counted."""
     free = [h for starts in wanted for h in starts]
-    columns = tuple(dict.fromkeys(c for h in free if not h.displaced for c in h.columns))
-    data = equations_at(problem, healthy.beta, columns, [d for h in free for d in h.displaced])
+    asked = columns_of(free)
+    data = equations_at(problem, healthy.beta, asked.slots, asked.displaced)
     ranks = range(min(STARTS, max(map(len, wanted))))
     tried = [fit_hypothesis(problem, _from(problem, healthy, data, wanted, rank, onsets), _slots(wanted)).beta for rank in ranks]
     return min(tried, key=lambda beta: _left(problem, wanted, beta)[1])

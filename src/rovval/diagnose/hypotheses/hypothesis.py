@@ -25,7 +25,7 @@ class Hypothesis:
         name: effect and target as in ``--effect``: ``inflow_loss``, ``thruster_degraded[HFP]``.
         label: the name with its initial point, ``waves@3``; unique in a library.
         slots: places of all its parameters in the plant's parameters beta.
-        columns: columns of the linearisation that it sets free: slots, or the ids of ``displaced``.
+        columns: columns of the linearisation that it sets free: slots, and the ids of ``displaced``.
         sd: (len(columns),) standard deviations of their wide prior, in the parameters' units.
         at: (slot, value) that the initial point sets before anything is fitted.
         displaced: columns whose sensitivities are taken at the initial point, not at no effect; empty where it begins at no effect.
@@ -74,8 +74,9 @@ class Hypothesis:
 
 def columns_of(library: Sequence[Hypothesis]) -> Columns:
     """What a linearisation has to hold for every hypothesis of a library."""
-    plain = {c for h in library if not h.displaced for c in h.columns}
-    return Columns(tuple(sorted(plain)), tuple(dict.fromkeys(d for h in library for d in h.displaced)))
+    moved = dict.fromkeys(d for h in library for d in h.displaced)
+    plain = {c for h in library for c in h.columns} - {d.id for d in moved}
+    return Columns(tuple(sorted(plain)), tuple(moved))
 
 
 def from_nothing(plant: Plant, name: str, label: str, slots: tuple[int, ...]) -> Hypothesis:

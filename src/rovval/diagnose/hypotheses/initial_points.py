@@ -26,7 +26,7 @@ from rovval.diagnose.effort import (
 from rovval.diagnose.hypotheses.hypothesis import START_SCALE, Hypothesis, columns_of, displaced, from_nothing
 from rovval.diagnose.hypotheses.snag import from_pulls, from_springs, mid_log_spring
 from rovval.diagnose.hypotheses.towed_line import from_line
-from rovval.diagnose.problem.prior import prior_mean
+from rovval.diagnose.problem.prior import prior_mean, wide_sd
 from rovval.diagnose.windows.windows import Windows
 from rovval.plant import Plant
 
@@ -92,8 +92,8 @@ def initial_points(target: Target, windows: Sequence[Windows], hints: Hints, nex
 
 def _begun(target: Target, label: str, free: tuple[int, ...], at: Mapping[int, float], hints: Hints, next_id: int) -> list[Hypothesis]:
     """The hypothesis that begins ``at`` some point. Waves begin at the period of those that run in its direction, since a vehicle under way sees them at
-    their period of encounter, which is another. A second time with the parameters that only refine the others, their sizes free as well: of waves those of
-    as many further trains as there are further periods."""
+    their period of encounter, which is another; and a second time with as many further trains as there are further periods, their sizes free as well. What has
+    other parameters that only refine it begins a second time with them, by the slopes that they have at no effect."""
     by_role = {target.parameter(s).role: s for s in target.slots}
     trains = [s for s in target.slots if target.parameter(s).role == "further period"]
     lines = hints.periods.get(at.get(by_role.get("direction", -1)), ()) if {"period", "direction"} <= set(by_role) else ()
@@ -101,12 +101,15 @@ def _begun(target: Target, label: str, free: tuple[int, ...], at: Mapping[int, f
     plain = _plain_and_fine(target)[""]
     alone = tuple(s for s in target.slots if s in plain or s in at)
     found = [displaced(target.plant, label, alone, free, tuple(first.items()), next_id)]
-    refined, used = [s for s in target.slots if s not in alone], dict(zip(trains, lines[1:], strict=False))
-    if trains:
+    refined, used = tuple(s for s in target.slots if s not in alone), dict(zip(trains, lines[1:], strict=False))
+    if refined and not trains:
+        sd = wide_sd(target.plant, refined)
+        whole = replace(found[0], columns=(*found[0].columns, *refined), sd=(*found[0].sd, *sd.values()))
+        found.append(replace(whole, label=f"{label} fine", slots=(*alone, *refined)))
+    if used:
         refined = refined[: len(refined) // len(trains) * len(used)]  # train by train
-    if refined:
         sizes = (*free, *(s for s in refined if s not in trains))
-        found.append(displaced(target.plant, f"{label} fine", (*alone, *refined), sizes, (*first.items(), *used.items()), next_id + len(free)))
+        found.append(displaced(target.plant, f"{label} further", (*alone, *refined), sizes, (*first.items(), *used.items()), next_id + len(free)))
     return found
 
 
