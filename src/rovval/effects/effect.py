@@ -139,8 +139,8 @@ class Effect:
     - ``needs``: channels without which it cannot be tested; ``needs_one_of``: channels of which one will do; ``within``: what a channel has to come
       below, in its unit, for it to act at all.
     - ``separable``: each parameter may well be at work without the others, as an offset along one of three axes, and is tried by itself, too.
-    - ``refines``: parameters that only refine the others, which are tried without them as well; of an effect that is also ``separable`` they say of
-      one axis what the others say of all, and are tried one by one only.
+    - ``refines``: parameters that only refine the others, which are tried without them as well; of an effect that is also ``separable`` they are
+      other forms of it (of one axis what the others say of all), and are tried one by one only.
     - ``far``: sizes, in typical ones, of initial points well away from the null value, of every parameter in turn.
     - ``competes`` False: a diagnosis never names it; `unnamed` says why.
     - ``wanders``: its value drifts by nature, so that it does not hold still speaks in no way against it.
@@ -220,6 +220,6 @@ class Effect:
         """Whether it begins or turns at a time or place that a diagnosis searches for: a fit from the null value cannot find it."""
         return self.begins or any(p.starts for p in self.parameters)
 
-    def of_one_axis(self, parameter: str) -> bool:
-        """Whether a parameter says of one axis what another says of all."""
+    def is_another_form(self, parameter: str) -> bool:
+        """Whether a parameter is another form of the effect, as of one axis what another parameter says of all."""
         return self.separable and parameter in self.refines

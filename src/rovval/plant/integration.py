@@ -52,8 +52,10 @@ class Payload:
 
 @dataclass(frozen=True, slots=True)
 class Packed:
-    """What one kernel reads of the parameter vectors that were lowered: ``numbers`` (P, rows), which effect ``acts`` (P, E), and a ``payload`` that changes."""
+    """What the kernel of a ``spec`` reads of the parameter vectors that were lowered: ``numbers`` (P, rows), which effect ``acts`` (P, E), and a ``payload``
+    that changes."""
 
+    spec: Spec
     numbers: Array
     acts: NDArray[np.bool_]
     payload: Payload | None
@@ -83,15 +85,12 @@ class Integrator:
         """
         full = self._full(lowered, starts)
         if full.all() or not full.any():
-            kind = bool(full.any())
-            return self.one_kernel(packed[kind], prepared, starts, inputs.dt, inputs.hold, steps, kind)
+            return self.one_kernel(packed[bool(full.any())], prepared, starts, inputs.dt, inputs.hold, steps)
         out = np.empty((len(full), steps + 1, 12))
         stopped, codes = np.empty(len(full), dtype=np.int64), np.empty(len(full), dtype=np.int64)
         for kind in (False, True):
             part = np.flatnonzero(full == kind)
-            out[part], stopped[part], codes[part] = self.one_kernel(
-                packed[kind], prepared, starts.take(part), inputs.dt, inputs.hold, steps, kind
-            )
+            out[part], stopped[part], codes[part] = self.one_kernel(packed[kind], prepared, starts.take(part), inputs.dt, inputs.hold, steps)
         return out, stopped, codes
 
     def _full(self, lowered: Lowered, starts: Starts) -> NDArray[np.bool_]:
@@ -107,24 +106,22 @@ class Integrator:
 
     def _packed(self, lowered: Lowered, dt: float, full: bool) -> Packed:
         spec = self._spec(full)
-        return Packed(pack(lowered, spec, dt, self.steps(dt)), lowered.acts, _payload(lowered.lanes, spec) if full else None)
+        return Packed(spec, pack(lowered, spec, dt, self.steps(dt)), lowered.acts, _payload(lowered.lanes, spec) if full else None)
 
-    def one_kernel(
-        self, packed: Packed, prepared: Prepared, starts: Starts, dt: float, hold: bool, steps: int, full: bool
-    ) -> tuple[Array, Indices, Indices]:
+    def one_kernel(self, packed: Packed, prepared: Prepared, starts: Starts, dt: float, hold: bool, steps: int) -> tuple[Array, Indices, Indices]:
         """As `motion`, all lanes by one kernel."""
-        spec, which, payload = self._spec(full), starts.numbers, packed.payload
+        which, payload = starts.numbers, packed.payload
         size, blocks = len(starts.sample), -(-len(starts.sample) // W)
         states = blocked(np.concatenate([starts.eta[:, :3], quaternion_from_euler(starts.eta[:, 3:]), starts.nu], axis=1))
         out = np.empty((blocks * W, steps + 1, 12))
         stopped, reason = np.full((blocks, W), -1), np.zeros((blocks, W), dtype=np.int64)
         gap = prepared.steps_before_gap(starts.sample, hold)
-        late, onset = (np.zeros((blocks, 1)), np.empty(0)) if payload is None else (blocked(payload.late[which]), payload.onset[which])
+        late, onset = (np.zeros((blocks, 1)), np.full(size, np.inf)) if payload is None else (blocked(payload.late[which]), payload.onset[which])
         nothing = gap if payload is None else steps_before_nothing(payload.gone[which], prepared.t[starts.sample], dt)
         cache.run(
-            spec, blocks, steps * self.steps(dt),
+            packed.spec, blocks, steps * self.steps(dt),
             (
-                blocked(packed.numbers[which]), _some(packed.acts[which]), late, _padded(onset, blocks), states, _flat(starts.sample),
+                blocked(packed.numbers[which]), _some(packed.acts[which]), late, _flat(onset, np.inf), states, _flat(starts.sample),
                 _flat(np.minimum(gap, nothing)), _flat(starts.which, -1), _flat(starts.gain), prepared.speed, prepared.log, prepared.t, prepared.extra,
                 *self._geometry, dt, hold, steps, self.steps(dt), out, stopped, reason,
             ),
@@ -153,13 +150,6 @@ def _some(acts: NDArray[np.bool_]) -> NDArray[np.bool_]:
     size, count = acts.shape
     padded = np.concatenate([acts, np.zeros((-size % W, count), dtype=bool)])
     return np.asarray(padded.reshape(-1, W, count).any(axis=1))
-
-
-def _padded(onset: Array, blocks: int) -> Array:
-    """Onsets of a payload (B,) -> (blocks, W), infinite where there is no lane or none has one."""
-    out = np.full(blocks * W, np.inf)
-    out[: len(onset)] = onset
-    return out.reshape(blocks, W)
 
 
 def _payload(lanes: Lanes, spec: Spec) -> Payload | None:

@@ -121,12 +121,12 @@ def with_payload(lanes: Lanes) -> Lanes:
     return replace(lanes, mass=total, centre_of_gravity=centre, inertia=lanes.inertia - m[:, None, None] * square)
 
 
-def steps_before_nothing(onset: Array, first: Array, dt: float) -> NDArray[np.int64]:
-    """Steps (B,) of a lane that begins at ``first`` (B,) s before what `nothing_left` has gone, at its ``onset`` (B,) s (infinite where something stays: as
-    many as there can be)."""
-    steps = np.full(len(onset), np.iinfo(np.int64).max // 2)
-    gone = np.isfinite(onset)
-    steps[gone] = np.maximum(np.ceil((onset[gone] - first[gone]) / dt - ROUNDING), 0.0)
+def steps_before_nothing(gone: Array, first: Array, dt: float) -> NDArray[np.int64]:
+    """Steps (B,) of a lane that begins at ``first`` (B,) s before the time ``gone`` (B,) s from which nothing is left to move (`nothing_left`); as many as
+    there can be where that never comes (infinite)."""
+    steps = np.full(len(gone), np.iinfo(np.int64).max // 2)
+    ends = np.isfinite(gone)
+    steps[ends] = np.maximum(np.ceil((gone[ends] - first[ends]) / dt - ROUNDING), 0.0)
     return steps
 
 

@@ -70,7 +70,7 @@ def true_start(clock: Clock, start: Indices, measured: Array, delays: Sequence[D
         straight, rate = state[lanes], np.zeros_like(state)
         straight[:, columns] += (one.seconds[lanes] / clock.dt)[:, None] * added[:, columns]
         rate[lanes] = added
-        paths = [*_forward(clock, start, state, rate, one), *_back(clock, start, state, one)]
+        paths = [*_forward(clock, start, state, rate, one), _back(clock, start, state, one)]
         state[lanes] = straight
         for known, path in paths:
             state[np.ix_(known, columns)] = path[:, -1][:, columns]
@@ -108,7 +108,7 @@ def _forward(clock: Clock, start: Indices, state: Array, rate: Array, one: Delay
             yield lanes[stopped < 0], np.concatenate([first[:, None], out], axis=1)[stopped < 0]
 
 
-def _back(clock: Clock, start: Indices, state: Array, one: Delay) -> Iterator[Path]:
+def _back(clock: Clock, start: Indices, state: Array, one: Delay) -> Path:
     """Lanes with an early sensor, stepped back from where it showed the motion that it wrote at the start; of the last sample as much as the delay has."""
     columns, whole = np.array(one.columns), _samples(-one.seconds, clock.dt)
     lanes = np.flatnonzero((whole > 0) & (start + whole + 1 < clock.samples))
@@ -122,4 +122,4 @@ def _back(clock: Clock, start: Indices, state: Array, one: Delay) -> Iterator[Pa
             before[:, columns] = (goal - added)[:, columns]
             ran[here] &= still
         there[here] = np.where((steps[here] == j + 1)[:, None], goal + part[here] * (before - goal), before)
-    yield lanes[ran], there[ran, None]
+    return lanes[ran], there[ran, None]

@@ -41,8 +41,8 @@ class Stepper:
         lanes = lowered.lanes
         back = int(LAG_MEMORY * lanes.lag.max() / dt) + 1 + int(np.ceil(np.abs(lanes.shift).max() / dt)) if lanes.lag.any() or lanes.shift.any() else 0
         self._speed = np.zeros((size, back + 2, k))
-        self._full = bool(lowered.full.any())
-        self._packed = self._integrator.packed(lowered, dt, self._starts(np.zeros(size, dtype=np.int64)))[self._full]
+        packed = self._integrator.packed(lowered, dt, self._starts(np.zeros(size, dtype=np.int64)))
+        self._packed = packed[bool(lowered.full.any())]
 
     def step(self, speed: Array, altitude: Array | None = None) -> None:
         """One sample on, the thrusters turning linearly from their last speed to ``speed`` (B, k) rev/s; ``altitude`` (B,) m, where effects ask for it."""
@@ -59,7 +59,7 @@ class Stepper:
         t = np.tile((self._step - (rows - 2) + np.arange(rows)) * self._dt, size)
         prepared = Prepared(self._speed.reshape(size * rows, k), log, t, np.zeros((1, 1, 6)), np.full(size * rows, size * rows))
         starts = self._starts(first)
-        out, stopped, codes = self._integrator.one_kernel(self._packed, prepared, starts, self._dt, False, 1, self._full)
+        out, stopped, codes = self._integrator.one_kernel(self._packed, prepared, starts, self._dt, False, 1)
         self._step += 1
         here = (self.stopped < 0) & (stopped >= 0)
         for b in np.flatnonzero(here):

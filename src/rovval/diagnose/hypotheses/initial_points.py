@@ -101,15 +101,14 @@ def _begun(target: Target, label: str, free: tuple[int, ...], at: Mapping[int, f
     plain = _plain_and_fine(target)[""]
     alone = tuple(s for s in target.slots if s in plain or s in at)
     found = [displaced(target.plant, label, alone, free, tuple(first.items()), next_id)]
-    refined, used = tuple(s for s in target.slots if s not in alone), dict(zip(trains, lines[1:], strict=False))
-    if refined and not trains:
-        sd = wide_sd(target.plant, refined)
-        whole = replace(found[0], columns=(*found[0].columns, *refined), sd=(*found[0].sd, *sd.values()))
-        found.append(replace(whole, label=f"{label} fine", slots=(*alone, *refined)))
-    if used:
-        refined = refined[: len(refined) // len(trains) * len(used)]  # train by train
-        sizes = (*free, *(s for s in refined if s not in trains))
-        found.append(displaced(target.plant, f"{label} further", (*alone, *refined), sizes, (*first.items(), *used.items()), next_id + len(free)))
+    refined = tuple(s for s in target.slots if s not in alone)
+    if further := dict(zip(trains, lines[1:], strict=False)):
+        used = refined[: len(refined) // len(trains) * len(further)]  # train by train
+        sizes = (*free, *(s for s in used if s not in trains))
+        found.append(displaced(target.plant, f"{label} further", (*alone, *used), sizes, (*first.items(), *further.items()), next_id + len(free)))
+    elif refined and not trains:
+        columns, sd = (*found[0].columns, *refined), (*found[0].sd, *wide_sd(target.plant, refined).values())
+        found.append(replace(found[0], label=f"{label} fine", slots=(*alone, *refined), columns=columns, sd=sd))
     return found
 
 

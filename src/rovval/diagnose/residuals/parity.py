@@ -179,7 +179,7 @@ def _weighted(motion: FaultSignatures, nominal: Array, signatures: Array, column
         return _none(m, columns, ("no pose beside velocity in this log",))
     seen = np.flatnonzero(np.abs(signatures).max(axis=(0, 1, 2)) > 0)
     slots = [windows.plant.slots[c] for c in columns]
-    free = np.array([i for i in seen if not load(slots[i].effect).of_one_axis(slots[i].parameter.name)], dtype=int)  # not needed to find the noise
+    free = np.array([i for i in seen if not load(slots[i].effect).is_another_form(slots[i].parameter.name)], dtype=int)  # not needed to find the noise
     sigma = np.array([max(1.4826 * float(np.median(np.abs(nominal[..., i]))), PARITY_LEAST_SD[i]) for i in keep])
     notes: list[str] = []
     left = nominal[..., keep]

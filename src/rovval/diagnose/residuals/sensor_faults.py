@@ -119,5 +119,5 @@ def _about(check: ParityResiduals, beta: Array) -> tuple[Array, Array]:
 
 
 def _jointly(slot: Slot) -> tuple[str, str]:
-    """Key of the parameters that are fitted jointly: those of an effect, except that one of a single axis is fitted by itself."""
-    return slot.hypothesis, slot.parameter.name if load(slot.effect).of_one_axis(slot.parameter.name) else ""
+    """Key of the parameters that are fitted jointly: those of an effect, except that another form of it is fitted by itself."""
+    return slot.hypothesis, slot.parameter.name if load(slot.effect).is_another_form(slot.parameter.name) else ""

@@ -12,7 +12,7 @@ from rovval.effects.lanes import Array
 from rovval.effects.log import Log
 
 AXES = ("surge", "sway", "heave")
-BEAMS = np.radians(30.0)  # of the beams from the vertical, as most velocity logs have them; 20 to 30 degrees are made
+BEAMS = np.radians(30.0)  # of the beams from the vertical (chosen; velocity logs have 20 to 30 degrees)
 SOUND = Tolerance(0.005, "speed of sound known to within half a per cent (chosen)", calibrated=False)
 
 EFFECT = Effect(
